@@ -10,7 +10,7 @@
 #include "bench/copy_bandwidth.hpp"
 #include "bench/grid_arrays.hpp"
 #include "bench/must_move.hpp"
-#include "core/level.hpp"
+#include "numbers/level.hpp"
 
 namespace isotet::bench {
 

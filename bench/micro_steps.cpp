@@ -10,9 +10,9 @@
 #include <isotet/make.hpp>
 #include <isotet/pack.hpp>
 
-#include "core/cells.hpp"
-#include "core/storage.hpp"
-#include "core/cell_order.hpp"
+#include "grid/cells.hpp"
+#include "numbers/storage.hpp"
+#include "packed/build/cell_order.hpp"
 #include "cpu/steps.hpp"
 
 namespace isotet::bench {

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "core/packed.hpp"
-#include "core/storage.hpp"
+#include "numbers/storage.hpp"
+#include "packed/packed.hpp"
 
 namespace isotet::bench {
 

@@ -22,7 +22,7 @@
 #include "all_shaders.hpp"
 #include "bench/kernels/null_device.hpp"
 #include "vulkan/context.hpp"
-#include "vulkan/float_controls.hpp"
+#include "vulkan/devices/float_controls.hpp"
 
 namespace {
 

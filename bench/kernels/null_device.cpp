@@ -9,7 +9,7 @@
 #include <dlfcn.h>
 #include <fmt/core.h>
 
-#include "vulkan/float_controls.hpp"
+#include "vulkan/devices/float_controls.hpp"
 
 namespace isotet::bench {
 

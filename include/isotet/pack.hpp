@@ -90,7 +90,7 @@ public:
     /// stored changes.
     PackedGrid with_frame(const std::optional<Frame>& frame) const;
 
-    /// The packed arrays, for engines; src/core/packed.hpp draws them.
+    /// The packed arrays, for engines; src/packed/packed.hpp draws them.
     const core::Packed& data() const noexcept { return *data_; }
     const std::shared_ptr<const core::Packed>& shared_data() const noexcept { return data_; }
 

@@ -7,10 +7,10 @@
 
 #include "api/active_cells.hpp"
 #include "api/finish.hpp"
-#include "core/cells.hpp"
-#include "core/errors.hpp"
-#include "core/guard.hpp"
+#include "base/errors.hpp"
+#include "base/guard.hpp"
 #include "cpu/direct/active_filter.hpp"
+#include "grid/cells.hpp"
 
 namespace isotet {
 

@@ -6,9 +6,9 @@
 #include <limits>
 #include <vector>
 
-#include "core/arithmetic.hpp"
-#include "core/parallel.hpp"
+#include "base/parallel.hpp"
 #include "cpu/face_normals.hpp"
+#include "numbers/arithmetic.hpp"
 
 namespace isotet::api {
 

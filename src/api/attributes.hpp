@@ -4,8 +4,8 @@
 
 #include <isotet/extract.hpp>
 
-#include "core/packed.hpp"
 #include "ops/extraction.hpp"
+#include "packed/packed.hpp"
 
 namespace isotet::api {
 

@@ -13,10 +13,10 @@
 #include <isotet/linear_cells.hpp>
 #include <isotet/reference.hpp>
 
-#include "core/buffer.hpp"
-#include "core/carry_out.hpp"
-#include "core/errors.hpp"
-#include "core/parallel.hpp"
+#include "base/buffer.hpp"
+#include "base/carry_out.hpp"
+#include "base/errors.hpp"
+#include "base/parallel.hpp"
 #include "cpu/spectrum.hpp"
 #include "reference/spectrum.hpp"
 

@@ -2,7 +2,7 @@
 #include <isotet/engine.hpp>
 #include <isotet/reference.hpp>
 
-#include "core/errors.hpp"
+#include "base/errors.hpp"
 
 namespace isotet {
 

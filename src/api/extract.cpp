@@ -5,11 +5,11 @@
 #include "api/finish.hpp"
 #include "api/fits.hpp"
 #include "api/ties.hpp"
-#include "core/carry_out.hpp"
-#include "core/field_storage.hpp"
-#include "core/packed.hpp"
-#include "core/storage.hpp"
+#include "base/carry_out.hpp"
 #include "cpu/extract.hpp"
+#include "numbers/storage.hpp"
+#include "packed/field_storage.hpp"
+#include "packed/packed.hpp"
 #include "reference/extract.hpp"
 
 namespace isotet {

@@ -6,14 +6,14 @@
 
 #include "api/active_cells.hpp"
 #include "api/finish.hpp"
-#include "core/carry_out.hpp"
-#include "core/cells.hpp"
-#include "core/errors.hpp"
-#include "core/frame.hpp"
-#include "core/grid_size.hpp"
-#include "core/parallel.hpp"
-#include "core/renumber.hpp"
+#include "base/carry_out.hpp"
+#include "base/errors.hpp"
+#include "base/parallel.hpp"
 #include "cpu/direct/direct.hpp"
+#include "grid/cells.hpp"
+#include "grid/grid_size.hpp"
+#include "grid/renumber.hpp"
+#include "packed/frame.hpp"
 #include "reference/direct.hpp"
 
 namespace isotet {

@@ -8,10 +8,10 @@
 
 #include <isotet/surface.hpp>
 
-#include "core/buffer.hpp"
-#include "core/carry_out.hpp"
-#include "core/errors.hpp"
-#include "core/parallel.hpp"
+#include "base/buffer.hpp"
+#include "base/carry_out.hpp"
+#include "base/errors.hpp"
+#include "base/parallel.hpp"
 
 namespace isotet {
 

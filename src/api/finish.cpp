@@ -7,10 +7,10 @@
 
 #include "api/attributes.hpp"
 #include "api/vertex_normals.hpp"
-#include "core/buffer.hpp"
-#include "core/errors.hpp"
-#include "core/parallel.hpp"
-#include "core/storage.hpp"
+#include "base/buffer.hpp"
+#include "base/errors.hpp"
+#include "base/parallel.hpp"
+#include "numbers/storage.hpp"
 
 namespace isotet::api {
 

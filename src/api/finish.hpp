@@ -10,8 +10,8 @@
 #include <isotet/export.hpp>
 #include <isotet/extract.hpp>
 
-#include "core/packed.hpp"
 #include "ops/extraction.hpp"
+#include "packed/packed.hpp"
 
 namespace isotet::api {
 

@@ -3,7 +3,7 @@
 
 #include <fmt/core.h>
 
-#include "core/errors.hpp"
+#include "base/errors.hpp"
 
 namespace isotet::api {
 

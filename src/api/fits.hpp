@@ -5,7 +5,7 @@
 #include <isotet/export.hpp>
 #include <isotet/extract.hpp>
 
-#include "core/packed.hpp"
+#include "packed/packed.hpp"
 
 namespace isotet::api {
 

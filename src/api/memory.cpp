@@ -1,7 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <isotet/memory.hpp>
 
-#include "core/block.hpp"
+#include "base/block.hpp"
 
 namespace isotet {
 

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <limits>
 
-#include "core/parallel.hpp"
-#include "core/prefetch.hpp"
-#include "core/storage.hpp"
+#include "base/parallel.hpp"
+#include "base/prefetch.hpp"
+#include "numbers/storage.hpp"
 
 namespace isotet {
 

@@ -5,8 +5,8 @@
 #include <isotet/export.hpp>
 #include <isotet/extract.hpp>
 
-#include "core/packed.hpp"
-#include "core/storage.hpp"
+#include "numbers/storage.hpp"
+#include "packed/packed.hpp"
 
 namespace isotet::api {
 

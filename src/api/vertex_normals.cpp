@@ -10,10 +10,10 @@
 
 #include <fmt/core.h>
 
-#include "core/carry_out.hpp"
-#include "core/errors.hpp"
-#include "core/parallel.hpp"
-#include "core/storage.hpp"
+#include "base/carry_out.hpp"
+#include "base/errors.hpp"
+#include "base/parallel.hpp"
+#include "numbers/storage.hpp"
 
 namespace isotet {
 

@@ -10,6 +10,8 @@
 
 #include <isotet/linear_cells.hpp>
 
+#include "base/carry_out.hpp"
+#include "base/parallel.hpp"
 #include "check/components.hpp"
 #include "check/grid_faces.hpp"
 #include "check/measure.hpp"
@@ -17,10 +19,8 @@
 #include "check/star_inspector.hpp"
 #include "check/stars.hpp"
 #include "check/weld.hpp"
-#include "core/carry_out.hpp"
-#include "core/parallel.hpp"
-#include "core/renumber.hpp"
-#include "core/same_place.hpp"
+#include "grid/points/same_place.hpp"
+#include "grid/renumber.hpp"
 
 namespace isotet {
 

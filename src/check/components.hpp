@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/disjoint_sets.hpp"
+#include "base/parallel.hpp"
 #include "check/mesh.hpp"
-#include "core/disjoint_sets.hpp"
-#include "core/parallel.hpp"
 
 namespace isotet::checking {
 

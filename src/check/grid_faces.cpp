@@ -10,12 +10,12 @@
 #include <fmt/core.h>
 #include <tbb/parallel_sort.h>
 
-#include "core/cells.hpp"
-#include "core/hanging.hpp"
-#include "core/native_cells.hpp"
-#include "core/orientation.hpp"
-#include "core/parallel.hpp"
-#include "core/tet_survey.hpp"
+#include "base/parallel.hpp"
+#include "grid/cell/native_cells.hpp"
+#include "grid/cells.hpp"
+#include "grid/orientation.hpp"
+#include "grid/points/hanging.hpp"
+#include "grid/tet_survey.hpp"
 
 namespace isotet::checking {
 

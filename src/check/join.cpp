@@ -7,7 +7,7 @@
 
 #include <isotet/surface.hpp>
 
-#include "core/cells.hpp"
+#include "grid/cells.hpp"
 
 namespace isotet {
 

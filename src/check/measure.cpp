@@ -7,8 +7,8 @@
 #include <numeric>
 #include <utility>
 
-#include "core/exact.hpp"
-#include "core/parallel.hpp"
+#include "base/parallel.hpp"
+#include "numbers/exact.hpp"
 
 namespace isotet::checking {
 

@@ -7,8 +7,8 @@
 
 #include <fmt/core.h>
 
-#include "core/errors.hpp"
-#include "core/parallel.hpp"
+#include "base/errors.hpp"
+#include "base/parallel.hpp"
 
 namespace isotet::checking {
 

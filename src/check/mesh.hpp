@@ -9,8 +9,8 @@
 #include <isotet/result.hpp>
 #include <isotet/surface.hpp>
 
-#include "core/cells.hpp"
-#include "core/orientation.hpp"
+#include "grid/cells.hpp"
+#include "grid/orientation.hpp"
 
 namespace isotet::checking {
 

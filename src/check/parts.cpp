@@ -11,12 +11,12 @@
 #include <fmt/format.h>
 #include <tbb/parallel_sort.h>
 
+#include "base/buffer.hpp"
+#include "base/carry_out.hpp"
+#include "base/errors.hpp"
+#include "base/parallel.hpp"
 #include "check/components.hpp"
 #include "check/mesh.hpp"
-#include "core/buffer.hpp"
-#include "core/carry_out.hpp"
-#include "core/errors.hpp"
-#include "core/parallel.hpp"
 
 namespace isotet {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "check/mesh.hpp"
-#include "core/incidence.hpp"
+#include "grid/fields/incidence.hpp"
 
 namespace isotet::checking {
 

@@ -6,8 +6,8 @@
 
 #include <tbb/parallel_sort.h>
 
-#include "core/parallel.hpp"
-#include "core/same_place.hpp"
+#include "base/parallel.hpp"
+#include "grid/points/same_place.hpp"
 
 namespace isotet::checking {
 

@@ -5,11 +5,11 @@
 #include <cstring>
 #include <type_traits>
 
-#include "core/storage.hpp"
 #include "cpu/active_cells.hpp"
 #include "cpu/level.hpp"
 #include "cpu/simd_avx2.hpp"
 #include "cpu/simd_avx512.hpp"
+#include "numbers/storage.hpp"
 
 namespace isotet::cpu {
 

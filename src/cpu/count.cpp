@@ -5,7 +5,7 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
-#include "core/parallel.hpp"
+#include "base/parallel.hpp"
 #include "cpu/at_level.hpp"
 #include "cpu/cutting.hpp"
 #include "cpu/level.hpp"

@@ -12,12 +12,12 @@
 #include <limits>
 #include <type_traits>
 
-#include "core/arithmetic.hpp"
-#include "core/local_values.hpp"
 #include "cpu/prefetch.hpp"
 #include "cpu/record.hpp"
 #include "cpu/simd_portable.hpp"
 #include "cpu/steps.hpp"
+#include "numbers/arithmetic.hpp"
+#include "packed/local_values.hpp"
 
 namespace isotet::cpu {
 

@@ -6,9 +6,7 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
-#include "core/arithmetic.hpp"
-#include "core/local_values.hpp"
-#include "core/parallel.hpp"
+#include "base/parallel.hpp"
 #include "cpu/field_writer.hpp"
 #include "cpu/level.hpp"
 #include "cpu/prefetch.hpp"
@@ -16,6 +14,8 @@
 #include "cpu/simd_avx512.hpp"
 #include "cpu/steps.hpp"
 #include "cpu/vertex_normals.hpp"
+#include "numbers/arithmetic.hpp"
+#include "packed/local_values.hpp"
 
 namespace isotet::cpu {
 

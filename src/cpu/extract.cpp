@@ -5,8 +5,8 @@
 #include <numeric>
 #include <string_view>
 
-#include "core/memory.hpp"
-#include "core/parallel.hpp"
+#include "base/memory.hpp"
+#include "base/parallel.hpp"
 #include "cpu/steps.hpp"
 #include "cpu/surface_arrays.hpp"
 

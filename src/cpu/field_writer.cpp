@@ -1,7 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "cpu/field_writer.hpp"
 
-#include "core/arithmetic.hpp"
+#include "numbers/arithmetic.hpp"
 
 namespace isotet::cpu {
 

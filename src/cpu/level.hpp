@@ -1,7 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "core/level.hpp"
+#include "numbers/level.hpp"
 
 namespace isotet::cpu {
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-#include "core/prefetch.hpp"
+#include "base/prefetch.hpp"
 #include "cpu/steps.hpp"
 
 namespace isotet::cpu {

@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/block.hpp"
-#include "core/packed.hpp"
+#include "base/block.hpp"
+#include "packed/packed.hpp"
 
 namespace isotet::cpu {
 

@@ -6,8 +6,8 @@
 
 #include <fmt/core.h>
 
-#include "core/parallel.hpp"
-#include "core/prefetch.hpp"
+#include "base/parallel.hpp"
+#include "base/prefetch.hpp"
 #include "cpu/steps.hpp"
 
 namespace isotet::cpu {

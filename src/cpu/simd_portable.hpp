@@ -9,14 +9,14 @@
 #include <numeric>
 #include <span>
 
-#include "core/arithmetic.hpp"
-#include "core/bits.hpp"
-#include "core/case_table.hpp"
-#include "core/cell_cases.hpp"
-#include "core/local_values.hpp"
-#include "core/packed.hpp"
-#include "core/storage.hpp"
+#include "base/bits.hpp"
 #include "cpu/record.hpp"
+#include "grid/cell/case_table.hpp"
+#include "grid/cell/cell_cases.hpp"
+#include "numbers/arithmetic.hpp"
+#include "numbers/storage.hpp"
+#include "packed/local_values.hpp"
+#include "packed/packed.hpp"
 
 namespace isotet::cpu {
 

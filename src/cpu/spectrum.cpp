@@ -6,7 +6,7 @@
 #include <atomic>
 #include <cmath>
 
-#include "core/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace isotet::cpu {
 

@@ -10,11 +10,11 @@
 #include <span>
 #include <vector>
 
-#include "core/bits.hpp"
-#include "core/buffer.hpp"
-#include "core/packed.hpp"
+#include "base/bits.hpp"
+#include "base/buffer.hpp"
 #include "cpu/record.hpp"
 #include "ops/extraction.hpp"
+#include "packed/packed.hpp"
 
 namespace isotet::cpu {
 

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/normal_code.hpp"
+#include "numbers/normal_code.hpp"
 
 namespace isotet::cpu {
 

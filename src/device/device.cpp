@@ -3,11 +3,11 @@
 
 #include <utility>
 
-#include "core/guard.hpp"
+#include "base/guard.hpp"
 #include "device/kernel_test.hpp"
-#include "vulkan/choice.hpp"
 #include "vulkan/context.hpp"
-#include "vulkan/found_devices.hpp"
+#include "vulkan/devices/choice.hpp"
+#include "vulkan/devices/found_devices.hpp"
 
 namespace isotet {
 

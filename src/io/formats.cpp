@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "io/own/foreign.hpp"
+#include "io/files/foreign.hpp"
 #include "io/formats.hpp"
 
 #include <fcntl.h>
@@ -17,10 +17,10 @@
 
 #include <isotet/grid.hpp>
 
-#include "io/own/file_kind.hpp"
-#include "io/own/read_openfoam.hpp"
-#include "io/own/text_scanner.hpp"
-#include "io/own/vtk_xml/load.hpp"
+#include "io/files/file_kind.hpp"
+#include "io/files/text_scanner.hpp"
+#include "io/foam/read_openfoam.hpp"
+#include "io/vtk_xml/load.hpp"
 
 namespace isotet {
 

@@ -10,15 +10,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "core/cell_faces.hpp"
-#include "core/cells.hpp"
-#include "core/linear_names.hpp"
-#include "core/parallel.hpp"
-#include "core/rising_progress.hpp"
+#include "base/parallel.hpp"
+#include "base/rising_progress.hpp"
+#include "grid/cell/linear_names.hpp"
+#include "grid/cell_faces.hpp"
+#include "grid/cells.hpp"
+#include "io/files/text_scanner.hpp"
 #include "io/formats.hpp"
-#include "io/own/region_choice.hpp"
-#include "io/own/text_scanner.hpp"
-#include "io/own/vtk_xml/uniform_cells.hpp"
+#include "io/pieces/region_choice.hpp"
+#include "io/pieces/uniform_cells.hpp"
 #include "io/reader.hpp"
 
 namespace isotet {

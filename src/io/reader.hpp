@@ -22,10 +22,10 @@ struct GridReader {
     Result<ReadResult> (*read)(const std::string& path, const ReadOptions& options, const Progress& progress);
 };
 
-/// src/io/own: readers that are always there.
+/// Readers that are always there.
 std::span<const GridReader> own_readers();
 
-/// src/io/vtk: with ISOTET_IO only.
+/// src/io/confined: with ISOTET_IO only.
 std::span<const GridReader> vtk_readers();
 
 /// True when `options` ask for the field; other fields are not read.

@@ -11,7 +11,7 @@
 #include <isotet/jobs/output_names.hpp>
 #include <isotet/picture_file.hpp>
 
-#include "core/stopwatch.hpp"
+#include "base/stopwatch.hpp"
 #include "jobs/frame_drawer.hpp"
 #include "jobs/picture_files.hpp"
 #include "jobs/picture_source.hpp"

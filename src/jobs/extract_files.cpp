@@ -14,7 +14,7 @@
 #include <isotet/process_memory.hpp>
 #include <isotet/write_file.hpp>
 
-#include "core/stopwatch.hpp"
+#include "base/stopwatch.hpp"
 #include "jobs/extract_notes.hpp"
 #include "jobs/extract_plan.hpp"
 #include "jobs/part_table.hpp"

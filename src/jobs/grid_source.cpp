@@ -15,7 +15,7 @@
 #include <isotet/jobs/output_names.hpp>
 #include <isotet/linear_cells.hpp>
 
-#include "core/orientation.hpp"
+#include "grid/orientation.hpp"
 #include "jobs/refuse.hpp"
 
 namespace isotet::jobs {

@@ -13,7 +13,7 @@
 #include <isotet/jobs/output_names.hpp>
 #include <isotet/levels.hpp>
 
-#include "core/stopwatch.hpp"
+#include "base/stopwatch.hpp"
 #include "jobs/refuse.hpp"
 
 namespace isotet::jobs {

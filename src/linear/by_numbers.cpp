@@ -7,9 +7,9 @@
 
 #include <fmt/core.h>
 
-#include "core/cell_faces.hpp"
-#include "core/errors.hpp"
-#include "core/parallel.hpp"
+#include "base/errors.hpp"
+#include "base/parallel.hpp"
+#include "grid/cell_faces.hpp"
 
 namespace isotet::linear {
 

@@ -4,7 +4,7 @@
 
 #include <isotet/linear_cells.hpp>
 
-#include "core/renumber.hpp"
+#include "grid/renumber.hpp"
 
 namespace isotet::linear {
 

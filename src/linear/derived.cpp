@@ -9,12 +9,12 @@
 
 #include <isotet/linear_cells.hpp>
 
-#include "core/buffer.hpp"
-#include "core/carry_out.hpp"
-#include "core/cells.hpp"
-#include "core/errors.hpp"
-#include "core/parallel.hpp"
-#include "linear/node_values.hpp"
+#include "base/buffer.hpp"
+#include "base/carry_out.hpp"
+#include "base/errors.hpp"
+#include "base/parallel.hpp"
+#include "grid/cells.hpp"
+#include "linear/curved/node_values.hpp"
 #include "linear/place.hpp"
 
 namespace isotet {

@@ -8,17 +8,17 @@
 
 #include <fmt/core.h>
 
-#include "core/carry_out.hpp"
-#include "core/cell_faces.hpp"
-#include "core/errors.hpp"
-#include "core/parallel.hpp"
+#include "base/carry_out.hpp"
+#include "base/errors.hpp"
+#include "base/parallel.hpp"
+#include "grid/cell_faces.hpp"
 #include "linear/by_numbers.hpp"
-#include "linear/curved_kinds.hpp"
-#include "linear/high_degree.hpp"
+#include "linear/curved/curved_kinds.hpp"
+#include "linear/curved/high_degree.hpp"
+#include "linear/curved/quadratic.hpp"
+#include "linear/curved/refine.hpp"
 #include "linear/parts.hpp"
-#include "linear/polyhedron.hpp"
-#include "linear/quadratic.hpp"
-#include "linear/refine.hpp"
+#include "linear/polyhedra/polyhedron.hpp"
 
 namespace isotet {
 

@@ -8,7 +8,7 @@
 
 #include <isotet/linear_cells.hpp>
 
-#include "core/buffer.hpp"
+#include "base/buffer.hpp"
 
 namespace isotet::linear {
 

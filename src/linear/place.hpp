@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <optional>
 
+#include "linear/curved/node_values.hpp"
+#include "linear/curved/quadratic.hpp"
 #include "linear/derived.hpp"
-#include "linear/node_values.hpp"
-#include "linear/quadratic.hpp"
 
 namespace isotet::linear {
 

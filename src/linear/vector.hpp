@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/exact.hpp"
+#include "numbers/exact.hpp"
 
 namespace isotet::linear {
 

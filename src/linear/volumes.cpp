@@ -1,11 +1,11 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <isotet/linear_cells.hpp>
 
-#include "core/average_to_points.hpp"
-#include "core/carry_out.hpp"
-#include "core/cell_faces.hpp"
-#include "core/parallel.hpp"
-#include "linear/polyhedron.hpp"
+#include "base/carry_out.hpp"
+#include "base/parallel.hpp"
+#include "grid/cell_faces.hpp"
+#include "grid/fields/average_to_points.hpp"
+#include "linear/polyhedra/polyhedron.hpp"
 
 namespace isotet {
 

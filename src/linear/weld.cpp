@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 #include <tbb/parallel_sort.h>
 
-#include "core/buffer.hpp"
-#include "core/parallel.hpp"
+#include "base/buffer.hpp"
+#include "base/parallel.hpp"
 
 namespace isotet::linear {
 

@@ -8,8 +8,8 @@
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
 
-#include "linear/bisection.hpp"
-#include "linear/quadratic.hpp"
+#include "linear/curved/bisection.hpp"
+#include "linear/curved/quadratic.hpp"
 
 namespace isotet::linear {
 

@@ -6,9 +6,9 @@
 #include <atomic>
 #include <vector>
 
-#include "core/buffer.hpp"
-#include "core/memory.hpp"
-#include "core/parallel.hpp"
+#include "base/buffer.hpp"
+#include "base/memory.hpp"
+#include "base/parallel.hpp"
 #include "make/analytic_field.hpp"
 
 namespace isotet::make {

@@ -8,11 +8,11 @@
 
 #include <fmt/core.h>
 
-#include "core/buffer.hpp"
-#include "core/carry_out.hpp"
-#include "core/cells.hpp"
-#include "core/memory.hpp"
-#include "core/parallel.hpp"
+#include "base/buffer.hpp"
+#include "base/carry_out.hpp"
+#include "base/memory.hpp"
+#include "base/parallel.hpp"
+#include "grid/cells.hpp"
 #include "make/analytic_field.hpp"
 #include "make/foam.hpp"
 #include "make/lattice.hpp"

@@ -21,9 +21,9 @@
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
 
-#include "core/cells.hpp"
-#include "core/packed.hpp"
+#include "grid/cells.hpp"
 #include "ops/extraction.hpp"
+#include "packed/packed.hpp"
 
 namespace isotet::ops {
 

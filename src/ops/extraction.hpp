@@ -22,8 +22,8 @@
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
 
-#include "core/packed.hpp"
-#include "core/storage.hpp"
+#include "numbers/storage.hpp"
+#include "packed/packed.hpp"
 
 namespace isotet::ops {
 

@@ -12,8 +12,8 @@
 #include <span>
 #include <vector>
 
-#include "core/cells.hpp"
-#include "core/orientation.hpp"
+#include "grid/cells.hpp"
+#include "grid/orientation.hpp"
 
 namespace isotet::ops {
 

@@ -8,14 +8,14 @@
 #include <set>
 #include <utility>
 
-#include "core/arithmetic.hpp"
-#include "core/bounds.hpp"
-#include "core/frame.hpp"
-#include "core/native_cells.hpp"
-#include "core/orientation.hpp"
-#include "core/storage.hpp"
-#include "core/sum_of_terms.hpp"
-#include "core/tet_gradient.hpp"
+#include "grid/cell/native_cells.hpp"
+#include "grid/orientation.hpp"
+#include "numbers/arithmetic.hpp"
+#include "numbers/bounds.hpp"
+#include "numbers/storage.hpp"
+#include "numbers/sum_of_terms.hpp"
+#include "numbers/tet_gradient.hpp"
+#include "packed/frame.hpp"
 #include "reference/triangles.hpp"
 
 namespace isotet::reference {

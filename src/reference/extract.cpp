@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/arithmetic.hpp"
+#include "numbers/arithmetic.hpp"
 #include "reference/triangles.hpp"
 
 namespace isotet::reference {

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "core/cell_cases.hpp"
+#include "grid/cell/cell_cases.hpp"
 
 namespace isotet::reference {
 

@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 
-#include "core/guard.hpp"
+#include "base/guard.hpp"
 #include "render/orientation.hpp"
 #include "render/text.hpp"
 #include "render/ticks.hpp"

@@ -6,8 +6,8 @@
 
 #include <isotet/camera.hpp>
 
-#include "core/packed.hpp"
-#include "core/parallel.hpp"
+#include "base/parallel.hpp"
+#include "packed/packed.hpp"
 
 namespace isotet {
 

@@ -7,7 +7,7 @@
 
 #include <fmt/core.h>
 
-#include "core/errors.hpp"
+#include "base/errors.hpp"
 #include "render/vector_math.hpp"
 
 namespace isotet::render {

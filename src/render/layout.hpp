@@ -7,10 +7,10 @@
 
 #include <isotet/picture.hpp>
 
-#include "core/case_table.hpp"
-#include "render/color_places.hpp"
+#include "grid/cell/case_table.hpp"
+#include "render/color/color_places.hpp"
+#include "render/color/linear_light.hpp"
 #include "render/kernels/scene.h"
-#include "render/linear_light.hpp"
 #include "vulkan/engine/layout.hpp"
 
 namespace isotet::render {

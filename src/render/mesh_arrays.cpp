@@ -10,8 +10,8 @@
 
 #include <isotet/camera.hpp>
 
-#include "core/errors.hpp"
-#include "core/parallel.hpp"
+#include "base/errors.hpp"
+#include "base/parallel.hpp"
 
 namespace isotet::render {
 

@@ -8,7 +8,7 @@
 #include <isotet/result.hpp>
 #include <isotet/surface.hpp>
 
-#include "core/buffer.hpp"
+#include "base/buffer.hpp"
 
 namespace isotet::render {
 

@@ -8,7 +8,7 @@
 #include <map>
 #include <vector>
 
-#include "core/storage.hpp"
+#include "numbers/storage.hpp"
 
 namespace isotet::scene {
 

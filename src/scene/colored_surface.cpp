@@ -10,7 +10,7 @@
 
 #include <isotet/contour.hpp>
 
-#include "core/errors.hpp"
+#include "base/errors.hpp"
 
 namespace isotet::scene {
 

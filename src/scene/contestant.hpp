@@ -9,7 +9,7 @@
 #include <isotet/pack.hpp>
 #include <isotet/render.hpp>
 
-#include "core/stopwatch.hpp"
+#include "base/stopwatch.hpp"
 
 namespace isotet::measure {
 

@@ -8,7 +8,7 @@
 
 #include <isotet/plan.hpp>
 
-#include "core/guard.hpp"
+#include "base/guard.hpp"
 #include "scene/contestant.hpp"
 
 namespace isotet {

@@ -3,8 +3,8 @@
 
 #include <utility>
 
-#include "core/guard.hpp"
-#include "core/stopwatch.hpp"
+#include "base/guard.hpp"
+#include "base/stopwatch.hpp"
 #include "scene/scene_data.hpp"
 
 namespace isotet {

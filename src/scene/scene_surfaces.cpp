@@ -4,8 +4,8 @@
 #include <iterator>
 #include <utility>
 
-#include "core/errors.hpp"
-#include "core/stopwatch.hpp"
+#include "base/errors.hpp"
+#include "base/stopwatch.hpp"
 #include "scene/clip_surface.hpp"
 #include "scene/colored_surface.hpp"
 #include "scene/scene_data.hpp"

@@ -4,7 +4,7 @@
 
 #include <isotet/boundary.hpp>
 
-#include "core/stopwatch.hpp"
+#include "base/stopwatch.hpp"
 #include "scene/clip_surface.hpp"
 #include "scene/colored_surface.hpp"
 #include "scene/scene_data.hpp"

@@ -3,7 +3,7 @@
 
 #include <numeric>
 
-#include "core/tet_table.hpp"
+#include "packed/tet_table.hpp"
 #include "search/search.hpp"
 
 namespace isotet::search {

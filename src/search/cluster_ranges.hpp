@@ -2,8 +2,8 @@
 // isotet's own way: the range of each cluster, and of each group of 32 tets in it.
 #pragma once
 
-#include "core/buffer.hpp"
-#include "core/tet_table.hpp"
+#include "base/buffer.hpp"
+#include "packed/tet_table.hpp"
 #include "search/search.hpp"
 
 namespace isotet::search {

@@ -6,7 +6,7 @@
 #include <tuple>
 #include <utility>
 
-#include "core/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace isotet::search {
 

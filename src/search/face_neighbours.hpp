@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <limits>
 
-#include "core/buffer.hpp"
-#include "core/tet_table.hpp"
+#include "base/buffer.hpp"
+#include "packed/tet_table.hpp"
 
 namespace isotet::search {
 

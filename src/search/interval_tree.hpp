@@ -5,8 +5,8 @@
 #include <memory>
 #include <span>
 
-#include "core/buffer.hpp"
-#include "core/tet_table.hpp"
+#include "base/buffer.hpp"
+#include "packed/tet_table.hpp"
 #include "search/search.hpp"
 
 namespace isotet::search {

@@ -6,8 +6,8 @@
 #include <bit>
 #include <limits>
 
-#include "core/hilbert.hpp"
-#include "core/parallel.hpp"
+#include "base/parallel.hpp"
+#include "numbers/hilbert.hpp"
 
 namespace isotet::search {
 

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "core/buffer.hpp"
-#include "core/radix_sort.hpp"
-#include "core/tet_table.hpp"
+#include "base/buffer.hpp"
+#include "base/radix_sort.hpp"
+#include "packed/tet_table.hpp"
 #include "search/search.hpp"
 
 namespace isotet::search {

@@ -4,8 +4,8 @@
 
 #include <memory>
 
-#include "core/buffer.hpp"
-#include "core/tet_table.hpp"
+#include "base/buffer.hpp"
+#include "packed/tet_table.hpp"
 #include "search/face_neighbours.hpp"
 #include "search/interval_tree.hpp"
 #include "search/search.hpp"

@@ -2,8 +2,8 @@
 // Livnat, Shen and Johnson (1996): the range of a tet as a point (lower, upper) of the span space, in a k-d tree.
 #pragma once
 
-#include "core/buffer.hpp"
-#include "core/tet_table.hpp"
+#include "base/buffer.hpp"
+#include "packed/tet_table.hpp"
 #include "search/search.hpp"
 
 namespace isotet::search {

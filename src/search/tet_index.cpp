@@ -6,13 +6,13 @@
 
 #include <isotet/search.hpp>
 
-#include "core/carry_out.hpp"
-#include "core/errors.hpp"
-#include "core/memory.hpp"
-#include "core/parallel.hpp"
-#include "core/stopwatch.hpp"
-#include "core/storage.hpp"
-#include "core/tet_table.hpp"
+#include "base/carry_out.hpp"
+#include "base/errors.hpp"
+#include "base/memory.hpp"
+#include "base/parallel.hpp"
+#include "base/stopwatch.hpp"
+#include "numbers/storage.hpp"
+#include "packed/tet_table.hpp"
 #include "search/all_tets.hpp"
 #include "search/cluster_ranges.hpp"
 #include "search/interval_tree.hpp"

@@ -7,14 +7,14 @@
 
 #include <fmt/format.h>
 
-#include "core/carry_out.hpp"
-#include "core/cell_faces.hpp"
-#include "core/cells.hpp"
-#include "core/errors.hpp"
-#include "core/guard.hpp"
-#include "core/linear_names.hpp"
-#include "core/packed.hpp"
-#include "core/parallel.hpp"
+#include "base/carry_out.hpp"
+#include "base/errors.hpp"
+#include "base/guard.hpp"
+#include "base/parallel.hpp"
+#include "grid/cell/linear_names.hpp"
+#include "grid/cell_faces.hpp"
+#include "grid/cells.hpp"
+#include "packed/packed.hpp"
 #include "session/contour_data.hpp"
 #include "session/exact_vertices.hpp"
 

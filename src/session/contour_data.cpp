@@ -5,10 +5,10 @@
 #include <iterator>
 #include <utility>
 
-#include "core/frame.hpp"
-#include "core/memory.hpp"
-#include "core/packed.hpp"
-#include "core/parallel.hpp"
+#include "base/memory.hpp"
+#include "base/parallel.hpp"
+#include "packed/frame.hpp"
+#include "packed/packed.hpp"
 
 namespace isotet {
 

@@ -8,9 +8,9 @@
 
 #include <fmt/format.h>
 
-#include "core/errors.hpp"
-#include "linear/curved_kinds.hpp"
-#include "linear/quadratic.hpp"
+#include "base/errors.hpp"
+#include "linear/curved/curved_kinds.hpp"
+#include "linear/curved/quadratic.hpp"
 #include "session/linear_input.hpp"
 
 namespace isotet::session {

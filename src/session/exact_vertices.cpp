@@ -1,8 +1,8 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "session/exact_vertices.hpp"
 
-#include "core/carry_out.hpp"
-#include "linear/exact_vertices.hpp"
+#include "base/carry_out.hpp"
+#include "linear/curved/exact_vertices.hpp"
 
 namespace isotet::session {
 

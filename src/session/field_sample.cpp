@@ -11,11 +11,11 @@
 
 #include <isotet/plan.hpp>
 
-#include "core/cell_faces.hpp"
-#include "core/cells.hpp"
-#include "core/guard.hpp"
-#include "core/prefetch.hpp"
-#include "linear/curved_kinds.hpp"
+#include "base/guard.hpp"
+#include "base/prefetch.hpp"
+#include "grid/cell_faces.hpp"
+#include "grid/cells.hpp"
+#include "linear/curved/curved_kinds.hpp"
 
 namespace isotet {
 

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <vector>
 
-#include "core/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace isotet::session {
 

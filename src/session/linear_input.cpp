@@ -5,8 +5,8 @@
 #include <array>
 #include <utility>
 
-#include "core/buffer.hpp"
-#include "core/parallel.hpp"
+#include "base/buffer.hpp"
+#include "base/parallel.hpp"
 
 namespace isotet::session {
 

@@ -11,7 +11,7 @@
 #include <isotet/field_statistics.hpp>
 #include <isotet/linear_cells.hpp>
 
-#include "core/array_identity.hpp"
+#include "base/array_identity.hpp"
 #include "session/fingerprint.hpp"
 
 namespace isotet::session {

@@ -4,7 +4,7 @@
 
 #include <isotet/grid.hpp>
 
-#include "core/array_identity.hpp"
+#include "base/array_identity.hpp"
 #include "session/fingerprint.hpp"
 
 namespace isotet::session {

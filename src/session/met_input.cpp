@@ -6,11 +6,11 @@
 #include <span>
 #include <utility>
 
-#include "core/buffer.hpp"
-#include "core/cell_faces.hpp"
-#include "core/cells.hpp"
-#include "core/parallel.hpp"
-#include "core/storage.hpp"
+#include "base/buffer.hpp"
+#include "base/parallel.hpp"
+#include "grid/cell_faces.hpp"
+#include "grid/cells.hpp"
+#include "numbers/storage.hpp"
 #include "session/linear_input.hpp"
 
 namespace isotet::session {

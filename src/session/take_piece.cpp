@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "core/errors.hpp"
-#include "core/guard.hpp"
+#include "base/errors.hpp"
+#include "base/guard.hpp"
 #include "session/linear_input.hpp"
 
 namespace isotet {

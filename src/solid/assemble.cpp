@@ -11,8 +11,8 @@
 
 #include <isotet/solid.hpp>
 
-#include "core/buffer.hpp"
-#include "core/parallel.hpp"
+#include "base/buffer.hpp"
+#include "base/parallel.hpp"
 
 namespace isotet::solid {
 

@@ -9,14 +9,14 @@
 #include <fmt/format.h>
 #include <tbb/parallel_sort.h>
 
-#include "core/buffer.hpp"
-#include "core/cells.hpp"
-#include "core/errors.hpp"
-#include "core/native_cells.hpp"
-#include "core/orientation.hpp"
-#include "core/parallel.hpp"
-#include "core/point_hash.hpp"
-#include "core/storage.hpp"
+#include "base/buffer.hpp"
+#include "base/errors.hpp"
+#include "base/parallel.hpp"
+#include "grid/cell/native_cells.hpp"
+#include "grid/cells.hpp"
+#include "grid/orientation.hpp"
+#include "numbers/point_hash.hpp"
+#include "numbers/storage.hpp"
 
 namespace isotet::solid {
 

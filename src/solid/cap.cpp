@@ -8,8 +8,8 @@
 
 #include <tbb/parallel_sort.h>
 
-#include "core/orientation.hpp"
-#include "core/parallel.hpp"
+#include "base/parallel.hpp"
+#include "grid/orientation.hpp"
 #include "solid/face_part.hpp"
 #include "solid/warped_face.hpp"
 

@@ -9,7 +9,7 @@
 
 #include <isotet/array.hpp>
 
-#include "core/storage.hpp"
+#include "numbers/storage.hpp"
 #include "solid/boundary_faces.hpp"
 #include "solid/rim.hpp"
 

@@ -8,7 +8,7 @@
 
 #include <tbb/parallel_sort.h>
 
-#include "core/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace isotet::solid {
 

@@ -12,9 +12,9 @@
 #include <isotet/linear_cells.hpp>
 #include <isotet/refine.hpp>
 
-#include "core/carry_out.hpp"
-#include "core/errors.hpp"
-#include "core/guard.hpp"
+#include "base/carry_out.hpp"
+#include "base/errors.hpp"
+#include "base/guard.hpp"
 #include "session/curved_input.hpp"
 #include "session/linear_input.hpp"
 #include "solid/assemble.hpp"

@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/cache_folder.hpp"
-#include "core/guard.hpp"
-#include "vulkan/choice.hpp"
-#include "vulkan/found_devices.hpp"
+#include "base/cache_folder.hpp"
+#include "base/guard.hpp"
+#include "vulkan/devices/choice.hpp"
+#include "vulkan/devices/found_devices.hpp"
 #include "vulkan/self_test.hpp"
 
 namespace isotet::vulkan {

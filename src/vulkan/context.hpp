@@ -15,10 +15,10 @@
 #include <isotet/export.hpp>
 #include <isotet/result.hpp>
 
-#include "vulkan/capabilities.hpp"
-#include "vulkan/instance.hpp"
+#include "vulkan/devices/capabilities.hpp"
+#include "vulkan/devices/instance.hpp"
+#include "vulkan/devices/logical_device.hpp"
 #include "vulkan/kernels.hpp"
-#include "vulkan/logical_device.hpp"
 #include "vulkan/memory.hpp"
 #include "vulkan/pipeline_cache.hpp"
 #include "vulkan/staging.hpp"

@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 
-#include "vulkan/failure.hpp"
+#include "vulkan/devices/failure.hpp"
 
 namespace isotet::vulkan {
 

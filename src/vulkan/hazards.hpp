@@ -6,7 +6,7 @@
 #include <map>
 #include <span>
 
-#include "vulkan/functions.hpp"
+#include "vulkan/devices/functions.hpp"
 
 namespace isotet::vulkan {
 

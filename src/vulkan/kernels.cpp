@@ -5,8 +5,8 @@
 
 #include <fmt/core.h>
 
-#include "vulkan/failure.hpp"
-#include "vulkan/float_controls.hpp"
+#include "vulkan/devices/failure.hpp"
+#include "vulkan/devices/float_controls.hpp"
 
 namespace isotet::vulkan {
 

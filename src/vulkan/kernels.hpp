@@ -11,9 +11,9 @@
 #include <isotet/export.hpp>
 #include <isotet/result.hpp>
 
-#include "vulkan/capabilities.hpp"
-#include "vulkan/float_controls.hpp"
-#include "vulkan/logical_device.hpp"
+#include "vulkan/devices/capabilities.hpp"
+#include "vulkan/devices/float_controls.hpp"
+#include "vulkan/devices/logical_device.hpp"
 #include "vulkan/pipeline_cache.hpp"
 #include "vulkan/shader_code.hpp"
 

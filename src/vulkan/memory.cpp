@@ -7,8 +7,8 @@
 
 #include <fmt/core.h>
 
-#include "core/memory.hpp"
-#include "vulkan/failure.hpp"
+#include "base/memory.hpp"
+#include "vulkan/devices/failure.hpp"
 
 namespace isotet::vulkan {
 

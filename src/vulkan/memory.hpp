@@ -15,9 +15,9 @@
 #include <isotet/export.hpp>
 #include <isotet/result.hpp>
 
-#include "vulkan/capabilities.hpp"
+#include "vulkan/devices/capabilities.hpp"
+#include "vulkan/devices/logical_device.hpp"
 #include "vulkan/free_ranges.hpp"
-#include "vulkan/logical_device.hpp"
 
 namespace isotet::vulkan {
 

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <string_view>
 
-#include "vulkan/capabilities.hpp"
-#include "vulkan/logical_device.hpp"
+#include "vulkan/devices/capabilities.hpp"
+#include "vulkan/devices/logical_device.hpp"
 
 namespace isotet::vulkan {
 

@@ -6,7 +6,7 @@
 #include <fmt/core.h>
 
 #include "vulkan/context.hpp"
-#include "vulkan/failure.hpp"
+#include "vulkan/devices/failure.hpp"
 #include "vulkan/groups.hpp"
 
 namespace isotet::vulkan {

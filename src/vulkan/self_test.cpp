@@ -9,10 +9,10 @@
 
 #include <fmt/core.h>
 
-#include "core/arithmetic.hpp"
+#include "numbers/arithmetic.hpp"
 #include "shaders.hpp"
 #include "vulkan/context.hpp"
-#include "vulkan/hard_divisions.hpp"
+#include "vulkan/devices/hard_divisions.hpp"
 #include "vulkan/recorder.hpp"
 
 namespace isotet::vulkan {

@@ -1,7 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "vulkan/submission.hpp"
 
-#include "vulkan/failure.hpp"
+#include "vulkan/devices/failure.hpp"
 
 namespace isotet::vulkan {
 

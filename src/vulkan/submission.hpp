@@ -7,7 +7,7 @@
 
 #include <isotet/result.hpp>
 
-#include "vulkan/logical_device.hpp"
+#include "vulkan/devices/logical_device.hpp"
 
 namespace isotet::vulkan {
 

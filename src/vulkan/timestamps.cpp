@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "vulkan/context.hpp"
-#include "vulkan/failure.hpp"
+#include "vulkan/devices/failure.hpp"
 
 namespace isotet::vulkan {
 

@@ -12,8 +12,8 @@
 #include <isotet/memory.hpp>
 #include <isotet/pack.hpp>
 
-#include "core/block.hpp"
-#include "core/memory.hpp"
+#include "base/block.hpp"
+#include "base/memory.hpp"
 #include "support/small_grid.hpp"
 #include "support/surface_bytes.hpp"
 

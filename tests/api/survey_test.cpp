@@ -12,9 +12,9 @@
 #include <isotet/make.hpp>
 #include <isotet/pack.hpp>
 
-#include "core/faces.hpp"
-#include "core/mixed_faces.hpp"
-#include "core/parallel.hpp"
+#include "base/parallel.hpp"
+#include "grid/faces.hpp"
+#include "grid/mixed_faces.hpp"
 #include "support/random_grid.hpp"
 
 namespace isotet::test {

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "base/parallel.hpp"
 #include "check/made_surface.hpp"
-#include "core/parallel.hpp"
 
 namespace {
 

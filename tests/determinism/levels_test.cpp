@@ -13,8 +13,8 @@
 #include <isotet/make.hpp>
 #include <isotet/pack.hpp>
 
-#include "core/level.hpp"
 #include "determinism/packed_bytes.hpp"
+#include "numbers/level.hpp"
 #include "support/engines.hpp"
 #include "support/random_grid.hpp"
 #include "support/surface_bytes.hpp"

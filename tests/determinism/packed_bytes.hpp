@@ -6,7 +6,7 @@
 
 #include <isotet/pack.hpp>
 
-#include "core/packed.hpp"
+#include "packed/packed.hpp"
 
 namespace isotet::test {
 

@@ -8,9 +8,9 @@
 #include <isotet/grid.hpp>
 #include <isotet/make.hpp>
 
-#include "core/close_points.hpp"
-#include "core/parallel.hpp"
-#include "core/same_place.hpp"
+#include "base/parallel.hpp"
+#include "grid/points/close_points.hpp"
+#include "grid/points/same_place.hpp"
 
 namespace {
 

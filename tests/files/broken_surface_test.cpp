@@ -6,7 +6,7 @@
 #include <isotet/write.hpp>
 
 #include "files/sample_files.hpp"
-#include "io/own/surface_parts.hpp"
+#include "io/surfaces/surface_parts.hpp"
 
 namespace isotet::test {
 namespace {

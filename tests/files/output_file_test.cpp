@@ -8,7 +8,7 @@
 #include <csignal>
 
 #include "files/sample_files.hpp"
-#include "io/own/output_file.hpp"
+#include "io/files/output_file.hpp"
 
 namespace isotet::test {
 namespace {

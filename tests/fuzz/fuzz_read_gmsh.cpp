@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "fuzz/read_input.hpp"
-#include "io/own/read_gmsh.hpp"
+#include "io/gmsh/read_gmsh.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace isotet;

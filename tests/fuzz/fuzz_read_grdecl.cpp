@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "fuzz/read_input.hpp"
-#include "io/own/read_grdecl.hpp"
+#include "io/grdecl/read_grdecl.hpp"
 
 namespace {
 

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "fuzz/read_input.hpp"
-#include "io/own/join.hpp"
-#include "io/own/read_openfoam.hpp"
+#include "io/foam/read_openfoam.hpp"
+#include "io/pieces/join.hpp"
 
 namespace {
 

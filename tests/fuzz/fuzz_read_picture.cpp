@@ -3,7 +3,7 @@
 #include <string>
 
 #include "fuzz/read_input.hpp"
-#include "io/own/read_picture.hpp"
+#include "io/pictures/read_picture.hpp"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "io/own/surface_parts.hpp"
+#include "io/surfaces/surface_parts.hpp"
 
 namespace {
 

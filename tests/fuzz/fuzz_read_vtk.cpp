@@ -3,9 +3,9 @@
 #include <array>
 
 #include "fuzz/read_input.hpp"
-#include "io/own/join.hpp"
-#include "io/own/read_legacy_vtk.hpp"
-#include "io/own/vtk_xml/load.hpp"
+#include "io/pieces/join.hpp"
+#include "io/vtk_legacy/read_legacy_vtk.hpp"
+#include "io/vtk_xml/load.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace isotet;

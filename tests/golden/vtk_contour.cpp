@@ -20,7 +20,7 @@
 #include <vtkPolyData.h>
 #include <vtkUnstructuredGrid.h>
 
-#include "core/cells.hpp"
+#include "grid/cells.hpp"
 
 namespace isotet::test {
 

@@ -7,8 +7,8 @@
 #include <random>
 #include <span>
 
-#include "core/packed.hpp"
 #include "gpu_engine/engines.hpp"
+#include "packed/packed.hpp"
 #include "support/random_grid.hpp"
 #include "support/seeds.hpp"
 #include "support/small_grid.hpp"

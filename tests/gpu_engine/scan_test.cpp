@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "core/packed.hpp"
 #include "gpu_engine/engines.hpp"
+#include "packed/packed.hpp"
 #include "vulkan/engine/grid_on_device.hpp"
 
 namespace isotet::test {

@@ -20,27 +20,32 @@ struct FolderRule {
 const std::vector<FolderRule>& folder_rules() {
     static const std::vector<FolderRule> rules = {
         {"include/", {}},
-        {"src/core/", {"core/"}},
-        {"src/check/", {"check/", "core/"}},
-        {"src/linear/", {"linear/", "core/"}},
-        {"src/make/", {"make/", "core/"}},
-        {"src/ops/", {"ops/", "core/"}},
-        {"src/reference/", {"reference/", "ops/", "core/"}},
-        {"src/cpu/", {"cpu/", "ops/", "core/"}},
-        {"src/vulkan/", {"vulkan/", "ops/", "core/"}},
-        {"src/render/", {"render/", "vulkan/", "core/"}},
-        {"src/search/", {"search/", "ops/", "core/"}},
-        {"src/api/", {"api/", "reference/", "cpu/", "ops/", "core/"}},
-        {"src/device/", {"device/", "api/", "vulkan/", "ops/", "core/"}},
-        {"src/session/", {"session/", "core/", "linear/"}},
-        {"src/solid/", {"solid/", "session/", "core/"}},
-        {"src/scene/", {"scene/", "core/"}},
-        {"src/jobs/", {"jobs/", "core/"}},
+        {"src/base/", {"base/"}},
+        {"src/numbers/", {"numbers/", "base/"}},
+        {"src/grid/", {"grid/", "numbers/", "base/"}},
+        {"src/packed/", {"packed/", "grid/", "numbers/", "base/"}},
+        {"src/check/", {"check/", "grid/", "numbers/", "base/"}},
+        {"src/linear/", {"linear/", "grid/", "numbers/", "base/"}},
+        {"src/make/", {"make/", "grid/", "base/"}},
+        {"src/ops/", {"ops/", "packed/", "grid/", "numbers/"}},
+        {"src/reference/", {"reference/", "ops/", "packed/", "grid/", "numbers/"}},
+        {"src/cpu/", {"cpu/", "ops/", "packed/", "grid/", "numbers/", "base/"}},
+        {"src/vulkan/", {"vulkan/", "ops/", "packed/", "grid/", "numbers/", "base/"}},
+        {"src/render/", {"render/", "vulkan/", "packed/", "grid/", "numbers/", "base/"}},
+        {"src/search/", {"search/", "ops/", "packed/", "numbers/", "base/"}},
+        {"src/api/", {"api/", "reference/", "cpu/", "ops/", "packed/", "grid/", "numbers/", "base/"}},
+        {"src/device/", {"device/", "api/", "vulkan/", "ops/", "packed/", "numbers/", "base/"}},
+        {"src/session/", {"session/", "linear/", "packed/", "grid/", "numbers/", "base/"}},
+        {"src/solid/", {"solid/", "session/", "grid/", "numbers/", "base/"}},
+        {"src/scene/", {"scene/", "numbers/", "base/"}},
+        {"src/jobs/", {"jobs/", "grid/", "base/"}},
         {"src/view/", {"view/"}},
-        {"src/io/own/", {"io/own/", "io/reader.hpp", "core/"}},
-        {"src/io/process/", {"io/own/", "io/process/", "io/reader.hpp", "core/"}},
-        {"src/io/vtk/", {"io/", "core/"}},
-        {"src/io/", {"io/own/", "io/formats.hpp", "io/reader.hpp", "core/"}},
+        {"src/io/files/", {"io/files/", "io/reader.hpp", "base/"}},
+        {"src/io/pieces/", {"io/pieces/", "io/files/", "io/reader.hpp", "grid/", "numbers/", "base/"}},
+        {"src/io/write/", {"io/write/", "io/files/", "grid/", "numbers/", "base/"}},
+        {"src/io/process/", {"io/process/", "io/files/", "io/reader.hpp", "base/"}},
+        {"src/io/confined/", {"io/", "grid/", "numbers/", "base/"}},
+        {"src/io/", {"io/", "grid/", "numbers/", "base/"}},
         {"apps/cli/", {"view/"}}, // its own headers have no folder
         {"examples/", {}},
         {"vtk/", {}},    // its own headers have no folder
@@ -58,22 +63,22 @@ struct LibraryRule {
 
 const std::vector<LibraryRule>& library_rules() {
     static const std::vector<LibraryRule> rules = {
-        {"VTK", {"vtk"}, {"src/io/vtk/", "vtk/", "bench/", "tests/"}},
+        {"VTK", {"vtk"}, {"src/io/confined/", "vtk/", "bench/", "tests/"}},
         {"pugixml", {"pugixml"}, {"src/io/", "tests/"}},
-        {"HDF5", {"hdf5", "H5"}, {"src/io/vtk/", "tests/"}},
+        {"HDF5", {"hdf5", "H5"}, {"src/io/confined/", "tests/"}},
         {"oneTBB", {"tbb/", "oneapi/"}, {"src/", "bench/", "tests/"}},
         {"Vulkan", {"vulkan/vulkan"}, {"src/vulkan/", "bench/", "tests/"}},
         {"FreeType", {"ft2build", "freetype"}, {"src/render/"}},
-        {"libpng", {"png.h"}, {"src/io/own/", "src/view/encode.cpp", "tests/"}},
+        {"libpng", {"png.h"}, {"src/io/pictures/", "src/view/encode.cpp", "tests/"}},
         {"libjpeg-turbo", {"jpeglib.h"}, {"src/view/encode.cpp"}},
         {"fmt", {"fmt/"}, {"src/", "apps/", "bench/", "tests/"}},
         {"CLI11", {"CLI/"}, {"apps/", "tests/"}},
-        {"nlohmann_json", {"nlohmann/"}, {"apps/", "bench/", "src/io/own/read_series.cpp", "src/view/", "tests/"}},
+        {"nlohmann_json", {"nlohmann/"}, {"apps/", "bench/", "src/io/vtk_xml/read_series.cpp", "src/view/", "tests/"}},
         {"Boost", {"boost/"}, {"src/view/server.cpp", "tests/view/"}},
-        {"libwebp", {"webp/"}, {"src/io/own/", "tests/"}},
-        {"libdeflate", {"libdeflate.h"}, {"src/io/own/", "tests/"}},
-        {"liblz4", {"lz4"}, {"src/io/own/"}},
-        {"liblzma", {"lzma"}, {"src/io/own/"}},
+        {"libwebp", {"webp/"}, {"src/io/pictures/", "tests/"}},
+        {"libdeflate", {"libdeflate.h"}, {"src/io/", "tests/"}},
+        {"liblz4", {"lz4"}, {"src/io/vtk_xml/"}},
+        {"liblzma", {"lzma"}, {"src/io/vtk_xml/"}},
         {"GoogleTest", {"gtest/", "gmock/"}, {"tests/"}},
         {"nanobind", {"nanobind/"}, {"python/"}},
     };
@@ -81,9 +86,12 @@ const std::vector<LibraryRule>& library_rules() {
 }
 
 /// Folders that includes begin with; what begins otherwise is a public header, a library, or a neighbour in a test.
-constexpr std::array<std::string_view, 18> folders_of_includes = {
-    "core/", "check/", "make/",   "ops/",    "reference/", "cpu/",    "api/",   "device/", "session/",
-    "io/",   "jobs/",  "linear/", "search/", "vulkan/",    "render/", "scene/", "cli/",    "view/"};
+constexpr std::array<std::string_view, 22> folders_of_includes = {
+    "base/",    "numbers/", "grid/", "packed/", "check/",  "make/",   "ops/",    "reference/",
+    "cpu/",     "api/",     "device/", "session/", "solid/", "io/",    "jobs/",   "linear/",
+    "search/",  "vulkan/",  "render/", "scene/", "cli/",   "view/"};
+
+constexpr std::array<std::string_view, 4> below_the_engines = {"src/base/", "src/numbers/", "src/grid/", "src/packed/"};
 
 bool begins_with_any(std::string_view text, std::span<const std::string_view> beginnings) {
     return std::any_of(beginnings.begin(), beginnings.end(),
@@ -112,8 +120,8 @@ std::string objection(std::string_view path, std::string_view name) {
             return fmt::format("{} is included only from {}", rule.library, fmt::join(rule.folders, ", "));
         }
     }
-    if (name.starts_with("tbb/") && path.ends_with(".hpp") && path.starts_with("src/core/")) {
-        return "headers of src/core show no thread library";
+    if (name.starts_with("tbb/") && path.ends_with(".hpp") && begins_with_any(path, below_the_engines)) {
+        return "headers below the engines show no thread library";
     }
     if (!begins_with_any(name, folders_of_includes)) return {};
     for (const FolderRule& rule : folder_rules()) {

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Includes go one way: core <- ops <- engines <- api <- apps. Every source file of the tree is read.
+// Includes go one way: base <- numbers <- grid <- packed <- ops <- engines <- api <- apps. Every source file of the tree is read.
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -40,26 +40,26 @@ TEST(Includes, GoOnlyTheDirectionsOfTheArchitecture) {
 }
 
 TEST(Includes, AgainstTheDirectionAreFound) {
-    EXPECT_NE(objection("src/core/pack.cpp", "ops/extract.hpp"), "");
+    EXPECT_NE(objection("src/packed/build/pack.cpp", "ops/extract.hpp"), "");
     EXPECT_NE(objection("src/ops/extract.hpp", "cpu/emit.hpp"), "");
     EXPECT_NE(objection("src/cpu/emit.cpp", "reference/extract.hpp"), "");
-    EXPECT_NE(objection("src/io/own/gmsh.cpp", "cpu/emit.hpp"), "");
-    EXPECT_NE(objection("src/io/own/gmsh.cpp", "vtkCellArray.h"), "");
-    EXPECT_NE(objection("src/io/process/formats.cpp", "io/vtk/loaders.hpp"), "") << "the library does not know VTK";
+    EXPECT_NE(objection("src/io/gmsh/read_gmsh.cpp", "cpu/emit.hpp"), "");
+    EXPECT_NE(objection("src/io/gmsh/read_gmsh.cpp", "vtkCellArray.h"), "");
+    EXPECT_NE(objection("src/io/process/formats.cpp", "io/confined/loaders.hpp"), "") << "the library does not know VTK";
     EXPECT_NE(objection("include/isotet/grid.hpp", "fmt/format.h"), "");
-    EXPECT_NE(objection("src/core/parallel.hpp", "tbb/task_arena.h"), "");
+    EXPECT_NE(objection("src/base/parallel.hpp", "tbb/task_arena.h"), "");
     EXPECT_NE(objection("apps/cli/extract.cpp", "cpu/emit.hpp"), "");
-    EXPECT_NE(objection("apps/cli/extract.cpp", "core/parallel.hpp"), "") << "the program sees public headers only";
-    EXPECT_NE(objection("src/new_folder/new.cpp", "core/packed.hpp"), "") << "a folder without a rule";
+    EXPECT_NE(objection("apps/cli/extract.cpp", "base/parallel.hpp"), "") << "the program sees public headers only";
+    EXPECT_NE(objection("src/new_folder/new.cpp", "packed/packed.hpp"), "") << "a folder without a rule";
     EXPECT_EQ(objection("src/cpu/emit.cpp", "ops/extract.hpp"), "");
-    EXPECT_EQ(objection("src/io/vtk/child.cpp", "vtkCellArray.h"), "");
+    EXPECT_EQ(objection("src/io/confined/serve.cpp", "vtkCellArray.h"), "");
     EXPECT_NE(objection("python/bindings/contours.cpp", "session/fingerprint.hpp"), "") << "and so do the bindings";
     EXPECT_EQ(objection("apps/cli/extract.cpp", "isotet/extract.hpp"), "");
 }
 
 TEST(Includes, AreReadFromTheLinesThatAreIncludes) {
     EXPECT_EQ(included_name("  #  include <vector> // why"), "vector");
-    EXPECT_EQ(included_name("#include \"core/cells.hpp\""), "core/cells.hpp");
+    EXPECT_EQ(included_name("#include \"grid/cells.hpp\""), "grid/cells.hpp");
     EXPECT_EQ(included_name("// #include <vector>"), "");
     EXPECT_EQ(included_name("#include NAME"), "");
 }

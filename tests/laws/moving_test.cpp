@@ -9,7 +9,7 @@
 #include <isotet/extract.hpp>
 #include <isotet/pack.hpp>
 
-#include "core/packed.hpp"
+#include "packed/packed.hpp"
 #include "support/random_grid.hpp"
 #include "support/small_grid.hpp"
 #include "support/surface_bytes.hpp"

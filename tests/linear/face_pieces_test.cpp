@@ -1,13 +1,13 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // How faces are cut: as few pieces as can be, from the face alone.
-#include "linear/face_pieces.hpp"
+#include "linear/polyhedra/face_pieces.hpp"
 
 #include <numeric>
 #include <string>
 
 #include <gtest/gtest.h>
 
-#include "core/orientation.hpp"
+#include "grid/orientation.hpp"
 
 namespace isotet::linear {
 namespace {

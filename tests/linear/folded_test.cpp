@@ -14,7 +14,7 @@
 #include <isotet/contour.hpp>
 #include <isotet/linear_cells.hpp>
 
-#include "core/cells.hpp"
+#include "grid/cells.hpp"
 #include "linear/polyhedral_grid.hpp"
 #include "support/surface_sets.hpp"
 

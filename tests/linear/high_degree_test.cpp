@@ -8,9 +8,9 @@
 #include <isotet/contour.hpp>
 #include <isotet/refine.hpp>
 
-#include "core/node_order.hpp"
+#include "grid/cell/node_order.hpp"
+#include "linear/curved/pyramid_weights.hpp"
 #include "linear/curved_grid.hpp"
-#include "linear/pyramid_weights.hpp"
 
 namespace isotet::test {
 namespace {

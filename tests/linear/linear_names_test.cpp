@@ -9,7 +9,7 @@
 #include <isotet/contour.hpp>
 #include <isotet/make.hpp>
 
-#include "core/linear_names.hpp"
+#include "grid/cell/linear_names.hpp"
 
 namespace isotet::test {
 namespace {

@@ -10,8 +10,8 @@
 #include <isotet/linear_cells.hpp>
 #include <isotet/make.hpp>
 
-#include "core/cell_faces.hpp"
-#include "core/cells.hpp"
+#include "grid/cell_faces.hpp"
+#include "grid/cells.hpp"
 #include "linear/polyhedral_grid.hpp"
 #include "support/surface_bytes.hpp"
 

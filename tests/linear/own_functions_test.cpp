@@ -13,7 +13,7 @@
 #include <isotet/contour.hpp>
 #include <isotet/refine.hpp>
 
-#include "core/node_order.hpp"
+#include "grid/cell/node_order.hpp"
 #include "linear/curved_grid.hpp"
 
 namespace isotet::test {

@@ -11,7 +11,7 @@
 
 #include <isotet/grid.hpp>
 
-#include "core/cells.hpp"
+#include "grid/cells.hpp"
 
 namespace isotet::test {
 

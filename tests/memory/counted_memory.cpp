@@ -60,7 +60,7 @@ void operator delete(void* data, std::size_t, std::align_val_t) noexcept { give(
 void operator delete[](void* data, std::size_t, std::align_val_t) noexcept { give(data); }
 
 #if !defined(__SANITIZE_ADDRESS__)
-// Large blocks of the library are mapped (core/block.hpp); the heap's own mappings do not come along here.
+// Large blocks of the library are mapped (base/block.hpp); the heap's own mappings do not come along here.
 extern "C" void* mmap(void* address, size_t bytes, int protection, int flags, int file, off_t offset) noexcept {
     const long result = syscall(SYS_mmap, address, bytes, protection, flags, file, offset);
     if (result != -1) add(bytes);

@@ -6,7 +6,7 @@
 
 #include <isotet/pack.hpp>
 
-#include "core/block.hpp"
+#include "base/block.hpp"
 #include "memory/counted_memory.hpp"
 #include "support/small_grid.hpp"
 

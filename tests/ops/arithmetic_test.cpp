@@ -1,7 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // The arithmetic of the contract where it is awkward: ends of edges, NaN, normals of long and short triangles, normal
 // codes.
-#include "core/arithmetic.hpp"
+#include "numbers/arithmetic.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -9,10 +9,10 @@
 
 #include <gtest/gtest.h>
 
-#include "core/bits.hpp"
-#include "core/case_table.hpp"
-#include "core/memory.hpp"
-#include "core/normal_code.hpp"
+#include "base/bits.hpp"
+#include "base/memory.hpp"
+#include "grid/cell/case_table.hpp"
+#include "numbers/normal_code.hpp"
 
 namespace isotet::test {
 namespace {

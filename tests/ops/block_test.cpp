@@ -12,9 +12,9 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "core/block.hpp"
-#include "core/block_reuse.hpp"
-#include "core/buffer.hpp"
+#include "base/block.hpp"
+#include "base/block_reuse.hpp"
+#include "base/buffer.hpp"
 
 namespace isotet::core {
 namespace {

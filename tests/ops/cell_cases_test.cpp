@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/cell_cases.hpp"
+#include "grid/cell/cell_cases.hpp"
 #include "reference/triangles.hpp"
 
 namespace isotet::test {

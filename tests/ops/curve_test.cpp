@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/hilbert.hpp"
+#include "numbers/hilbert.hpp"
 
 namespace isotet::test {
 namespace {

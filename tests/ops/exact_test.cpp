@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Exact signs against integer arithmetic of 128 bits, and the canonical order of corners.
-#include "core/exact.hpp"
+#include "numbers/exact.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/orientation.hpp"
+#include "grid/orientation.hpp"
 
 namespace isotet::test {
 namespace {

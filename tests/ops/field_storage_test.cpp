@@ -1,7 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Storing a field side by side gives what storing its values one by one gives, in every type and whatever passes it
 // takes.
-#include "core/field_storage.hpp"
+#include "packed/field_storage.hpp"
 
 #include <bit>
 #include <random>
@@ -10,8 +10,8 @@
 
 #include <isotet/pack.hpp>
 
-#include "core/group_ranges.hpp"
-#include "core/level.hpp"
+#include "numbers/level.hpp"
+#include "packed/group_ranges.hpp"
 #include "support/small_grid.hpp"
 
 namespace isotet::test {

@@ -7,7 +7,7 @@
 
 #include <isotet/pack.hpp>
 
-#include "core/local_values.hpp"
+#include "packed/local_values.hpp"
 #include "support/random_grid.hpp"
 
 namespace isotet::test {

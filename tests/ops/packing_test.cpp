@@ -10,11 +10,11 @@
 
 #include <isotet/pack.hpp>
 
-#include "core/growth.hpp"
-#include "core/stored_cells.hpp"
-#include "core/orientation.hpp"
-#include "core/packed.hpp"
-#include "core/storage.hpp"
+#include "packed/build/growth.hpp"
+#include "packed/stored_cells.hpp"
+#include "grid/orientation.hpp"
+#include "packed/packed.hpp"
+#include "numbers/storage.hpp"
 #include "support/brute_weld.hpp"
 #include "support/random_grid.hpp"
 #include "support/seeds.hpp"

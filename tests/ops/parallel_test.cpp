@@ -9,7 +9,7 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 
-#include "core/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace isotet::core {
 namespace {

@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/parallel.hpp"
-#include "core/radix_sort.hpp"
+#include "base/parallel.hpp"
+#include "base/radix_sort.hpp"
 
 namespace isotet::test {
 namespace {

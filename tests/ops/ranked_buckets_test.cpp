@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/ranked_buckets.hpp"
+#include "packed/build/ranked_buckets.hpp"
 
 namespace isotet::test {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/rising_progress.hpp"
+#include "base/rising_progress.hpp"
 
 namespace isotet::core {
 namespace {

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // The storage rule: rounding is monotone, "unchanged" compares exactly, and nothing stored is denormal or overflows.
-#include "core/storage.hpp"
+#include "numbers/storage.hpp"
 
 #include <algorithm>
 #include <cstring>

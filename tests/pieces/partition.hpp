@@ -14,7 +14,7 @@
 #include <isotet/grid.hpp>
 #include <isotet/surface.hpp>
 
-#include "core/cells.hpp"
+#include "grid/cells.hpp"
 
 namespace isotet::test {
 

@@ -4,11 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include "io/own/read_gmsh.hpp"
-#include "io/own/read_gocad.hpp"
-#include "io/own/read_grdecl.hpp"
-#include "io/own/read_medit.hpp"
-#include "io/own/read_tetgen.hpp"
+#include "io/gmsh/read_gmsh.hpp"
+#include "io/gocad/read_gocad.hpp"
+#include "io/grdecl/read_grdecl.hpp"
+#include "io/medit/read_medit.hpp"
+#include "io/tetgen/read_tetgen.hpp"
 #include "readers/gmsh_sample.hpp"
 #include "readers/gocad_sample.hpp"
 #include "readers/grdecl_sample.hpp"

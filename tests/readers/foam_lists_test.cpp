@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "io/own/foam/scanner.hpp"
+#include "io/foam/scanner.hpp"
 
 namespace isotet::test {
 namespace {

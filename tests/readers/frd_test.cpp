@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "io/own/read_frd.hpp"
+#include "io/frd/read_frd.hpp"
 
 namespace isotet::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "io/own/read_gmsh.hpp"
+#include "io/gmsh/read_gmsh.hpp"
 #include "readers/gmsh_sample.hpp"
 #include "readers/sample_bytes.hpp"
 #include "support/temporary_folder.hpp"

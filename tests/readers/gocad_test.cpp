@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "io/own/read_gocad.hpp"
+#include "io/gocad/read_gocad.hpp"
 #include "readers/gocad_sample.hpp"
 #include "readers/sample_bytes.hpp"
 

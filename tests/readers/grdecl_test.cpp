@@ -10,7 +10,7 @@
 #include <isotet/contour.hpp>
 #include <isotet/read.hpp>
 
-#include "io/own/read_grdecl.hpp"
+#include "io/grdecl/read_grdecl.hpp"
 #include "readers/grdecl_sample.hpp"
 #include "readers/sample_bytes.hpp"
 #include "support/temporary_folder.hpp"

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "io/own/read_legacy_vtk.hpp"
+#include "io/vtk_legacy/read_legacy_vtk.hpp"
 #include "readers/sample_bytes.hpp"
 #include "support/temporary_folder.hpp"
 

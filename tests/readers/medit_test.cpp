@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "io/own/read_medit.hpp"
+#include "io/medit/read_medit.hpp"
 #include "readers/medit_sample.hpp"
 #include "readers/sample_bytes.hpp"
 #include "support/temporary_folder.hpp"

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "io/own/number_map.hpp"
+#include "io/pieces/number_map.hpp"
 
 #include <cstdint>
 #include <limits>

@@ -14,7 +14,7 @@
 #include <isotet/pieces.hpp>
 #include <isotet/read.hpp>
 
-#include "io/own/foam/field_file.hpp"
+#include "io/foam/field_file.hpp"
 #include "pieces/partition.hpp"
 #include "readers/foam_sample.hpp"
 #include "support/temporary_folder.hpp"

@@ -6,8 +6,8 @@
 
 #include <isotet/read.hpp>
 
-#include "io/own/read_gmsh.hpp"
-#include "io/own/read_tetgen.hpp"
+#include "io/gmsh/read_gmsh.hpp"
+#include "io/tetgen/read_tetgen.hpp"
 #include "support/quadratic_files.hpp"
 #include "support/temporary_folder.hpp"
 

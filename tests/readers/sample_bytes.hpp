@@ -15,7 +15,7 @@
 #include <isotet/grid.hpp>
 #include <isotet/read.hpp>
 
-#include "core/cells.hpp"
+#include "grid/cells.hpp"
 
 namespace isotet::test {
 

@@ -13,7 +13,7 @@
 #include <isotet/make.hpp>
 #include <isotet/pieces.hpp>
 
-#include "io/own/join.hpp"
+#include "io/pieces/join.hpp"
 
 namespace isotet::test {
 namespace {

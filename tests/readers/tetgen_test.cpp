@@ -1,7 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "io/own/read_tetgen.hpp"
+#include "io/tetgen/read_tetgen.hpp"
 #include "readers/sample_bytes.hpp"
 
 namespace isotet::test {

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "io/own/text_scanner.hpp"
+#include "io/files/text_scanner.hpp"
 
 #include <cmath>
 #include <cstdint>

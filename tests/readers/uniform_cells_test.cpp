@@ -10,10 +10,10 @@
 
 #include <isotet/read.hpp>
 
-#include "io/own/byte_source.hpp"
-#include "io/own/read_legacy_vtk.hpp"
-#include "io/own/vtk_xml/codec.hpp"
-#include "io/own/vtk_xml/load.hpp"
+#include "io/files/byte_source.hpp"
+#include "io/vtk_legacy/read_legacy_vtk.hpp"
+#include "io/vtk_xml/codec.hpp"
+#include "io/vtk_xml/load.hpp"
 #include "readers/sample_bytes.hpp"
 
 namespace isotet::test {

@@ -11,11 +11,11 @@
 
 #include <isotet/read.hpp>
 
-#include "io/own/byte_source.hpp"
-#include "io/own/common_type.hpp"
-#include "io/own/join.hpp"
-#include "io/own/vtk_xml/base64.hpp"
-#include "io/own/vtk_xml/load.hpp"
+#include "io/files/byte_source.hpp"
+#include "io/pieces/common_type.hpp"
+#include "io/pieces/join.hpp"
+#include "io/vtk_xml/base64.hpp"
+#include "io/vtk_xml/load.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace isotet::test {

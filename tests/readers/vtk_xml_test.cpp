@@ -12,14 +12,14 @@
 
 #include <isotet/read.hpp>
 
-#include "core/memory.hpp"
-#include "io/own/byte_source.hpp"
-#include "io/own/number_text.hpp"
-#include "io/own/read_legacy_vtk.hpp"
-#include "io/own/text_scanner.hpp"
-#include "io/own/vtk_xml/base64.hpp"
-#include "io/own/vtk_xml/columns.hpp"
-#include "io/own/vtk_xml/load.hpp"
+#include "base/memory.hpp"
+#include "io/files/byte_source.hpp"
+#include "io/files/number_text.hpp"
+#include "io/files/text_scanner.hpp"
+#include "io/vtk_legacy/read_legacy_vtk.hpp"
+#include "io/vtk_xml/base64.hpp"
+#include "io/vtk_xml/columns.hpp"
+#include "io/vtk_xml/load.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace isotet::test {

@@ -9,8 +9,8 @@
 
 #include <isotet/read.hpp>
 
-#include "io/own/plain_file.hpp"
-#include "io/own/whole_file.hpp"
+#include "io/files/plain_file.hpp"
+#include "io/files/whole_file.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace isotet::test {

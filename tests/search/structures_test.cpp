@@ -9,7 +9,7 @@
 
 #include <isotet/search.hpp>
 
-#include "core/tet_table.hpp"
+#include "packed/tet_table.hpp"
 #include "search/face_neighbours.hpp"
 #include "search/seed_set.hpp"
 #include "support/random_grid.hpp"

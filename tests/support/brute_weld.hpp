@@ -12,7 +12,7 @@
 #include <isotet/extract.hpp>
 #include <isotet/grid.hpp>
 
-#include "core/exact.hpp"
+#include "numbers/exact.hpp"
 #include "support/surface_sets.hpp"
 
 namespace isotet::test {

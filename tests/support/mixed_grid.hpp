@@ -13,8 +13,8 @@
 
 #include <isotet/grid.hpp>
 
-#include "core/cells.hpp"
-#include "core/native_cells.hpp"
+#include "grid/cell/native_cells.hpp"
+#include "grid/cells.hpp"
 #include "support/random_grid.hpp"
 #include "support/small_grid.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "io/own/join.hpp"
+#include "io/pieces/join.hpp"
 
 namespace isotet::io::vtk {
 namespace {

@@ -14,7 +14,7 @@
 #include <isotet/linear_cells.hpp>
 #include <isotet/read.hpp>
 
-#include "core/cell_faces.hpp"
+#include "grid/cell_faces.hpp"
 #include "linear/polyhedral_grid.hpp"
 #include "support/small_grid.hpp"
 #include "support/surface_sets.hpp"

@@ -11,7 +11,7 @@
 
 #include <isotet/read.hpp>
 
-#include "core/node_order.hpp"
+#include "grid/cell/node_order.hpp"
 #include "hdf5_writer.hpp"
 #include "support/quadratic_files.hpp"
 #include "support/temporary_folder.hpp"

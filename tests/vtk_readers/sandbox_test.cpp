@@ -15,7 +15,7 @@
 
 #include <isotet/read.hpp>
 
-#include "io/vtk/sandbox.hpp"
+#include "io/confined/sandbox.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace isotet::test {

@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-#include "io/own/file_kind.hpp"
+#include "io/files/file_kind.hpp"
 #include "io/process/sealed_mapping.hpp"
 
 namespace isotet::test {

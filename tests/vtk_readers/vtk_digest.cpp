@@ -24,8 +24,8 @@
 #include <vtkXMLStructuredGridReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
-#include "io/vtk/vtk_grid.hpp"
-#include "io/vtk/vtk_log.hpp"
+#include "io/confined/vtk_grid.hpp"
+#include "io/confined/vtk_log.hpp"
 
 namespace isotet::test {
 namespace {

@@ -13,7 +13,7 @@
 
 #include <isotet/read.hpp>
 
-#include "io/vtk/ensight_check.hpp"
+#include "io/confined/ensight/ensight_check.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace isotet::test {

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "vulkan/functions.hpp"
+#include "vulkan/devices/functions.hpp"
 
 namespace isotet::test {
 

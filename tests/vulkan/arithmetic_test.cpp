@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "test_shaders.hpp"
-#include "vulkan/hard_divisions.hpp"
+#include "vulkan/devices/hard_divisions.hpp"
 #include "vulkan/software_device.hpp"
 
 namespace isotet::test {

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "vulkan/capabilities.hpp"
+#include "vulkan/devices/capabilities.hpp"
 
 namespace isotet::test {
 namespace {

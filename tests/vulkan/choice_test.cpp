@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "vulkan/choice.hpp"
+#include "vulkan/devices/choice.hpp"
 
 namespace isotet::test {
 namespace {

@@ -13,7 +13,7 @@
 #include "bench/kernels/null_device.hpp"
 #include "bench/kernels/pipelines.hpp"
 #include "support/run_program.hpp"
-#include "vulkan/float_controls.hpp"
+#include "vulkan/devices/float_controls.hpp"
 
 namespace isotet::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "vulkan/functions.hpp"
+#include "vulkan/devices/functions.hpp"
 
 namespace isotet::test {
 

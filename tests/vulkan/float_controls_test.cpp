@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "test_shaders.hpp"
-#include "vulkan/float_controls.hpp"
+#include "vulkan/devices/float_controls.hpp"
 
 namespace isotet::test {
 namespace {

@@ -12,8 +12,8 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
-#include "core/buffer.hpp"
-#include "core/parallel.hpp"
+#include "base/buffer.hpp"
+#include "base/parallel.hpp"
 #include "cpu/direct/arena.hpp"
 #include "cpu/direct/side_sums.hpp"
 

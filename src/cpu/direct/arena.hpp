@@ -9,9 +9,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/block.hpp"
-#include "core/buffer.hpp"
-#include "core/memory.hpp"
+#include "base/block.hpp"
+#include "base/buffer.hpp"
+#include "base/memory.hpp"
 
 namespace isotet::cpu::direct {
 
@@ -48,7 +48,7 @@ private:
     std::atomic<std::uint64_t> taken_{0}, free_{unknown};
 };
 
-/// A huge page. Blocks that one stage gives back then fit the next (core/block.hpp).
+/// A huge page. Blocks that one stage gives back then fit the next (base/block.hpp).
 constexpr std::size_t arena_block = std::size_t{2} << 20;
 
 /// One thread's memory, in blocks; given back as a whole.

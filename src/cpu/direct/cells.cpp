@@ -8,7 +8,7 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
-#include "core/parallel.hpp"
+#include "base/parallel.hpp"
 #include "cpu/direct/side_sums.hpp"
 
 namespace isotet::cpu::direct {

@@ -7,8 +7,8 @@
 #include <limits>
 #include <utility>
 
-#include "core/cell_cases.hpp"
 #include "cpu/direct/cutter.hpp"
+#include "grid/cell/cell_cases.hpp"
 
 namespace isotet::cpu::direct {
 

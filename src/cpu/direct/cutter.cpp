@@ -6,10 +6,10 @@
 #include <limits>
 #include <utility>
 
-#include "core/case_table.hpp"
 #include "cpu/at_level.hpp"
 #include "cpu/direct/cut_cells.hpp"
 #include "cpu/direct/orient.hpp"
+#include "grid/cell/case_table.hpp"
 
 namespace isotet::cpu::direct {
 

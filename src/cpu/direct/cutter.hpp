@@ -7,10 +7,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/native_cells.hpp"
-#include "core/orientation.hpp"
 #include "cpu/direct/arena.hpp"
 #include "cpu/direct/points.hpp"
+#include "grid/cell/native_cells.hpp"
+#include "grid/orientation.hpp"
 
 namespace isotet::cpu::direct {
 

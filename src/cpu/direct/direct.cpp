@@ -7,13 +7,13 @@
 
 #include <fmt/core.h>
 
-#include "core/frame.hpp"
-#include "core/memory.hpp"
-#include "core/parallel.hpp"
-#include "core/tet_survey.hpp"
+#include "base/memory.hpp"
+#include "base/parallel.hpp"
 #include "cpu/direct/emit.hpp"
 #include "cpu/direct/normals.hpp"
 #include "cpu/extract.hpp"
+#include "grid/tet_survey.hpp"
+#include "packed/frame.hpp"
 
 namespace isotet::cpu::direct {
 

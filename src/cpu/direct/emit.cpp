@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "core/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace isotet::cpu::direct {
 

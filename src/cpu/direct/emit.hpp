@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include "core/arithmetic.hpp"
 #include "cpu/direct/weld.hpp"
+#include "numbers/arithmetic.hpp"
 
 namespace isotet::cpu::direct {
 

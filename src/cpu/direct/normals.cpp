@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <atomic>
 
-#include "core/arithmetic.hpp"
-#include "core/bits.hpp"
-#include "core/incidence.hpp"
-#include "core/parallel.hpp"
-#include "core/sum_of_terms.hpp"
-#include "core/tet_gradient.hpp"
+#include "base/bits.hpp"
+#include "base/parallel.hpp"
+#include "grid/fields/incidence.hpp"
+#include "numbers/arithmetic.hpp"
+#include "numbers/sum_of_terms.hpp"
+#include "numbers/tet_gradient.hpp"
 
 namespace isotet::cpu::direct {
 

@@ -15,9 +15,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/buffer.hpp"
-#include "core/exact.hpp"
-#include "core/storage.hpp"
+#include "base/buffer.hpp"
+#include "numbers/exact.hpp"
+#include "numbers/storage.hpp"
 #include "ops/direct.hpp"
 
 namespace isotet::cpu::direct {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "core/parallel.hpp"
+#include "base/parallel.hpp"
 #include "cpu/at_level.hpp"
 #include "cpu/direct/points.hpp"
 

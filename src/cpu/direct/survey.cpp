@@ -9,12 +9,12 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
-#include "core/bounds.hpp"
-#include "core/frame.hpp"
-#include "core/orientation.hpp"
-#include "core/value_summary.hpp"
 #include "cpu/at_level.hpp"
 #include "cpu/direct/points.hpp"
+#include "grid/orientation.hpp"
+#include "numbers/bounds.hpp"
+#include "numbers/value_summary.hpp"
+#include "packed/frame.hpp"
 
 namespace isotet::cpu::direct {
 

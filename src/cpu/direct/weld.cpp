@@ -6,7 +6,7 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
-#include "core/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace isotet::cpu::direct {
 

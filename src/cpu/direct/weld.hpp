@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/buffer.hpp"
+#include "base/buffer.hpp"
 #include "cpu/direct/cells.hpp"
 
 namespace isotet::cpu::direct {

@@ -7,7 +7,7 @@
 
 #include <isotet/export.hpp>
 
-#include "io/own/file_kind.hpp"
+#include "io/files/file_kind.hpp"
 
 namespace isotet::io::vtk {
 

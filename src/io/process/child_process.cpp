@@ -17,7 +17,7 @@
 
 #include <fmt/core.h>
 
-#include "io/own/escape.hpp"
+#include "io/files/escape.hpp"
 #include "io/process/channel.hpp"
 
 extern char** environ;

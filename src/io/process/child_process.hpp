@@ -10,7 +10,7 @@
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
 
-#include "io/own/file_kind.hpp"
+#include "io/files/file_kind.hpp"
 #include "io/process/process_handle.hpp"
 
 namespace isotet::io::vtk {

@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "io/own/escape.hpp"
+#include "io/files/escape.hpp"
 
 namespace isotet::io::vtk {
 namespace {

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// The formats that the reader program reads, and how each is recognized. src/io/vtk/loaders.cpp has its side.
+// The formats that the reader program reads, and how each is recognized. src/io/confined/loaders.cpp has its side.
 #include <algorithm>
 #include <array>
 

@@ -4,7 +4,7 @@
 #include <csignal>
 #include <sys/types.h>
 
-#include "io/own/file_kind.hpp"
+#include "io/files/file_kind.hpp"
 
 namespace isotet::io::vtk {
 

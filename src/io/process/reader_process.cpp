@@ -11,8 +11,8 @@
 
 #include <fmt/core.h>
 
-#include "io/own/escape.hpp"
-#include "io/own/file_kind.hpp"
+#include "io/files/escape.hpp"
+#include "io/files/file_kind.hpp"
 #include "io/process/child_pool.hpp"
 #include "io/process/find_reader.hpp"
 

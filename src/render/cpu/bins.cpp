@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "core/parallel.hpp"
+#include "base/parallel.hpp"
 #include "render/cpu/clip.hpp"
 
 namespace isotet::render {

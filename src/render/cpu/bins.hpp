@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/buffer.hpp"
+#include "base/buffer.hpp"
 #include "render/cpu/sheet.hpp"
 
 namespace isotet::render {

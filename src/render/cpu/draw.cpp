@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <atomic>
 
-#include "core/carry_out.hpp"
-#include "core/parallel.hpp"
+#include "base/carry_out.hpp"
+#include "base/parallel.hpp"
 #include "render/check_drawing.hpp"
 #include "render/cpu/bins.hpp"
 #include "render/cpu/tile.hpp"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "render/linear_light.hpp"
+#include "render/color/linear_light.hpp"
 
 namespace isotet::render {
 

@@ -5,7 +5,7 @@
 #include <bit>
 #include <cmath>
 
-#include "render/color_places.hpp"
+#include "render/color/color_places.hpp"
 
 namespace isotet::render {
 

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/errors.hpp"
-#include "core/parallel.hpp"
+#include "base/errors.hpp"
+#include "base/parallel.hpp"
 #include "render/check_drawing.hpp"
-#include "render/color_places.hpp"
+#include "render/color/color_places.hpp"
 #include "render/mesh_arrays.hpp"
 
 namespace isotet::render {

@@ -8,8 +8,8 @@
 #include <isotet/result.hpp>
 #include <isotet/scene.hpp>
 
-#include "core/buffer.hpp"
-#include "render/linear_light.hpp"
+#include "base/buffer.hpp"
+#include "render/color/linear_light.hpp"
 #include "render/space.hpp"
 
 namespace isotet::render {

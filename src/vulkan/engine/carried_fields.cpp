@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
-#include "core/buffer.hpp"
-#include "core/field_storage.hpp"
-#include "core/parallel.hpp"
-#include "core/storage.hpp"
+#include "base/buffer.hpp"
+#include "base/parallel.hpp"
+#include "numbers/storage.hpp"
+#include "packed/field_storage.hpp"
 
 namespace isotet::vulkan {
 

@@ -9,8 +9,8 @@
 #include <isotet/array.hpp>
 #include <isotet/result.hpp>
 
-#include "core/array_identity.hpp"
-#include "core/packed.hpp"
+#include "base/array_identity.hpp"
+#include "packed/packed.hpp"
 #include "vulkan/context.hpp"
 
 namespace isotet::vulkan {

@@ -7,8 +7,8 @@
 
 #include <fmt/core.h>
 
-#include "core/errors.hpp"
-#include "core/memory.hpp"
+#include "base/errors.hpp"
+#include "base/memory.hpp"
 
 namespace isotet::vulkan {
 

@@ -4,9 +4,9 @@
 
 #include <cstdint>
 
-#include "core/case_table.hpp"
-#include "core/cell_cases.hpp"
-#include "core/packed.hpp"
+#include "grid/cell/case_table.hpp"
+#include "grid/cell/cell_cases.hpp"
+#include "packed/packed.hpp"
 #include "vulkan/kernels/shared/layout.h"
 #include "vulkan/memory.hpp"
 

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Another field, or other points, for a grid that is on the device already: only what changed goes up.
-#include "core/set_field.hpp"
+#include "packed/set_field.hpp"
 #include "vulkan/engine/grid_on_device.hpp"
 
 namespace isotet::vulkan {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace isotet::vulkan {
 

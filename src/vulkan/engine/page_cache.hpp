@@ -12,7 +12,7 @@
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
 
-#include "core/packed.hpp"
+#include "packed/packed.hpp"
 #include "vulkan/context.hpp"
 #include "vulkan/engine/page_plan.hpp"
 #include "vulkan/engine/resident.hpp"

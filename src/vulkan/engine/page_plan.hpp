@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/buffer.hpp"
-#include "core/packed.hpp"
+#include "base/buffer.hpp"
+#include "packed/packed.hpp"
 #include "vulkan/engine/layout.hpp"
 
 namespace isotet::vulkan {

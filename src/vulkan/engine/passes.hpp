@@ -10,7 +10,7 @@
 #include <isotet/extract.hpp>
 #include <isotet/result.hpp>
 
-#include "core/storage.hpp"
+#include "numbers/storage.hpp"
 #include "vulkan/context.hpp"
 #include "vulkan/engine/carried_fields.hpp"
 #include "vulkan/engine/resident.hpp"

@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 
-#include "core/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace isotet::vulkan {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/memory.hpp"
-#include "core/parallel.hpp"
+#include "base/memory.hpp"
+#include "base/parallel.hpp"
 
 namespace isotet::vulkan {
 

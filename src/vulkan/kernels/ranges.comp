@@ -1,7 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Works out, from the values of its points, the range of each cluster and of its groups, and whether it holds a point without
 // data; clusters of pages that are not on the device are left alone. A workgroup a cluster, an invocation a point, then a
-// word of its cells. Words that clusters share are only ANDed and ORed, each its own bits. Same as core/store_ranges.cpp.
+// word of its cells. Words that clusters share are only ANDed and ORed, each its own bits. Same as packed/store_ranges.cpp.
 #version 460
 #include "shared/groups.glsl"
 #include "shared/cluster.glsl"

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// The arithmetic of the contract, bit for bit as the processor has it. Same as core/arithmetic.hpp, name by name.
+// The arithmetic of the contract, bit for bit as the processor has it. Same as numbers/arithmetic.hpp, name by name.
 //
 // Vulkan rounds sums, differences and products as IEEE 754 does, if they are `precise` and neither operands nor results are
 // denormal: stored values (docs/inside/precision.md) see to that. Quotients and roots may be off by a few units: `divide`
@@ -117,7 +117,7 @@ vec3 normalized(vec3 v) {
     return vec3(divide(v.x, size), divide(v.y, size), divide(v.z, size));
 }
 
-/// The direction of a normal code in whole numbers, as core/normal_code.hpp has it.
+/// The direction of a normal code in whole numbers, as numbers/normal_code.hpp has it.
 ivec3 decode_normal(uint code) {
     const int u = bitfieldExtract(int(code), 0, 16), v = bitfieldExtract(int(code), 16, 16);
     const int z = 32767 - abs(u) - abs(v);

@@ -42,7 +42,7 @@ ISOTET_CONSTANT segment_clusters = 128u;     ///< a workgroup of select and scan
 ISOTET_CONSTANT block_segments = 128u;
 ISOTET_CONSTANT few_edges = 448u;            ///< active edges of a cluster that emit works through at once
 
-/// Marching tetrahedra by which corners are above (core/case_table.hpp): a polygon's four active edges, each corner above
+/// Marching tetrahedra by which corners are above (grid/cell/case_table.hpp): a polygon's four active edges, each corner above
 /// + 8 * corner below, in 6 bits; then the number of its triangles. engine/layout.hpp checks them against the table.
 #define ISOTET_TET_CASES \
     0x0000000u, 0x1410608u, 0x1659441u, 0x2619450u, \
@@ -50,7 +50,7 @@ ISOTET_CONSTANT few_edges = 448u;            ///< active edges of a cluster that
     0x14d32c3u, 0x24132c8u, 0x20d3441u, 0x14d3450u, \
     0x228b0c2u, 0x128a2c8u, 0x10c3081u, 0x0000000u
 
-/// Cases of the other kinds (core/cell_cases.hpp) lie in memory, a word each: the word of the first polygon + 65536 *
+/// Cases of the other kinds (grid/cell/cell_cases.hpp) lie in memory, a word each: the word of the first polygon + 65536 *
 /// number of polygons + 2^20 * number of triangles. Polygons, as above, stand behind.
 ISOTET_CONSTANT pyramid_cases_at = 0u;
 ISOTET_CONSTANT wedge_cases_at = 32u;

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// core::quantize() of core/packed.hpp, bit for bit: a subtraction and a multiplication by a power of two.
+// core::quantize() of packed/packed.hpp, bit for bit: a subtraction and a multiplication by a power of two.
 #ifndef ISOTET_QUANTIZE_GLSL
 #define ISOTET_QUANTIZE_GLSL
 

@@ -1,0 +1,105 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "base/parallel.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <utility>
+
+#include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+namespace isotet::core {
+
+namespace {
+
+/// Lets the process use more threads than there are cores while a call needs them.
+///
+/// An arena alone never gets more workers than there are cores: a global_control has to allow them. Of several controls
+/// the smallest rules, so calls that run at the same time share one that allows as many as the largest of them needs.
+class MoreThreads {
+public:
+    void add(std::size_t count) {
+        const std::lock_guard lock(mutex_);
+        needed_.insert(count);
+        follow();
+    }
+    void remove(std::size_t count) {
+        const std::lock_guard lock(mutex_);
+        needed_.erase(needed_.find(count));
+        follow();
+    }
+
+private:
+    void follow() {
+        const std::size_t most = needed_.empty() ? 0 : *needed_.rbegin();
+        if (most == allowed_) return;
+        // The old one goes last: between the two the limit would be the number of cores.
+        auto next = most == 0
+                        ? nullptr
+                        : std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, most);
+        control_ = std::move(next);
+        allowed_ = most;
+    }
+
+    std::mutex mutex_;
+    std::multiset<std::size_t> needed_; ///< by calls that are running
+    std::unique_ptr<tbb::global_control> control_;
+    std::size_t allowed_ = 0; ///< by the control; 0: there is none
+};
+
+/// Allows `count` threads while it lives.
+class AllowThreads {
+public:
+    explicit AllowThreads(int count) : count_(static_cast<std::size_t>(count)) {
+        if (is_needed()) everybody().add(count_);
+    }
+    ~AllowThreads() {
+        if (is_needed()) everybody().remove(count_);
+    }
+    AllowThreads(const AllowThreads&) = delete;
+    AllowThreads& operator=(const AllowThreads&) = delete;
+
+private:
+    static MoreThreads& everybody() {
+        static MoreThreads all;
+        return all;
+    }
+    bool is_needed() const { return count_ > static_cast<std::size_t>(tbb::info::default_concurrency()); }
+
+    std::size_t count_;
+};
+
+} // namespace
+
+void with_threads(int threads, const std::function<void()>& work) {
+    constexpr int most = 1024; // an arena takes memory for each thread it may get
+    const int count = threads > 0 ? std::min(threads, most) : tbb::info::default_concurrency();
+    const AllowThreads allowed(count);
+    tbb::task_arena arena(count);
+    arena.execute(work);
+}
+
+int threads_here() { return tbb::this_task_arena::max_concurrency(); }
+
+void parallel_ranges(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
+    if (count <= grain) {
+        if (count) body(0, count);
+        return;
+    }
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
+                      [&](const tbb::blocked_range<std::size_t>& range) { body(range.begin(), range.end()); });
+}
+
+void parallel_pieces(std::size_t count, std::size_t grain, const Progress& progress,
+                     const std::function<void(std::size_t, std::size_t)>& body) {
+    parallel_each((count + grain - 1) / grain, 1, [&](std::size_t piece) {
+        if (!progress.cancelled()) body(piece * grain, std::min(count, (piece + 1) * grain));
+    });
+}
+
+} // namespace isotet::core

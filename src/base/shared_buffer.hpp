@@ -1,0 +1,38 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// A Buffer that several owners share: copying shares the memory. Only its maker writes, before the first copy.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "base/buffer.hpp"
+
+namespace isotet::core {
+
+template <class T>
+class SharedBuffer {
+public:
+    SharedBuffer() = default;
+    explicit SharedBuffer(std::size_t size) : size_(size) {
+        auto buffer = std::make_shared<Buffer<T>>(size);
+        data_ = std::shared_ptr<T>(buffer, buffer->data());
+    }
+
+    T* data() noexcept { return data_.get(); }
+    const T* data() const noexcept { return data_.get(); }
+    std::size_t size() const noexcept { return size_; }
+    std::size_t bytes() const noexcept { return size_ * sizeof(T); }
+    bool empty() const noexcept { return size_ == 0; }
+    T& operator[](std::size_t i) noexcept { return data()[i]; }
+    const T& operator[](std::size_t i) const noexcept { return data()[i]; }
+    T* begin() noexcept { return data(); }
+    T* end() noexcept { return data() + size_; }
+    const T* begin() const noexcept { return data(); }
+    const T* end() const noexcept { return data() + size_; }
+
+private:
+    std::shared_ptr<T> data_;
+    std::size_t size_ = 0;
+};
+
+} // namespace isotet::core

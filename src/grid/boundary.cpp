@@ -1,0 +1,87 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/boundary.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <isotet/linear_cells.hpp>
+
+#include "base/carry_out.hpp"
+#include "base/memory.hpp"
+#include "base/parallel.hpp"
+#include "grid/boundary_faces.hpp"
+#include "grid/faces.hpp"
+
+namespace isotet {
+
+namespace core {
+
+namespace {
+
+/// Positions of some points, in the type of the grid's.
+Array positions_of(const Array& all, const std::vector<std::uint64_t>& points) {
+    const auto gathered = [&]<class Real>(Real) {
+        const std::span<const Real> from = all.as<Real>();
+        std::vector<Real> out(3 * points.size());
+        parallel_each(points.size(), 1 << 14, [&](std::size_t i) {
+            for (std::size_t axis = 0; axis < 3; ++axis) out[3 * i + axis] = from[3 * points[i] + axis];
+        });
+        return Array::own(std::move(out), 3);
+    };
+    return all.type() == ScalarType::float32 ? gathered(float{}) : gathered(double{});
+}
+
+/// Each point as both ends of an edge: edge_ends of vertices that are points.
+Array both_ends(const std::vector<std::uint64_t>& points) {
+    std::vector<std::int64_t> ends(2 * points.size());
+    parallel_each(ends.size(), 1 << 14, [&](std::size_t i) { ends[i] = static_cast<std::int64_t>(points[i / 2]); });
+    return Array::own(std::move(ends), 2);
+}
+
+Surface surface_of(const Array& all_points, const std::vector<BoundaryFace>& faces) {
+    const std::vector<std::uint64_t> points = points_of_faces(faces);
+    Surface surface;
+    surface.positions = positions_of(all_points, points);
+    surface.triangles = triangles_of_faces(faces, points);
+    surface.edge_ends = both_ends(points);
+    return surface;
+}
+
+Result<Surface> boundary_of_grid(const Grid& grid, const Progress& progress) {
+    const auto cells = CellReader::open(grid);
+    if (!cells) return cells.error();
+    if (auto ok = check_cells(grid, *cells, progress); !ok) return ok.error();
+    const TetSurvey tets = survey_tets(grid, *cells, progress);
+    if (progress.cancelled()) return Error{ErrorCode::cancelled, "finding the boundary was cancelled"};
+    if (tets.tets == 0) return nothing_to_contour(grid, *cells);
+    constexpr std::uint64_t enough_for_small_grids = 1 << 26;
+    const std::uint64_t memory = std::max(free_memory() / 4, enough_for_small_grids);
+    const auto faces = find_boundary_faces(grid, *cells, tets, {.memory = memory}, progress);
+    if (!faces) return faces.error();
+    constexpr std::uint64_t max_numbers = std::numeric_limits<std::uint32_t>::max();
+    if (3 * faces->size() > max_numbers && grid.points.tuples() > max_numbers)
+        return Error{ErrorCode::invalid_data, fmt::format("the boundary has {} faces, but of a grid of more than 2^32 "
+                                                          "points it must have at most {}",
+                                                          faces->size(), max_numbers / 3)};
+    return surface_of(grid.points, *faces);
+}
+
+} // namespace
+} // namespace core
+
+Result<Surface> boundary_of(const Grid& grid, const Run& run) {
+    return core::carry_out("finding the boundary", run, [&](const Progress& progress) -> Result<Surface> {
+        if (!has_cells_to_linearize(grid.cells)) return core::boundary_of_grid(grid, progress);
+        const auto linear =
+            linearize({grid.points, grid.cells, {}, {}}, {}, {.threads = core::threads_here(), .progress = {}});
+        if (!linear) return linear.error();
+        return core::boundary_of_grid(linear->grid, progress);
+    });
+}
+
+} // namespace isotet

@@ -1,0 +1,106 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "grid/fields/average_to_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/buffer.hpp"
+#include "base/parallel.hpp"
+#include "grid/fields/incidence.hpp"
+#include "grid/orientation.hpp"
+#include "grid/renumber.hpp"
+
+namespace isotet::core {
+
+namespace {
+
+constexpr std::size_t grain = 1 << 14;
+constexpr double left_out = -1; // a volume that no cell has
+
+Buffer<double> volumes_of(const Grid& grid, const CellReader& cells, const Array& values, Scalar scalar,
+                          std::span<const double> known) {
+    const PointReader points(grid.points);
+    Buffer<double> volumes(cells.count());
+    parallel_each(cells.count(), grain, [&](std::size_t cell) {
+        if (std::isnan(scalar_at(values, scalar, cell))) volumes[cell] = left_out;
+        else volumes[cell] = known.empty() ? six_volumes_of(cells, points, cell) : known[cell];
+    });
+    return volumes;
+}
+
+/// Adds values to a mean one by one, so that equal values stay as they are and large ones do not overflow.
+struct RunningMean {
+    double mean = 0, weights = 0;
+
+    void add(double value, double weight) {
+        if (weight == 0) return;
+        const bool is_first = weights == 0;
+        weights += weight;
+        if (is_first) mean = value;
+        else if (std::isinf(value))
+            mean = std::isinf(mean) && mean != value ? std::numeric_limits<double>::quiet_NaN() : value;
+        else if (!std::isinf(mean)) mean += (value - mean) * (weight / weights);
+    }
+};
+
+template <class Index>
+Incidence<Index> cells_around_points(const CellReader& cells, const Buffer<double>& volumes) {
+    return {cells.points(), cells.count(), [&](std::size_t cell, const auto& body) {
+                if (volumes[cell] == left_out) return;
+                const std::uint64_t first = cells.first(cell), end = first + cells.corners(cell);
+                for (std::uint64_t i = first; i < end; ++i) {
+                    const std::uint64_t point = cells.corner(i);
+                    bool is_new = true; // a collapsed cell has a point twice, but weighs once
+                    for (std::uint64_t j = first; j < i; ++j) is_new &= cells.corner(j) != point;
+                    if (is_new) body(point);
+                }
+            }};
+}
+
+template <class Value, class Index>
+Array average(const CellReader& cells, const Buffer<double>& volumes, const Array& values, Scalar scalar,
+              bool by_value) {
+    Incidence<Index> around = cells_around_points<Index>(cells, volumes);
+    Buffer<Value> means(cells.points());
+    parallel_each(means.size(), grain, [&](std::size_t point) {
+        const std::span<Index> list = around.of(point);
+        std::ranges::sort(list);
+        if (by_value)
+            std::ranges::sort(list, {},
+                              [&](Index cell) { return std::pair(scalar_at(values, scalar, cell), volumes[cell]); });
+        const bool flat = std::ranges::all_of(list, [&](Index cell) { return volumes[cell] == 0; });
+        RunningMean mean;
+        for (const Index cell : list) mean.add(scalar_at(values, scalar, cell), flat ? 1 : volumes[cell]);
+        means[point] = list.empty() ? std::numeric_limits<Value>::quiet_NaN() : static_cast<Value>(mean.mean);
+    });
+    return std::move(means).to_array();
+}
+
+} // namespace
+
+double six_volumes_of(const CellReader& cells, const PointReader& points, std::size_t cell) {
+    if (!is_contoured(cells.type(cell))) return left_out;
+    double volume = 0;
+    for (const Tet& tet : cells.tets(cell)) volume += std::abs(points.six_volumes(tet));
+    return volume;
+}
+
+Array average_to_points(const Grid& grid, const CellReader& cells, const Array& values, Scalar scalar, bool by_value,
+                        std::span<const double> known) {
+    Buffer<double> volumes;
+    if (by_value && known.empty() && !grid.point_numbers.empty()) {
+        const Renumbered sorted = sort_points_by_number(grid).value();
+        volumes = volumes_of(sorted.grid, CellReader::open(sorted.grid).value(), values, scalar, {});
+    } else {
+        volumes = volumes_of(grid, cells, values, scalar, known);
+    }
+    const bool narrow = cells.count() <= std::numeric_limits<std::uint32_t>::max();
+    if (values.type() == ScalarType::float32)
+        return narrow ? average<float, std::uint32_t>(cells, volumes, values, scalar, by_value)
+                      : average<float, std::uint64_t>(cells, volumes, values, scalar, by_value);
+    return narrow ? average<double, std::uint32_t>(cells, volumes, values, scalar, by_value)
+                  : average<double, std::uint64_t>(cells, volumes, values, scalar, by_value);
+}
+
+} // namespace isotet::core

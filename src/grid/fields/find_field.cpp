@@ -1,0 +1,135 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// find_field(): which field a name means, and its values as one scalar a point.
+#include <algorithm>
+
+#include <fmt/core.h>
+
+#include <isotet/grid.hpp>
+#include <isotet/linear_cells.hpp>
+
+#include "base/carry_out.hpp"
+#include "base/errors.hpp"
+#include "base/parallel.hpp"
+#include "grid/cells.hpp"
+#include "grid/fields/average_to_points.hpp"
+#include "grid/fields/scalar_of.hpp"
+#include "grid/renumber.hpp"
+
+namespace isotet {
+
+namespace {
+
+/// Names of point and cell fields, each once, in the order of the grid.
+std::vector<std::string> names_of(const Grid& grid) {
+    std::vector<std::string> names;
+    for (const auto* fields : {&grid.point_fields, &grid.cell_fields})
+        for (const Field& field : *fields)
+            if (std::ranges::find(names, field.name) == names.end()) names.push_back(field.name);
+    return names;
+}
+
+std::string in_quotes(const std::vector<std::string>& names) {
+    std::string list;
+    for (const std::string& name : names) list += fmt::format("{}'{}'", list.empty() ? "" : ", ", name);
+    return list;
+}
+
+const Field* find(const std::vector<Field>& fields, std::string_view name) {
+    const auto found = std::ranges::find(fields, name, &Field::name);
+    return found == fields.end() ? nullptr : &*found;
+}
+
+Result<core::Scalar> choose_scalar(const Field& field, const std::optional<std::string>& component) {
+    const std::size_t components = field.values.components();
+    if (!component && components != 1)
+        return invalid_argument(
+            fmt::format("the field '{}' has {} components, but one is needed: ask for '{}:x', '{}:0' or '{}:mag'",
+                        field.name, components, field.name, field.name, field.name));
+    if (!component) return core::Scalar{};
+    const auto scalar = core::parse_scalar(*component);
+    if (!scalar || scalar->component >= components)
+        return invalid_argument(
+            fmt::format("component '{}' of the field '{}' is asked for, but it has {} (counted from 0)", *component,
+                        field.name, components));
+    return *scalar;
+}
+
+Result<void> check_length(const Field& field, std::string_view what, std::size_t expected) {
+    if (field.values.tuples() == expected && field.values.components() > 0) return {};
+    return invalid_argument(fmt::format("the {} field '{}' has {} tuples of {} components, but the grid has {} {}s",
+                                        what, field.name, field.values.tuples(), field.values.components(), expected,
+                                        what));
+}
+
+Result<Array> average(const Grid& grid, const Field& field, core::Scalar scalar, bool by_value) {
+    const Grid bare{grid.points, grid.cells, {}, {}, grid.point_numbers};
+    const auto cells = core::CellReader::open(bare);
+    if (!cells) return cells.error();
+    if (auto fits = check_length(field, "cell", cells->count()); !fits) return fits.error();
+    if (has_cells_to_linearize(grid.cells)) { // which checks the cells, too
+        const auto volumes = relative_volumes(bare, {.threads = core::threads_here()});
+        if (!volumes) return volumes.error();
+        return core::average_to_points(bare, *cells, field.values, scalar, by_value, *volumes);
+    }
+    if (auto sound = core::check_cells(bare, *cells, {}); !sound) return sound.error();
+    if (by_value && !grid.point_numbers.empty())
+        if (auto numbers = core::check_point_numbers(bare); !numbers) return numbers.error();
+    return core::average_to_points(bare, *cells, field.values, scalar, by_value);
+}
+
+Result<PointField> coordinate(const Grid& grid, std::string_view name) {
+    if (!is_floating(grid.points.type()) || grid.points.components() != 3)
+        return Error{ErrorCode::invalid_data,
+                     fmt::format("points are {} with {} components, but must be float32 or float64 with 3",
+                                 name_of(grid.points.type()), grid.points.components())};
+    return PointField{std::string(name), core::scalar_of(grid.points, *core::parse_scalar(name)), false, {}};
+}
+
+Result<PointField> find_by_name(const Grid& grid, std::string_view name, const FindFieldOptions& options) {
+    const std::vector<std::string> names = names_of(grid);
+    if (name.empty()) {
+        if (names.size() != 1)
+            return invalid_argument(names.empty() ? "no field is named, and the grid has none"
+                                                  : fmt::format("no field is named, but the grid has {}: {}",
+                                                                names.size(), in_quotes(names)));
+        name = names[0];
+    }
+    const auto match = match_field_name(name, names);
+    if (!match && (name == "x" || name == "y" || name == "z")) return coordinate(grid, name);
+    if (!match)
+        return invalid_argument(
+            names.empty()
+                ? fmt::format("the field is '{}', but the grid has none, only the coordinates x, y, z", name)
+                : fmt::format("the field is '{}', but the grid has {}", name, in_quotes(nearest_first(name, names))));
+    const Field* of_points = find(grid.point_fields, match->field);
+    const Field* of_cells = find(grid.cell_fields, match->field);
+    const bool take_cells = of_cells && (!of_points || options.prefer == Association::cell);
+    const Field& field = take_cells ? *of_cells : *of_points;
+    const auto scalar = choose_scalar(field, match->component);
+    if (!scalar) return scalar.error();
+
+    PointField found{std::string(name), {}, take_cells, {}};
+    if (take_cells) {
+        auto values = average(grid, field, *scalar, options.for_pieces);
+        if (!values) return values.error();
+        found.values = std::move(*values);
+        if (options.keep_cell_values) found.cell_values = core::scalar_of(field.values, *scalar);
+    } else {
+        if (auto fits = check_length(field, "point", grid.points.tuples()); !fits) return fits.error();
+        found.values = core::scalar_of(field.values, *scalar);
+        if (of_cells)
+            found.note =
+                fmt::format("'{}' is both a point field and a cell field; the point field is taken", field.name);
+    }
+    return found;
+}
+
+} // namespace
+
+Result<PointField> find_field(const Grid& grid, std::string_view name, const FindFieldOptions& options,
+                              const Run& run) {
+    return core::carry_out("finding the field", run,
+                           [&](const Progress&) { return find_by_name(grid, name, options); });
+}
+
+} // namespace isotet

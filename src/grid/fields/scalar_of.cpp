@@ -1,0 +1,76 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "grid/fields/scalar_of.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <type_traits>
+
+#include "base/buffer.hpp"
+#include "base/parallel.hpp"
+
+namespace isotet::core {
+
+namespace {
+
+constexpr std::size_t tuples_per_task = 1 << 14;
+
+template <class Value>
+double magnitude(const Value* tuple, std::size_t components) {
+    double largest = 0, sum = 0;
+    for (std::size_t c = 0; c < components; ++c) {
+        const double x = static_cast<double>(tuple[c]);
+        largest = std::max(largest, std::abs(x));
+        sum += x * x;
+    }
+    if ((largest < 0x1p500 && largest > 0x1p-500) || !(largest > 0) || std::isinf(largest)) return std::sqrt(sum);
+    const int exponent = std::ilogb(largest);
+    sum = 0;
+    for (std::size_t c = 0; c < components; ++c) {
+        const double x = std::scalbn(static_cast<double>(tuple[c]), -exponent);
+        sum += x * x;
+    }
+    return std::scalbn(std::sqrt(sum), exponent);
+}
+
+template <class Result, class At>
+Array fill(std::size_t count, const At& at) {
+    Buffer<Result> values(count);
+    parallel_each(count, tuples_per_task, [&](std::size_t tuple) { values[tuple] = static_cast<Result>(at(tuple)); });
+    return std::move(values).to_array();
+}
+
+} // namespace
+
+std::optional<Scalar> parse_scalar(std::string_view text) {
+    if (text == "mag") return Scalar{0, true};
+    if (text == "x" || text == "y" || text == "z") return Scalar{static_cast<std::size_t>(text[0] - 'x'), false};
+    Scalar scalar;
+    const char* end = text.data() + text.size();
+    const auto [stopped, fault] = std::from_chars(text.data(), end, scalar.component);
+    return fault == std::errc{} && stopped == end ? std::optional(scalar) : std::nullopt;
+}
+
+double scalar_at(const Array& array, Scalar scalar, std::size_t tuple) {
+    const std::size_t components = array.components();
+    return array.visit([&](auto values) {
+        if (scalar.magnitude) return magnitude(values.data() + tuple * components, components);
+        return static_cast<double>(values[tuple * components + scalar.component]);
+    });
+}
+
+Array scalar_of(const Array& array, Scalar scalar) {
+    const std::size_t components = array.components();
+    if (components == 1 && !scalar.magnitude) return array;
+    return array.visit([&](auto values) {
+        using Value = std::remove_const_t<typename decltype(values)::element_type>;
+        if (!scalar.magnitude)
+            return fill<Value>(array.tuples(),
+                               [&](std::size_t tuple) { return values[tuple * components + scalar.component]; });
+        using Magnitude = std::conditional_t<std::is_same_v<Value, float>, float, double>;
+        return fill<Magnitude>(array.tuples(),
+                               [&](std::size_t tuple) { return magnitude(&values[tuple * components], components); });
+    });
+}
+
+} // namespace isotet::core

@@ -1,0 +1,182 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// CGNS in ADF or HDF5, through the tree of nodes that the library in VTK reads; zones are pieces.
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "io/confined/cgns/cgns_solutions.hpp"
+#include "io/confined/cgns/cgns_zone.hpp"
+#include "io/confined/hdf5/hdf5_walk.hpp"
+#include "io/confined/length_check.hpp"
+#include "io/confined/loaders.hpp"
+#include "io/confined/vtk_log.hpp"
+#include "io/files/escape.hpp"
+#include "io/pieces/block_choice.hpp"
+#include "io/reader.hpp"
+#include "io/vtk_xml/load.hpp"
+
+namespace isotet::io::vtk {
+namespace {
+
+struct CgnsBase {
+    std::string name;
+    std::vector<double> times;
+    std::vector<std::vector<std::string>> zones; ///< those of each step; empty: all at all steps
+};
+
+void read_steps(const CgnsTree& tree, const CgnsNode& iterative, CgnsBase& base) {
+    constexpr std::size_t letters_of_name = 32;
+    const std::vector<CgnsNode> parts = tree.children(iterative);
+    if (const auto node = child_named(parts, "TimeValues"))
+        if (const auto times = tree.numbers(*node))
+            times->visit([&](auto values) { base.times.assign(values.begin(), values.end()); });
+    const auto pointers = child_named(parts, "ZonePointers");
+    if (!pointers || base.times.empty()) return;
+    const std::vector<std::string> names = tree.texts(*pointers, letters_of_name);
+    const std::size_t most = names.size() / base.times.size();
+    if (most == 0 || most * base.times.size() != names.size()) return;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (i % most == 0) base.zones.emplace_back();
+        if (!names[i].empty() && names[i] != "Null") base.zones.back().push_back(names[i]);
+    }
+}
+
+std::vector<CgnsBase> bases_of(const CgnsTree& tree) {
+    std::vector<CgnsBase> bases;
+    for (const CgnsNode& node : tree.children(tree.root())) {
+        if (node.label != "CGNSBase_t") continue;
+        CgnsBase& base = bases.emplace_back();
+        base.name = node.name;
+        if (const auto iterative = child_labelled(tree.children(node), "BaseIterativeData_t"))
+            read_steps(tree, *iterative, base);
+    }
+    return bases;
+}
+
+class CgnsFile {
+public:
+    CgnsFile(const std::string& path, const CgnsTree& tree) : path_(path), tree_(tree), bases_(bases_of(tree)) {}
+
+    Result<Loaded> load(const ReadOptions& options, Depth depth);
+
+private:
+    Result<void> describe(Loaded& loaded);
+    Result<Piece> read_zone(std::size_t at, const ReadOptions& options, std::size_t step,
+                            Loaded& loaded) const;
+    bool is_there(const CgnsZone& zone, std::size_t step) const;
+    std::size_t step_of(const CgnsZone& zone, std::size_t step) const {
+        return std::min(step, std::max<std::size_t>(bases_[zone.base].times.size(), 1) - 1);
+    }
+    Error wrong(const CgnsZone& zone, const Error& error) const {
+        if (error.code != ErrorCode::invalid_data || error.message.starts_with(escaped(path_))) return error;
+        return broken(path_, fmt::format("zone \"{}\": {}", escaped(zone.name), error.message));
+    }
+
+    const std::string& path_;
+    const CgnsTree& tree_;
+    std::vector<CgnsBase> bases_;
+    std::vector<CgnsZone> zones_;
+    std::vector<CgnsSolutions> solutions_;
+};
+
+Result<void> CgnsFile::describe(Loaded& loaded) {
+    auto zones = cgns_zones(tree_, path_);
+    if (!zones) return zones.error();
+    zones_ = *std::move(zones);
+    if (zones_.empty()) return broken(path_, "it has no zones");
+    for (const CgnsBase& base : bases_)
+        if (loaded.info.times.empty()) loaded.info.times = base.times;
+    for (const CgnsZone& zone : zones_) {
+        CgnsCounts counts;
+        if (zone.is_structured) {
+            counts.cells = zone.points.size() == 3 ? zone.cells[0] * zone.cells[1] * zone.cells[2] : 0;
+        } else {
+            const auto found = count_cgns_cells(tree_, zone);
+            if (!found) return wrong(zone, found.error());
+            counts = *found;
+        }
+        loaded.info.blocks.push_back(
+            {static_cast<std::int64_t>(loaded.info.blocks.size() + 1), zone.name, "zone", counts.cells});
+        solutions_.emplace_back(tree_, zone, bases_[zone.base].times.size(), counts);
+        solutions_.back().announce(loaded.info);
+    }
+    return {};
+}
+
+bool CgnsFile::is_there(const CgnsZone& zone, std::size_t step) const {
+    const CgnsBase& base = bases_[zone.base];
+    if (base.zones.empty()) return true;
+    const auto& names = base.zones[step_of(zone, step)];
+    const auto is_named = [&](const std::vector<std::string>& at) {
+        return std::ranges::find(at, zone.node.name) != at.end();
+    };
+    return is_named(names) || std::ranges::none_of(base.zones, is_named);
+}
+
+Result<Piece> CgnsFile::read_zone(std::size_t at, const ReadOptions& options, std::size_t step,
+                                  Loaded& loaded) const {
+    const CgnsZone& zone = zones_[at];
+    const CgnsSolutions& solutions = solutions_[at];
+    Piece piece;
+    piece.name = zone.name;
+    auto points = cgns_points(tree_, zone, solutions.coordinates_at(step_of(zone, step)));
+    if (!points) return wrong(zone, points.error());
+    piece.grid.points = *std::move(points);
+    CgnsCells cells;
+    if (zone.is_structured) {
+        std::vector<std::uint64_t> size = zone.points;
+        size.resize(3, 1);
+        auto hexahedra = vtk_xml::hexahedra_of({size[0], size[1], size[2]}, loaded.notes);
+        if (!hexahedra) return hexahedra.error();
+        piece.grid.cells = *std::move(hexahedra);
+    } else {
+        auto read = cgns_cells(tree_, zone, loaded.notes);
+        if (!read) return wrong(zone, read.error());
+        cells = *std::move(read);
+        piece.grid.cells = cells.cells;
+    }
+    solutions.read(options, step_of(zone, step), cells, piece.grid, loaded.info);
+    return piece;
+}
+
+Result<Loaded> CgnsFile::load(const ReadOptions& options, Depth depth) {
+    Loaded loaded;
+    if (auto done = describe(loaded); !done) return done.error();
+    const auto chosen = chosen_blocks(loaded.info.blocks, options);
+    if (!chosen) return chosen.error();
+    if (depth == Depth::description) return loaded;
+    const auto step = choose_step(loaded.info, options);
+    if (!step) return step.error();
+    loaded.step = *step;
+    if (bases_.size() > 1 && options.blocks.empty()) {
+        std::vector<std::string> others;
+        for (std::size_t i = 1; i < bases_.size(); ++i) others.push_back("'" + escaped(bases_[i].name) + "'");
+        loaded.notes.push_back(
+            fmt::format("only the first of {} bases is read, '{}': --block NAME (ReadOptions::blocks) reads {}",
+                        bases_.size(), escaped(bases_[0].name), fmt::join(others, ", ")));
+    }
+    for (std::size_t i = 0; i < zones_.size(); ++i) {
+        // Bases are grids of their own, often in the same place: without a choice only the first is read.
+        if (!(*chosen)[i] || (options.blocks.empty() && zones_[i].base > 0) || !is_there(zones_[i], *step)) continue;
+        auto piece = read_zone(i, options, *step, loaded);
+        if (!piece) return piece.error();
+        loaded.pieces.push_back(*std::move(piece));
+        report_progress(static_cast<double>(i + 1) / static_cast<double>(zones_.size()));
+    }
+    if (loaded.pieces.empty()) return broken(path_, "no zone of it is a grid at this step");
+    return loaded;
+}
+
+} // namespace
+
+Result<Loaded> load_cgns(const std::string& path, const ReadOptions& options, Depth depth) {
+    if (auto complete = check_hdf5_length(path); !complete) return complete.error();
+    if (auto complete = check_adf_length(path); !complete) return complete.error();
+    if (auto names = check_hdf5_names(path, options.allow_outside); !names) return names.error();
+    const auto tree = CgnsTree::open(path);
+    if (!tree) return tree.error();
+    return CgnsFile(path, *tree).load(options, depth);
+}
+
+} // namespace isotet::io::vtk

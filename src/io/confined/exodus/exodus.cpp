@@ -1,0 +1,323 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Exodus II: the blocks of a file share their nodes; the files of a parallel run ("name.4.0" to "name.4.3") are joined
+// by the global numbers of their nodes.
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include <fmt/core.h>
+
+#include "io/reader.hpp"
+#include "io/pieces/block_choice.hpp"
+#include "io/files/escape.hpp"
+#include "io/pieces/shared_faces.hpp"
+#include "io/confined/exodus/exodus_file.hpp"
+#include "io/confined/exodus/exodus_parts.hpp"
+#include "io/confined/hdf5/hdf5_walk.hpp"
+#include "io/confined/length_check.hpp"
+#include "io/confined/loaders.hpp"
+#include "io/confined/vtk_log.hpp"
+
+namespace isotet::io::vtk {
+namespace {
+
+FileInfo describe(const ExodusFile& file) {
+    FileInfo info;
+    info.times = file.times();
+    for (const auto& name : file.point_variables()) announce(info, {name, Association::point, file.type(), 1});
+    for (const auto& name : file.cell_variables()) announce(info, {name, Association::cell, file.type(), 1});
+    return info;
+}
+
+/// All blocks hold cells of one of isotet's types: types and offsets need not be stored.
+bool is_uniform(const std::vector<ExodusFile::Block>& blocks, std::uint8_t& type) {
+    type = 0;
+    for (const auto& block : blocks) {
+        if (block.cells == 0) continue;
+        const std::uint8_t here = cell_type_of_element(block.topology, block.corners);
+        if (here < 10 || here > 14 || (type != 0 && here != type)) return false;
+        type = here;
+    }
+    return type != 0;
+}
+
+/// For each node in VTK's order its position in Exodus's; empty: the same. Upright edges come before those of the top, and the
+/// hexahedron's centre before its faces.
+std::span<const std::uint8_t> node_order(std::uint8_t type) {
+    static constexpr std::array<std::uint8_t, 27> hexahedron{0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 16, 17,
+                                                             18, 19, 12, 13, 14, 15, 23, 24, 25, 26, 21, 22, 20};
+    static constexpr std::array<std::uint8_t, 18> wedge{0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11, 15, 16, 17};
+    switch (type) {
+    case 25: return std::span(hexahedron).first(20);
+    case 29: return hexahedron;
+    case 26: return std::span(wedge).first(15);
+    case 32: return wedge;
+    default: return {};
+    }
+}
+
+/// Node numbers of the file, from 1, to point numbers from 0, appended.
+Result<void> append_corners(const std::vector<std::int64_t>& nodes, const ExodusFile::Block& block,
+                            std::uint64_t points, std::vector<std::int64_t>& connectivity) {
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        if (nodes[i] < 1 || static_cast<std::uint64_t>(nodes[i]) > points)
+            return Error{ErrorCode::invalid_data,
+                         fmt::format("element {} of block {} has node {}, but the nodes are 1 to {}", i / block.corners,
+                                     block.id, nodes[i], points)};
+        connectivity.push_back(nodes[i] - 1);
+    }
+    const auto order = node_order(cell_type_of_element(block.topology, block.corners));
+    if (order.size() != block.corners) return {};
+    for (std::size_t first = 0; first + order.size() <= nodes.size(); first += order.size())
+        for (std::size_t i = 0; i < order.size(); ++i)
+            connectivity[connectivity.size() - nodes.size() + first + i] = nodes[first + order[i]] - 1;
+    return {};
+}
+
+/// Numbers of the file, from 1 to `most`, become numbers from 0.
+Result<void> count_from_0(std::vector<std::int64_t>& numbers, std::uint64_t most, const std::string& owner,
+                          const char* what) {
+    for (std::int64_t& number : numbers) {
+        if (number < 1 || static_cast<std::uint64_t>(number) > most)
+            return Error{ErrorCode::invalid_data,
+                         fmt::format("{} has {} {}, but the {}s are 1 to {}", owner, what, number, what, most)};
+        --number;
+    }
+    return {};
+}
+
+void append_offsets(const std::vector<int>& counts, std::vector<std::int64_t>& offsets) {
+    for (const int count : counts) offsets.push_back(offsets.back() + count);
+}
+
+/// Gives polyhedra their faces, and the points of these.
+Result<void> read_faces(ExodusFile& file, Cells& cells) {
+    auto faces = file.faces();
+    if (!faces) return faces.error();
+    const std::uint64_t face_count = faces->counts.size();
+    if (auto fits = count_from_0(faces->numbers, file.points(), "a face", "node"); !fits) return fits;
+    std::vector<std::int64_t> face_offsets{0}, of_cells, cell_offsets{0};
+    append_offsets(faces->counts, face_offsets);
+    for (const auto& block : file.blocks()) {
+        if (!block.has_faces()) {
+            cell_offsets.insert(cell_offsets.end(), block.cells, cell_offsets.back());
+            continue;
+        }
+        auto own = file.faces_of(block);
+        if (!own) return own.error();
+        if (auto fits = count_from_0(own->numbers, face_count, fmt::format("an element of block {}", block.id), "face");
+            !fits)
+            return fits;
+        append_offsets(own->counts, cell_offsets);
+        of_cells.insert(of_cells.end(), own->numbers.begin(), own->numbers.end());
+    }
+    const SharedFaces shared{Array::own(std::move(faces->numbers)), Array::own(std::move(face_offsets)),
+                             Array::own(std::move(of_cells)), Array::own(std::move(cell_offsets))};
+    if (auto done = write_out_faces(shared, cells); !done) return done;
+    return list_points_of_faces(file.points(), cells);
+}
+
+Result<Cells> read_cells(ExodusFile& file) {
+    Cells cells;
+    std::uint8_t uniform_type = 0;
+    const bool uniform = is_uniform(file.blocks(), uniform_type);
+    std::uint64_t corner_count = 0;
+    for (const auto& block : file.blocks()) corner_count += block.cells * block.corners;
+    std::vector<std::int64_t> connectivity, offsets;
+    std::vector<std::uint8_t> types;
+    connectivity.reserve(corner_count);
+    if (!uniform) offsets.push_back(0);
+    for (const auto& block : file.blocks()) {
+        auto nodes = file.connectivity(block);
+        if (!nodes) return nodes.error();
+        if (auto appended = append_corners(*nodes, block, file.points(), connectivity); !appended)
+            return appended.error();
+        if (uniform) continue;
+        const std::uint8_t type = cell_type_of_element(block.topology, block.corners);
+        types.insert(types.end(), block.cells, type);
+        for (std::uint64_t i = 0; i < block.cells; ++i)
+            offsets.push_back(offsets.back() + static_cast<std::int64_t>(block.corners));
+    }
+    cells.connectivity = Array::own(std::move(connectivity));
+    if (uniform) cells.uniform_type = static_cast<CellType>(uniform_type);
+    else {
+        cells.offsets = Array::own(std::move(offsets));
+        cells.types = Array::own(std::move(types));
+    }
+    if (std::ranges::any_of(file.blocks(), &ExodusFile::Block::has_faces))
+        if (auto read = read_faces(file, cells); !read) return read.error();
+    return cells;
+}
+
+Result<void> read_fields(ExodusFile& file, const ReadOptions& options, std::size_t step, Grid& grid,
+                         std::vector<std::string>& notes) {
+    if (file.times().empty()) return {};
+    for (std::size_t i = 0; i < file.point_variables().size(); ++i) {
+        const std::string& name = file.point_variables()[i];
+        if (!wanted(options, Association::point, name)) continue;
+        auto values = file.point_variable(i, step);
+        if (!values) return values.error();
+        grid.point_fields.push_back({name, std::move(*values)});
+    }
+    for (std::size_t i = 0; i < file.cell_variables().size(); ++i) {
+        const std::string& name = file.cell_variables()[i];
+        if (!wanted(options, Association::cell, name)) continue;
+        std::size_t blocks_without = 0;
+        auto values = file.cell_variable(i, step, blocks_without);
+        if (!values) return values.error();
+        grid.cell_fields.push_back({name, std::move(*values)});
+        if (blocks_without > 0)
+            notes.push_back(fmt::format("cell field \"{}\" is not defined in {} of {} element blocks: NaN there",
+                                        escaped(name), blocks_without, file.blocks().size()));
+    }
+    return {};
+}
+
+/// "disp" or "disp_" stands for the variables disp_x, disp_y and disp_z, as a vector to move the points by.
+Result<void> read_displacement(ExodusFile& file, const std::string& name, std::size_t step, Grid& grid) {
+    const auto& variables = file.point_variables();
+    if (name.empty() || std::find(variables.begin(), variables.end(), name) != variables.end()) return {};
+    std::vector<double> steps(3 * file.points());
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const char letter = "xyz"[axis];
+        const auto found = std::find_if(variables.begin(), variables.end(), [&](const std::string& variable) {
+            return variable == name + letter || variable == name + "_" + letter;
+        });
+        if (found == variables.end()) return {}; // whoever asked for it learns that there is no such field
+        auto values = file.point_variable(static_cast<std::size_t>(found - variables.begin()), step);
+        if (!values) return values.error();
+        for (std::size_t i = 0; i < values->tuples(); ++i) steps[3 * i + axis] = values->at(i);
+    }
+    grid.point_fields.push_back({name, Array::own(std::move(steps), 3)});
+    return {};
+}
+
+/// Blocks, then sets.
+std::vector<BlockInfo> blocks_of(const ExodusFile& file) {
+    std::vector<BlockInfo> blocks;
+    for (const ExodusFile::Block& block : file.blocks())
+        blocks.push_back({block.id, block.name, "element block", block.cells});
+    for (const ExodusFile::Set& set : file.sets()) blocks.push_back({set.id, set.name, "element set", set.cells});
+    return blocks;
+}
+
+/// Opens a part, once it is known to be whole.
+Result<ExodusFile> open_part(const std::string& part, const ReadOptions& options) {
+    if (auto complete = check_netcdf_length(part); !complete) return complete.error();
+    if (auto complete = check_hdf5_length(part); !complete) return complete.error();
+    if (auto names = check_hdf5_names(part, options.allow_outside); !names) return names.error();
+    return ExodusFile::open(part);
+}
+
+/// What all parts hold.
+Result<FileInfo> describe_parts(const std::vector<std::string>& parts, const ReadOptions& options) {
+    FileInfo all;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        auto file = open_part(parts[i], options);
+        if (!file) return file.error();
+        FileInfo info = describe(*file);
+        if (i == 0) all.times = info.times;
+        if (info.times.size() != all.times.size())
+            return broken(parts[i], fmt::format("this part has {} time steps, the first one {}", info.times.size(),
+                                                all.times.size()));
+        for (FieldInfo& field : info.fields) announce(all, std::move(field));
+        for (const BlockInfo& block : blocks_of(*file)) announce_block(all, block);
+    }
+    return all;
+}
+
+/// Which blocks and sets of one part are asked for, in the order of blocks_of().
+std::vector<bool> chosen_here(const ExodusFile& file, const FileInfo& info, const std::vector<bool>& chosen) {
+    std::vector<bool> here;
+    for (const BlockInfo& block : blocks_of(file)) {
+        const auto known = std::ranges::find_if(info.blocks, [&](const BlockInfo& other) {
+            return other.number == block.number && other.name == block.name && other.kind == block.kind;
+        });
+        here.push_back(chosen[static_cast<std::size_t>(known - info.blocks.begin())]);
+    }
+    return here;
+}
+
+/// Marks the cells of all blocks that are in none of the chosen blocks and sets.
+Result<void> leave_out_others(const ExodusFile& file, const std::vector<bool>& chosen, Piece& piece) {
+    piece.left_out.clear();
+    for (std::size_t i = 0; i < file.blocks().size(); ++i)
+        piece.left_out.insert(piece.left_out.end(), file.blocks()[i].cells, chosen[i] ? 0 : 1);
+    for (std::size_t i = 0; i < file.sets().size(); ++i) {
+        if (!chosen[file.blocks().size() + i]) continue;
+        const auto cells = file.cells_of(file.sets()[i]);
+        if (!cells) return cells.error();
+        for (const std::int64_t cell : *cells) piece.left_out[static_cast<std::size_t>(cell)] = 0;
+    }
+    return {};
+}
+
+Result<Piece> read_piece(ExodusFile& file, const std::string& path, const ReadOptions& options, Loaded& loaded,
+                         bool with_ids) {
+    Piece piece;
+    piece.name = path;
+    auto points = file.coordinates();
+    if (!points) return points.error();
+    piece.grid.points = std::move(*points);
+    auto cells = read_cells(file);
+    if (!cells) // what the library says names the file already
+        return cells.error().message.starts_with(escaped(path)) ? cells.error() : broken(path, cells.error().message);
+    piece.grid.cells = std::move(*cells);
+    if (auto read = read_fields(file, options, loaded.step, piece.grid, loaded.notes); !read) return read.error();
+    if (auto read = read_displacement(file, options.displace, loaded.step, piece.grid); !read) return read.error();
+    if (!with_ids) return piece;
+    auto point_ids = file.point_ids();
+    if (!point_ids) return point_ids.error();
+    auto cell_ids = file.cell_ids();
+    if (!cell_ids) return cell_ids.error();
+    piece.point_ids = std::move(*point_ids);
+    piece.cell_ids = std::move(*cell_ids);
+    return piece;
+}
+
+Result<Piece> read_chosen(ExodusFile& file, const std::string& path, const ReadOptions& options,
+                          const std::vector<bool>& chosen, Loaded& loaded, bool with_ids) {
+    const std::vector<bool> here = chosen_here(file, loaded.info, chosen);
+    const auto sets = here.begin() + static_cast<std::ptrdiff_t>(file.blocks().size());
+    const bool all_blocks = std::find(sets, here.end(), true) != here.end();
+    if (!all_blocks) file.choose({here.begin(), sets});
+    auto piece = read_piece(file, path, options, loaded, with_ids);
+    if (!piece) return piece;
+    if (all_blocks) {
+        if (auto left_out = leave_out_others(file, here, *piece); !left_out) return left_out.error();
+        if (auto dropped = drop_left_out_cells(*piece); !dropped) return dropped.error();
+    } else {
+        drop_unused_points(*piece);
+    }
+    return piece;
+}
+
+} // namespace
+
+Result<Loaded> load_exodus(const std::string& path, const ReadOptions& options, Depth depth) {
+    auto parts = exodus_parts(path);
+    if (!parts) return parts.error();
+    Loaded loaded;
+    auto info = describe_parts(*parts, options);
+    if (!info) return info.error();
+    loaded.info = std::move(*info);
+    const auto chosen = chosen_blocks(loaded.info.blocks, options);
+    if (!chosen) return chosen.error();
+    if (depth == Depth::description) return loaded;
+    const auto step = choose_step(loaded.info, options);
+    if (!step) return step.error();
+    loaded.step = *step;
+    for (std::size_t i = 0; i < parts->size(); ++i) {
+        const std::string& part = (*parts)[i];
+        auto file = open_part(part, options);
+        if (!file) return file.error();
+        auto piece = options.blocks.empty() ? read_piece(*file, part, options, loaded, parts->size() > 1)
+                                            : read_chosen(*file, part, options, *chosen, loaded, parts->size() > 1);
+        if (!piece) return piece.error();
+        loaded.pieces.push_back(std::move(*piece));
+        report_progress(static_cast<double>(i + 1) / static_cast<double>(parts->size()));
+    }
+    return loaded;
+}
+
+} // namespace isotet::io::vtk

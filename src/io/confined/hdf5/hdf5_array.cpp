@@ -1,0 +1,191 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <limits>
+#include <optional>
+#include <span>
+
+#include <fmt/core.h>
+#include <hdf5.h>
+
+#include "io/files/escape.hpp"
+#include "io/confined/hdf5/hdf5_array.hpp"
+#include "io/confined/hdf5/hdf5_handle.hpp"
+#include "io/confined/hdf5/hdf5_unwritten.hpp"
+#include "io/confined/length_check.hpp"
+#include "io/pieces/loaded.hpp"
+
+namespace isotet::io::vtk {
+namespace {
+
+constexpr std::uint64_t too_many = std::uint64_t(1) << 50;
+
+/// How data sets are looked up: a link to another file fails.
+hid_t access_inside_file() {
+    const /// How data sets are looked up: a link to another file fails.
+        hid_t access = H5Pcreate(H5P_DATASET_ACCESS);
+    H5Pset_elink_cb(
+        access,
+        [](const char*, const char*, const char*, const char*, unsigned*, hid_t, void*) -> herr_t { return -1; },
+        nullptr);
+    return access;
+}
+
+/// The values lie in the file itself, not in others that it names.
+bool lies_inside_file(hid_t data) {
+    const Handle creation(H5Dget_create_plist(data), H5Pclose);
+    return creation.good() && H5Pget_external_count(creation) == 0 && H5Pget_layout(creation) != H5D_VIRTUAL;
+}
+
+/// Selects the box; its size in `dimensions`.
+bool select(hid_t space, const Box& box, std::vector<std::uint64_t>& dimensions) {
+    if (box.count.empty()) return true;
+    if (box.count.size() != dimensions.size() || box.start.size() != dimensions.size() ||
+        box.stride.size() != dimensions.size())
+        return false;
+    std::vector<hsize_t> start, stride, count;
+    for (std::size_t i = 0; i < dimensions.size(); ++i) {
+        if (box.count[i] == 0 || box.stride[i] == 0 || box.start[i] >= dimensions[i] ||
+            (box.count[i] - 1) > (dimensions[i] - 1 - box.start[i]) / box.stride[i])
+            return false;
+        start.push_back(box.start[i]);
+        stride.push_back(box.stride[i]);
+        count.push_back(box.count[i]);
+    }
+    dimensions = box.count;
+    return H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), stride.data(), count.data(), nullptr) >= 0;
+}
+
+} // namespace
+
+std::optional<ScalarType> scalar_type_of(hid_t type) {
+    const std::size_t size = H5Tget_size(type);
+    if (H5Tget_class(type) == H5T_FLOAT)
+        return size == 4   ? std::optional(ScalarType::float32)
+               : size == 8 ? std::optional(ScalarType::float64)
+                           : std::nullopt;
+    if (H5Tget_class(type) != H5T_INTEGER) return std::nullopt;
+    const bool is_signed = H5Tget_sign(type) == H5T_SGN_2;
+    switch (size) {
+    case 1: return is_signed ? ScalarType::int8 : ScalarType::uint8;
+    case 2: return is_signed ? ScalarType::int16 : ScalarType::uint16;
+    case 4: return is_signed ? ScalarType::int32 : ScalarType::uint32;
+    case 8: return is_signed ? ScalarType::int64 : ScalarType::uint64;
+    default: return std::nullopt;
+    }
+}
+
+std::uint64_t ShapedValues::count() const {
+    std::uint64_t count = 1;
+    for (const std::uint64_t length : dimensions) {
+        if (length != 0 && count > too_many / length) return too_many;
+        count *= length;
+    }
+    return count;
+}
+
+Result<ShapedValues> read_hdf5_array(const std::string& file, const std::string& name, const Box& box, Depth depth) {
+    const auto failed = [&](std::string_view what) {
+        return broken(file, fmt::format("data set \"{}\" {}", escaped(name), what));
+    };
+    if (auto complete = check_hdf5_length(file); !complete) return complete.error();
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); // errors are returned, not printed
+    const Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    if (!opened.good()) return broken(file, "not an HDF5 file, or a broken one");
+    const Handle access(access_inside_file(), H5Pclose);
+    const Handle data(H5Dopen2(opened, name.c_str(), access), H5Dclose);
+    if (!data.good()) return failed("is not there, or is a link to another file");
+    if (!lies_inside_file(data)) return failed("has its values in another file");
+    const Handle stored(H5Dget_type(data), H5Tclose);
+    const auto type = scalar_type_of(stored);
+    if (!type) return failed("does not hold numbers of 1, 2, 4 or 8 bytes");
+
+    const Handle space(H5Dget_space(data), H5Sclose);
+    const int rank = H5Sget_simple_extent_ndims(space);
+    if (rank < 0) return failed("has no shape");
+    std::vector<hsize_t> extent(static_cast<std::size_t>(rank));
+    H5Sget_simple_extent_dims(space, extent.data(), nullptr);
+    ShapedValues result;
+    result.dimensions.assign(extent.begin(), extent.end());
+    if (!select(space, box, result.dimensions)) return failed("does not have the part that is wanted of it");
+    const std::uint64_t count = result.count();
+    if (count == too_many) return failed("is too large");
+    result.values = Array(*type, nullptr, 0, 1, nullptr);
+    if (depth == Depth::description) return result;
+    const hsize_t memory_count = count;
+    const Handle memory(H5Screate_simple(1, &memory_count, nullptr), H5Sclose);
+    return Array(result.values).visit([&](auto none) -> Result<ShapedValues> {
+        using T = typename decltype(none)::value_type;
+        std::vector<std::remove_const_t<T>> values(count);
+        const HdfRead read = read_written(data, native_type<std::remove_const_t<T>>(), memory, space,
+                                          std::as_writable_bytes(std::span(values)));
+        if (read == HdfRead::failed) return failed("cannot be read");
+        if (read == HdfRead::unwritten) return failed("has values that were never written");
+        result.values = Array::own(std::move(values));
+        return std::move(result);
+    });
+}
+
+namespace {
+
+struct NamesOfKind {
+    H5I_type_t kind;
+    std::vector<std::string> names = {};
+};
+
+std::vector<std::string> objects_of(const std::string& file, const std::string& group, H5I_type_t kind) {
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    NamesOfKind found{kind};
+    const Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    const Handle inside(opened.good() ? H5Gopen2(opened, group.c_str(), H5P_DEFAULT) : -1, H5Gclose);
+    if (!inside.good()) return {};
+    const auto add = [](hid_t at, const char* name, const H5L_info_t*, void* data) -> herr_t {
+        auto* const to = static_cast<NamesOfKind*>(data);
+        const Handle object(H5Oopen(at, name, H5P_DEFAULT), H5Oclose);
+        if (object.good() && H5Iget_type(object) == to->kind) to->names.emplace_back(name);
+        return 0;
+    };
+    H5Literate(inside, H5_INDEX_NAME, H5_ITER_INC, nullptr, add, &found);
+    return found.names;
+}
+
+} // namespace
+
+std::vector<std::string> data_sets_of(const std::string& file, const std::string& group) {
+    return objects_of(file, group, H5I_DATASET);
+}
+
+std::vector<std::string> groups_of(const std::string& file, const std::string& group) {
+    return objects_of(file, group, H5I_GROUP);
+}
+
+bool is_written(const std::string& file, const std::string& name) {
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    const Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    const Handle data(opened.good() ? H5Dopen2(opened, name.c_str(), H5P_DEFAULT) : -1, H5Dclose);
+    return data.good() && !may_be_unwritten(data);
+}
+
+std::optional<std::int64_t> integer_attribute(const std::string& file, const std::string& group, const char* name) {
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    const Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    if (!opened.good() || H5Aexists_by_name(opened, group.c_str(), name, H5P_DEFAULT) <= 0) return std::nullopt;
+    const Handle attribute(H5Aopen_by_name(opened, group.c_str(), name, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    const Handle space(attribute.good() ? H5Aget_space(attribute) : -1, H5Sclose);
+    std::int64_t value = 0;
+    if (!space.good() || H5Sget_simple_extent_npoints(space) != 1 || H5Aread(attribute, H5T_NATIVE_INT64, &value) < 0)
+        return std::nullopt;
+    return value;
+}
+
+std::string text_attribute(const std::string& file, const std::string& group, const char* name) {
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    const Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    if (!opened.good() || H5Aexists_by_name(opened, group.c_str(), name, H5P_DEFAULT) <= 0) return {};
+    const Handle attribute(H5Aopen_by_name(opened, group.c_str(), name, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    const Handle type(attribute.good() ? H5Aget_type(attribute) : -1, H5Tclose);
+    const bool fixed = type.good() && H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0;
+    if (!fixed || H5Tget_size(type) > 256 || H5Aget_storage_size(attribute) > 256) return {};
+    char text[257] = {};
+    return H5Aread(attribute, type, text) < 0 ? "" : text;
+}
+
+} // namespace isotet::io::vtk

@@ -1,0 +1,148 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "io/confined/hdf5/hdf5_walk.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include <fmt/core.h>
+#include <hdf5.h>
+
+#include "io/files/escape.hpp"
+#include "io/files/index_file.hpp"
+#include "io/pieces/loaded.hpp"
+
+namespace isotet::io::vtk {
+namespace {
+
+constexpr std::size_t max_objects = 1000000, max_files = 1000;
+constexpr int max_depth = 100;
+
+/// Closes an HDF5 object at the end of a block.
+struct Closing {
+    hid_t id;
+    herr_t (*close)(hid_t);
+    ~Closing() {
+        if (id >= 0) close(id);
+    }
+    Closing(hid_t object, herr_t (*function)(hid_t)) : id(object), close(function) {}
+    Closing(const Closing&) = delete;
+    Closing& operator=(const Closing&) = delete;
+};
+
+class Walk {
+public:
+    Walk(const std::string& path, bool allow_outside) : allow_outside_(allow_outside), files_{path} {}
+
+    Result<void> all_files() {
+        for (std::size_t i = 0; i < files_.size() && !failed_; ++i) one_file(std::string(files_[i]));
+        return failed_ ? Result<void>(*failed_) : Result<void>();
+    }
+
+private:
+    void fail(std::string_view what) {
+        if (!failed_) failed_ = broken(file_, what);
+    }
+    void one_file(const std::string& path) {
+        file_ = path;
+        const Closing file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+        if (file.id < 0) return fail("HDF5 cannot open it: the file is broken");
+        const Closing root(H5Gopen2(file.id, "/", H5P_DEFAULT), H5Gclose);
+        if (root.id < 0) return fail("it has no root group: the file is broken");
+        group(root.id, "");
+    }
+
+    void group(hid_t id, const std::string& name) {
+        H5O_info_t info;
+        if (H5Oget_info2(id, &info, H5O_INFO_BASIC) < 0) return fail(in(name, "cannot be read"));
+        if (std::ranges::find(ancestors_, info.addr) != ancestors_.end()) return fail(in(name, "contains itself"));
+        if (ancestors_.size() == max_depth) return fail(in(name, "is nested too deep"));
+        if (std::ranges::find(seen_, info.addr) != seen_.end() && info.rc > 1) return;
+        if (info.rc > 1) seen_.push_back(info.addr);
+        ancestors_.push_back(info.addr);
+        Here here{this, id, name};
+        hsize_t at = 0;
+        const auto visit = [](hid_t, const char* link, const H5L_info_t* about, void* data) -> herr_t {
+            const auto* place = static_cast<const Here*>(data);
+            place->walk->link(place->group, place->name, link, *about);
+            return place->walk->failed_ ? 1 : 0;
+        };
+        if (H5Literate(id, H5_INDEX_NAME, H5_ITER_NATIVE, &at, visit, &here) < 0) fail(in(name, "cannot be read"));
+        ancestors_.pop_back();
+    }
+    struct Here {
+        Walk* walk;
+        hid_t group;
+        const std::string& name;
+    };
+
+    void link(hid_t group_id, const std::string& group_name, const char* name, const H5L_info_t& about) {
+        const std::string path = group_name + "/" + name;
+        if (++objects_ > max_objects) return fail(fmt::format("it holds more than {} objects", max_objects));
+        if (about.type == H5L_TYPE_SOFT) return;
+        if (about.type == H5L_TYPE_EXTERNAL) return external(group_id, path, name, about);
+        if (about.type != H5L_TYPE_HARD) return fail(in(path, "is a link of a kind of its own"));
+        const Closing object(H5Oopen(group_id, name, H5P_DEFAULT), H5Oclose);
+        if (object.id < 0) return fail(in(path, "cannot be opened"));
+        const H5I_type_t kind = H5Iget_type(object.id);
+        if (kind == H5I_GROUP) group(object.id, path);
+        else if (kind == H5I_DATASET) data_set(object.id, path);
+    }
+
+    void external(hid_t group_id, const std::string& path, const char* name, const H5L_info_t& about) {
+        std::vector<char> value(about.u.val_size + 1, '\0');
+        unsigned flags = 0;
+        const char *file = nullptr, *target = nullptr;
+        if (H5Lget_val(group_id, name, value.data(), value.size() - 1, H5P_DEFAULT) < 0 ||
+            H5Lunpack_elink_val(value.data(), about.u.val_size, &flags, &file, &target) < 0)
+            return fail(in(path, "is a link that cannot be read"));
+        other_file(path, file, "links to");
+    }
+
+    void data_set(hid_t id, const std::string& path) {
+        const Closing list(H5Dget_create_plist(id), H5Pclose);
+        if (list.id < 0) return fail(in(path, "cannot be read"));
+        const int stored_outside = H5Pget_external_count(list.id);
+        for (int i = 0; i < stored_outside && !failed_; ++i) {
+            char name[4096] = {};
+            if (H5Pget_external(list.id, static_cast<unsigned>(i), sizeof name - 1, name, nullptr, nullptr) < 0)
+                return fail(in(path, "stores its data in a file whose name cannot be read"));
+            named(path, name, "stores its data in");
+        }
+        if (H5Pget_layout(list.id) == H5D_VIRTUAL) fail(in(path, "is a virtual data set, which is not read"));
+    }
+
+    void named(const std::string& path, std::string_view name, std::string_view does) {
+        if (auto file = named_file(file_, name, allow_outside_); !file && !failed_)
+            failed_ = Error{file.error().code, fmt::format("{}: {} another file: {}", escaped(file_), in(path, does),
+                                                           file.error().message)};
+    }
+    void other_file(const std::string& path, std::string_view name, std::string_view does) {
+        named(path, name, does);
+        if (failed_) return;
+        const auto file = named_file(file_, name, allow_outside_);
+        if (std::ranges::find(files_, *file) != files_.end()) return;
+        if (files_.size() == max_files) return fail(fmt::format("it links to more than {} files", max_files));
+        files_.push_back(*file);
+    }
+    static std::string in(const std::string& path, std::string_view what) {
+        return fmt::format("\"{}\" {}", escaped(path.empty() ? "/" : path), what);
+    }
+
+    bool allow_outside_;
+    std::vector<std::string> files_; ///< this one, and those that it links to
+    std::string file_;
+    std::vector<haddr_t> ancestors_, seen_; ///< groups: around this one; with several names
+    std::size_t objects_ = 0;
+    std::optional<Error> failed_;
+};
+
+} // namespace
+
+Result<void> check_hdf5_names(const std::string& path, bool allow_outside) {
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); // messages are ours
+    if (H5Fis_hdf5(path.c_str()) <= 0) return {};
+    return Walk(path, allow_outside).all_files();
+}
+
+} // namespace isotet::io::vtk

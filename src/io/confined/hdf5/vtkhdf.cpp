@@ -1,0 +1,126 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// VTKHDF: unstructured grids, versions 1 and 2, alone or in collections, by ourselves; image data by VTK's reader.
+#include <algorithm>
+#include <limits>
+
+#include <fmt/core.h>
+#include <vtkDataArraySelection.h>
+#include <vtkHDFReader.h>
+#include <vtkNew.h>
+
+#include "io/confined/hdf5/hdf5_array.hpp"
+#include "io/confined/hdf5/hdf5_walk.hpp"
+#include "io/confined/hdf5/vtkhdf_grid.hpp"
+#include "io/confined/length_check.hpp"
+#include "io/confined/loaders.hpp"
+#include "io/confined/vtk_load.hpp"
+#include "io/files/escape.hpp"
+#include "io/pieces/block_choice.hpp"
+
+namespace isotet::io::vtk {
+namespace {
+
+/// A file of one grid.
+Result<Loaded> load_grid(const std::string& path, const ReadOptions& options, Depth depth) {
+    const auto rows = Hdf5Rows::open(path);
+    if (!rows) return rows.error();
+    const HdfGrid grid(path, *rows, "/VTKHDF/");
+    Loaded loaded;
+    if (auto done = grid.announce_all(loaded.info); !done) return done.error();
+    if (depth == Depth::description) return loaded;
+    const auto step = choose_step(loaded.info, options);
+    if (!step) return step.error();
+    loaded.step = *step;
+    if (auto done = grid.load(options, *step, "", loaded); !done) return done.error();
+    if (loaded.pieces.empty()) return broken(path, "it has no part");
+    return loaded;
+}
+
+/// The unstructured grids of a collection, in its order.
+std::vector<std::string> grids_of(const std::string& path, FileInfo& info) {
+    std::vector<std::pair<std::int64_t, std::string>> found;
+    for (const std::string& name : groups_of(path, "/VTKHDF")) {
+        const std::string type = text_attribute(path, "/VTKHDF/" + name, "Type");
+        const auto index = integer_attribute(path, "/VTKHDF/" + name, "Index");
+        if (type == "UnstructuredGrid")
+            found.emplace_back(index.value_or(std::numeric_limits<std::int64_t>::max()), name);
+        else if (!type.empty())
+            leave_out(info, {"block", name, fmt::format("it is of type {}, not UnstructuredGrid", escaped(type))});
+    }
+    std::ranges::sort(found);
+    std::vector<std::string> names;
+    for (auto& [index, name] : found) names.push_back(std::move(name));
+    return names;
+}
+
+/// A file of several grids, which are blocks.
+Result<Loaded> load_collection(const std::string& path, const ReadOptions& options, Depth depth) {
+    const auto rows = Hdf5Rows::open(path);
+    if (!rows) return rows.error();
+    Loaded loaded;
+    const std::vector<std::string> names = grids_of(path, loaded.info);
+    std::vector<HdfGrid> grids;
+    for (const std::string& name : names) {
+        const HdfGrid& grid = grids.emplace_back(path, *rows, "/VTKHDF/" + name + "/");
+        if (auto done = grid.announce_all(loaded.info); !done) return done.error();
+    }
+    if (grids.empty()) return broken(path, "it has no unstructured grid");
+    const auto step = choose_step(loaded.info, options);
+    if (!step) return step.error();
+    loaded.step = *step;
+    for (std::size_t i = 0; i < grids.size(); ++i) {
+        const auto cells = grids[i].count_cells(loaded.step);
+        if (!cells) return cells.error();
+        loaded.info.blocks.push_back({static_cast<std::int64_t>(i + 1), names[i], "data set", *cells});
+    }
+    const auto chosen = chosen_blocks(loaded.info.blocks, options);
+    if (!chosen) return chosen.error();
+    for (std::size_t i = 0; i < grids.size() && depth == Depth::arrays; ++i) {
+        if (!(*chosen)[i]) continue;
+        if (auto done = grids[i].load(options, loaded.step, names[i] + ", ", loaded); !done) return done.error();
+    }
+    return loaded;
+}
+
+/// VTK's reader gives what memory held where values were never written.
+void leave_out_unwritten(const std::string& path, Association association, vtkDataArraySelection& arrays,
+                         FileInfo& info) {
+    const std::string group = association == Association::point ? "/VTKHDF/PointData" : "/VTKHDF/CellData";
+    for (const std::string& name : data_sets_of(path, group)) {
+        if (is_written(path, group + "/" + name)) continue;
+        arrays.DisableArray(name.c_str());
+        leave_out(info, {association == Association::point ? "point field" : "cell field", name,
+                         "it has values that were never written"});
+    }
+}
+
+Result<Loaded> load_by_vtk(const std::string& path, const ReadOptions& options, Depth depth) {
+    vtkNew<vtkHDFReader> reader;
+    reader->SetFileName(path.c_str());
+    return load_with(*reader, path, options, depth, [&](const ReadOptions& chosen, FileInfo& info) {
+        for (int i = 0; i < reader->GetNumberOfPointArrays(); ++i)
+            if (!wanted(chosen, Association::point, reader->GetPointArrayName(i)))
+                announce(info, {reader->GetPointArrayName(i), Association::point, ScalarType::float64, 1});
+        for (int i = 0; i < reader->GetNumberOfCellArrays(); ++i)
+            if (!wanted(chosen, Association::cell, reader->GetCellArrayName(i)))
+                announce(info, {reader->GetCellArrayName(i), Association::cell, ScalarType::float64, 1});
+        choose_arrays(reader->GetPointDataArraySelection(), chosen, Association::point);
+        choose_arrays(reader->GetCellDataArraySelection(), chosen, Association::cell);
+        leave_out_unwritten(path, Association::point, *reader->GetPointDataArraySelection(), info);
+        leave_out_unwritten(path, Association::cell, *reader->GetCellDataArraySelection(), info);
+    });
+}
+
+} // namespace
+
+Result<Loaded> load_vtkhdf(const std::string& path, const ReadOptions& options, Depth depth) {
+    if (auto complete = check_hdf5_length(path); !complete) return complete.error();
+    if (auto names = check_hdf5_names(path, options.allow_outside); !names) return names.error();
+    const std::string type = text_attribute(path, "/VTKHDF", "Type");
+    if (type == "PartitionedDataSetCollection" || type == "MultiBlockDataSet")
+        return load_collection(path, options, depth);
+    if (type != "UnstructuredGrid") return load_by_vtk(path, options, depth);
+    return load_grid(path, options, depth);
+}
+
+} // namespace isotet::io::vtk

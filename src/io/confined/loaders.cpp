@@ -1,0 +1,21 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "io/confined/loaders.hpp"
+
+namespace isotet::io::vtk {
+
+Load loader_of(std::string_view format) {
+    struct Named {
+        std::string_view format;
+        Load load;
+    };
+    static constexpr Named loaders[] = {
+        {"exodus", load_exodus}, {"cgns", load_cgns},       {"vtkhdf", load_vtkhdf},
+        {"xdmf", load_xdmf},     {"ensight", load_ensight}, {"ucd", load_ucd},
+    };
+    for (const Named& named : loaders) {
+        if (named.format == format) return named.load;
+    }
+    return nullptr;
+}
+
+} // namespace isotet::io::vtk

@@ -1,0 +1,245 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// AVS UCD, ascii. Not through VTK's reader, which gives half a grid without a word when the file is cut short.
+//
+//   points cells point_values cell_values model_values
+//   number x y z                              for each point
+//   number material type point...             for each cell
+//   arrays components...                      then "name, unit" for each array, then number value... for each point
+//   the same for cells
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string_view>
+
+#include <fmt/core.h>
+
+#include "io/pieces/number_map.hpp"
+#include "io/files/text_scanner.hpp"
+#include "io/reader.hpp"
+#include "io/files/escape.hpp"
+#include "io/confined/loaders.hpp"
+#include "io/confined/mapped_file.hpp"
+
+namespace isotet::io::vtk {
+namespace {
+
+struct Element {
+    std::string_view name;
+    std::uint8_t type;
+    int corners;
+    std::array<int, 8> order; ///< of VTK's corners among UCD's: UCD has the apex and the upper face first
+};
+constexpr Element elements[] = {
+    {"pt", 1, 1, {0}},
+    {"line", 3, 2, {0, 1}},
+    {"tri", 5, 3, {0, 1, 2}},
+    {"quad", 9, 4, {0, 1, 2, 3}},
+    {"tet", 10, 4, {0, 1, 2, 3}},
+    {"pyr", 14, 5, {1, 2, 3, 4, 0}},
+    {"prism", 13, 6, {3, 4, 5, 0, 1, 2}},
+    {"hex", 12, 8, {4, 5, 6, 7, 0, 1, 2, 3}},
+};
+
+struct Counts {
+    std::uint64_t points = 0, cells = 0, point_values = 0, cell_values = 0, model_values = 0;
+};
+
+class UcdReader {
+public:
+    UcdReader(const std::string& path, std::string_view text, const ReadOptions& options, Depth depth)
+        : path_(path), scanner_(text, '#'), options_(options), depth_(depth) {}
+
+    Result<Loaded> run() {
+        loaded_.pieces.emplace_back().name = path_;
+        if (!header() || !points() || !cells()) return *problem_;
+        if (counts_.point_values > 0 && !values(Association::point, counts_.points, counts_.point_values))
+            return *problem_;
+        if (counts_.cell_values > 0 && !values(Association::cell, counts_.cells, counts_.cell_values)) return *problem_;
+        if (depth_ == Depth::description) loaded_.pieces.clear();
+        return std::move(loaded_);
+    }
+
+private:
+    bool fail(std::string_view what) {
+        if (!problem_) problem_ = broken(path_, fmt::format("{} at {}", what, scanner_.where()));
+        return false;
+    }
+    template <class Number>
+    bool next(Number& value, std::string_view what) {
+        return scanner_.number(value) || fail(fmt::format("{} expected", what));
+    }
+    /// Every item takes some bytes: a count beyond what is left is wrong, and nothing is allocated for it.
+    bool plausible(std::uint64_t count, std::string_view what) {
+        return count <= scanner_.left() || fail(fmt::format("{} {} announced, but the file is shorter", count, what));
+    }
+    bool header() {
+        if (scanner_.rest().starts_with("\x07")) return fail("a binary UCD file, which is not read: write it as ascii");
+        return next(counts_.points, "number of points") && next(counts_.cells, "number of cells") &&
+               next(counts_.point_values, "number of point values") &&
+               next(counts_.cell_values, "number of cell values") &&
+               next(counts_.model_values, "number of model values") && plausible(counts_.points, "points") &&
+               plausible(counts_.cells, "cells");
+    }
+    bool points() {
+        std::vector<double> places(3 * counts_.points);
+        for (std::uint64_t i = 0; i < counts_.points; ++i) {
+            std::int64_t number = 0;
+            if (!next(number, "number of a point")) return false;
+            numbers_.add(number);
+            for (std::uint64_t axis = 0; axis < 3; ++axis)
+                if (!next(places[3 * i + axis], "a coordinate")) return false;
+        }
+        if (auto closed = numbers_.close("point"); !closed) return fail(closed.error().message);
+        grid().points = Array::own(std::move(places), 3);
+        return true;
+    }
+    bool cells() {
+        std::vector<std::int64_t> connectivity, offsets{0};
+        std::vector<std::uint8_t> types;
+        std::vector<std::int32_t> materials;
+        types.reserve(counts_.cells);
+        for (std::uint64_t i = 0; i < counts_.cells; ++i) {
+            std::int64_t number = 0;
+            std::int32_t material = 0;
+            if (!next(number, "number of a cell") || !next(material, "material of a cell")) return false;
+            cell_numbers_.add(number);
+            const std::string_view name = scanner_.word();
+            const Element* element = nullptr;
+            for (const Element& known : elements)
+                if (known.name == name) element = &known;
+            if (!element)
+                return fail(fmt::format("cell type {} is not one of pt, line, tri, quad, tet, pyr, prism, hex",
+                                        in_quotes(name)));
+            if (!corners(*element, connectivity)) return false;
+            offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
+            types.push_back(element->type);
+            materials.push_back(material);
+        }
+        cells_are_numbered_ = static_cast<bool>(cell_numbers_.close("cell"));
+        grid().cells.connectivity = Array::own(std::move(connectivity));
+        grid().cells.offsets = Array::own(std::move(offsets));
+        grid().cells.types = Array::own(std::move(types));
+        keep("Material Id", Association::cell, Array::own(std::move(materials)));
+        return true;
+    }
+    bool corners(const Element& element, std::vector<std::int64_t>& connectivity) {
+        std::array<std::int64_t, 8> read{};
+        for (int c = 0; c < element.corners; ++c) {
+            std::int64_t number = 0;
+            if (!next(number, "number of a corner")) return false;
+            const std::uint64_t point = numbers_.find(number);
+            if (point == NumberMap::none)
+                return fail(fmt::format("a cell has point {}, which the file does not have,", number));
+            read[static_cast<std::size_t>(c)] = static_cast<std::int64_t>(point);
+        }
+        for (int c = 0; c < element.corners; ++c)
+            connectivity.push_back(read[static_cast<std::size_t>(element.order[static_cast<std::size_t>(c)])]);
+        return true;
+    }
+
+    struct Column {
+        std::string name;
+        std::uint64_t components;
+        bool wanted;
+        std::vector<double> values;
+    };
+
+    bool values(Association association, std::uint64_t tuples, std::uint64_t stated) {
+        std::vector<Column> columns;
+        if (!value_header(association, stated, columns)) return false;
+        if (!plausible(tuples * std::min<std::uint64_t>(stated, 1 << 20), "values")) return false;
+        for (Column& column : columns)
+            if (column.wanted) column.values.resize(tuples * column.components);
+        for (std::uint64_t i = 0; i < tuples; ++i) {
+            std::int64_t number = 0;
+            if (!next(number, "number of a line of values")) return false;
+            std::uint64_t tuple = i;
+            if (!place(association, number, tuple)) return false;
+            for (Column& column : columns)
+                for (std::uint64_t c = 0; c < column.components; ++c) {
+                    double value = 0;
+                    if (!next(value, "a value")) return false;
+                    if (column.wanted) column.values[tuple * column.components + c] = value;
+                }
+        }
+        for (Column& column : columns) {
+            if (column.name.empty()) continue;
+            if (column.wanted) keep(column.name, association, Array::own(std::move(column.values), column.components));
+            else announce(loaded_.info, {column.name, association, ScalarType::float64, column.components});
+        }
+        return true;
+    }
+    /// Some programs number the lines of cell values without regard to the numbers of the cells: then their order counts.
+    bool place(Association association, std::int64_t number, std::uint64_t& tuple) {
+        const bool point = association == Association::point;
+        if (!point && !cells_are_numbered_) return true;
+        const std::uint64_t found = point ? numbers_.find(number) : cell_numbers_.find(number);
+        if (found == NumberMap::none && !point && tuple == 0) {
+            cells_are_numbered_ = false;
+            return true;
+        }
+        if (found == NumberMap::none)
+            return fail(
+                fmt::format("values for {} {}, which the file does not have,", point ? "point" : "cell", number));
+        tuple = found;
+        return true;
+    }
+    bool value_header(Association association, std::uint64_t stated, std::vector<Column>& columns) {
+        std::uint64_t arrays = 0, sum = 0;
+        if (!next(arrays, "number of arrays") || !plausible(arrays, "arrays")) return false;
+        std::vector<std::uint64_t> components(arrays);
+        for (std::uint64_t& count : components) {
+            if (!next(count, "components of an array")) return false;
+            if (count < 1 || count > 1000) return fail(fmt::format("an array of {} components", count));
+            sum += count;
+        }
+        if (sum != stated) return fail(fmt::format("arrays of {} values, but {} are announced,", sum, stated));
+        for (const std::uint64_t count : components) {
+            std::string_view name = scanner_.line();
+            name = name.substr(0, name.find(','));
+            while (!name.empty() && is_space(name.back())) name.remove_suffix(1);
+            if (scanner_.left() == 0) return fail("name of an array expected");
+            const std::string kind = association == Association::point ? "point field" : "cell field";
+            const bool repeated = std::ranges::find(columns, name, &Column::name) != columns.end();
+            if (name.empty()) leave_out(loaded_.info, {kind, "", "it has no name"});
+            else if (repeated) leave_out(loaded_.info, {kind, std::string(name), "an earlier one has the same name"});
+            const bool is_read = !name.empty() && !repeated;
+            columns.push_back({is_read ? std::string(name) : std::string(),
+                               count,
+                               is_read && wanted(options_, association, name),
+                               {}});
+        }
+        return true;
+    }
+    void keep(std::string name, Association association, Array values) {
+        announce(loaded_.info, {name, association, values.type(), values.components()});
+        if (!wanted(options_, association, name)) return;
+        auto& fields = association == Association::point ? grid().point_fields : grid().cell_fields;
+        fields.push_back({std::move(name), std::move(values)});
+    }
+    Grid& grid() { return loaded_.pieces.front().grid; }
+
+    const std::string& path_;
+    TextScanner scanner_;
+    const ReadOptions& options_;
+    Depth depth_;
+    Loaded loaded_;
+    Counts counts_;
+    NumberMap numbers_, cell_numbers_;
+    bool cells_are_numbered_ = false;
+    std::optional<Error> problem_;
+};
+
+} // namespace
+
+Result<Loaded> load_ucd(const std::string& path, const ReadOptions& options, Depth depth) {
+    auto file = MappedFile::open(path);
+    if (!file) return file.error();
+    auto loaded = UcdReader(path, file->text(), options, depth).run();
+    if (!loaded) return loaded;
+    auto step = choose_step(loaded->info, depth == Depth::arrays ? options : ReadOptions());
+    if (!step) return step.error();
+    return loaded;
+}
+
+} // namespace isotet::io::vtk

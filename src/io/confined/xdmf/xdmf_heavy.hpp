@@ -1,0 +1,22 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What the text of a DataItem with Format HDF names.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include <isotet/result.hpp>
+
+#include "io/confined/hdf5/hdf5_array.hpp"
+
+namespace isotet::io::vtk {
+
+/// Reads "file.h5:/group/data set", or a part of it, "file.h5:/data set|start:stride:count:size" with a number for each
+/// dimension in each of the four, or several of these between bars, one after another.
+///
+/// `index`   the XDMF file, which names
+/// `box`     a part that is taken where the text itself states none
+Result<ShapedValues> read_heavy(const std::string& index, std::string_view text, const Box& box, Depth depth,
+                                bool allow_outside);
+
+} // namespace isotet::io::vtk

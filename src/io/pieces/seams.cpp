@@ -1,0 +1,234 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Points that can be shared lie in the boxes of two pieces. They are grouped by a coarse distance, within which groups
+// are nearly always the copies of one point; each group is then settled by itself.
+#include "io/pieces/seams.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <utility>
+
+#include "base/buffer.hpp"
+#include "base/memory.hpp"
+#include "base/parallel.hpp"
+#include "base/radix_sort.hpp"
+#include "grid/orientation.hpp"
+#include "grid/points/close_points.hpp"
+#include "io/pieces/seam_groups.hpp"
+
+namespace isotet::io {
+namespace {
+
+using core::Keyed;
+using core::Point;
+
+constexpr std::size_t seam_grain = std::size_t{1} << 14;
+
+Error cancelled() { return {ErrorCode::cancelled, "joining pieces was cancelled"}; }
+
+/// Places are scaled so that the tolerance is 1 along each axis.
+struct Scale {
+    Point lower{}, tolerance{};
+    double coarse = 0;
+};
+
+Scale scale_of(const std::vector<SeamPiece>& pieces) {
+    constexpr double share = 1e-12, roundings = 2, coarse_share = 1e-6;
+    Box whole;
+    bool single = false;
+    for (const SeamPiece& piece : pieces) {
+        if (piece.box.is_empty()) continue;
+        whole.add(piece.box);
+        single = single || piece.points.type() == ScalarType::float32;
+    }
+    Scale scale;
+    if (whole.is_empty()) return scale;
+    double length = 0, sum = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) length = std::max(length, whole.upper[axis] - whole.lower[axis]);
+    if (!std::isfinite(length)) return scale;
+    const double rounding = roundings * (single ? 0x1p-23 : 0x1p-52);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double magnitude = std::max({std::abs(whole.lower[axis]), std::abs(whole.upper[axis]), length});
+        scale.tolerance[axis] = std::max({share * length, rounding * magnitude, 1e-300});
+        sum += scale.tolerance[axis];
+    }
+    scale.lower = whole.lower;
+    scale.coarse = std::max(coarse_share * length, 2 * sum);
+    return scale;
+}
+
+class SeamFinder {
+public:
+    SeamFinder(const std::vector<SeamPiece>& pieces, const Progress& progress)
+        : pieces_(pieces), progress_(progress), scale_(scale_of(pieces)) {
+        for (const SeamPiece& piece : pieces_) first_.push_back(first_.back() + piece.points.tuples());
+    }
+
+    Result<Seams> find() {
+        if (auto done = judge_ids(); !done) return done.error();
+        if (scale_.coarse > 0) find_candidates();
+        if (candidates_.size() < 2) return std::move(seams_);
+        if (auto enough = core::require_memory("joining pieces", 150 * candidates_.size()); !enough)
+            return enough.error();
+        if (progress_.cancelled()) return cancelled();
+        progress_("join pieces", 0.3);
+        const std::vector<Keyed> grouped = group();
+        if (progress_.cancelled()) return cancelled();
+        settle(grouped);
+        if (progress_.cancelled()) return cancelled();
+        std::ranges::sort(seams_.joined, {}, &JoinedPoint::point);
+        return std::move(seams_);
+    }
+
+private:
+    std::uint32_t piece_of(std::uint64_t point) const {
+        return static_cast<std::uint32_t>(std::ranges::upper_bound(first_, point) - first_.begin() - 1);
+    }
+    Point place_of(std::uint64_t point) const {
+        const std::uint32_t piece = piece_of(point);
+        return core::PointReader(pieces_[piece].points)[point - first_[piece]];
+    }
+    std::uint64_t id_of(std::uint64_t point) const {
+        const std::uint32_t piece = piece_of(point);
+        return pieces_[piece].ids.visit(
+            [&](auto ids) { return static_cast<std::uint64_t>(ids[point - first_[piece]]); });
+    }
+
+    /// The points in the boxes of other pieces.
+    void find_candidates() {
+        struct Chunk {
+            std::size_t piece, begin, end;
+            std::vector<std::uint64_t> found = {};
+        };
+        std::vector<Chunk> chunks;
+        std::vector<std::vector<Box>> others(pieces_.size());
+        core::parallel_each(pieces_.size(), 1, [&](std::size_t p) {
+            for (std::size_t q = 0; q < pieces_.size(); ++q)
+                if (p != q && pieces_[p].box.meets(pieces_[q].box, scale_.coarse)) others[p].push_back(pieces_[q].box);
+        });
+        for (std::size_t p = 0; p < pieces_.size(); ++p)
+            for (std::size_t i = 0; !others[p].empty() && i < pieces_[p].points.tuples(); i += seam_grain)
+                chunks.push_back({p, i, std::min(i + seam_grain, pieces_[p].points.tuples())});
+        core::parallel_each(chunks.size(), 1, [&](std::size_t c) {
+            if (progress_.cancelled()) return;
+            Chunk& chunk = chunks[c];
+            const SeamPiece& piece = pieces_[chunk.piece];
+            const core::PointReader places(piece.points);
+            for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
+                if (!piece.use.empty() && piece.use[i] != PointUse::kept) continue;
+                const Point place = places[i];
+                if (std::ranges::any_of(others[chunk.piece],
+                                        [&](const Box& box) { return box.holds(place, scale_.coarse); }))
+                    chunk.found.push_back(first_[chunk.piece] + i);
+            }
+        });
+        for (const Chunk& chunk : chunks) candidates_.insert(candidates_.end(), chunk.found.begin(), chunk.found.end());
+    }
+
+    /// Whether global numbers can be trusted: of all points that are used, not of candidates only, since numbers that
+    /// each piece counts for itself may agree by chance at some.
+    Result<void> judge_ids() {
+        for (const SeamPiece& piece : pieces_)
+            if (piece.ids.size() != piece.points.tuples() || is_floating(piece.ids.type())) return {};
+        const std::uint64_t count = first_.back();
+        if (auto enough = core::require_memory("comparing global point numbers", 2 * sizeof(Keyed) * count); !enough)
+            return enough.error();
+        core::Buffer<Keyed> numbered(count), scratch(count);
+        core::parallel_each(pieces_.size(), 1, [&](std::size_t p) {
+            pieces_[p].ids.visit([&](auto ids) {
+                core::parallel_each(ids.size(), seam_grain, [&](std::size_t i) {
+                    numbered[first_[p] + i] = {static_cast<std::uint64_t>(ids[i]), first_[p] + i};
+                });
+            });
+        });
+        core::radix_sort({numbered.data(), numbered.size()}, {scratch.data(), scratch.size()});
+        scratch.release();
+        std::atomic<bool> shared = false, wrong = false;
+        core::parallel_ranges(count, seam_grain, [&](std::size_t begin, std::size_t end) {
+            if (wrong || progress_.cancelled()) return;
+            for (std::size_t i = begin; i < end; ++i) {
+                const std::uint64_t here = numbered[i].number;
+                if (i == 0 || numbered[i - 1].key != numbered[i].key || !is_used(here)) continue;
+                std::size_t j = i; // the last one before with this number that is used
+                while (j > 0 && numbered[j - 1].key == numbered[i].key && !is_used(numbered[j - 1].number)) --j;
+                if (j == 0 || numbered[j - 1].key != numbered[i].key) continue;
+                const std::uint64_t other = numbered[j - 1].number;
+                if (!are_near(place_of(here), place_of(other))) wrong = true;
+                else if (piece_of(here) != piece_of(other)) shared = true;
+            }
+        });
+        seams_.ids = wrong ? IdUse::wrong : shared ? IdUse::trusted : IdUse::unshared;
+        return {};
+    }
+    bool is_used(std::uint64_t point) const {
+        const std::uint32_t piece = piece_of(point);
+        return pieces_[piece].use.empty() || pieces_[piece].use[point - first_[piece]] == PointUse::kept;
+    }
+    bool are_near(const Point& a, const Point& b) const {
+        return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]) <= scale_.coarse;
+    }
+
+    /// Candidates that are near others, by group; the key is the lowest of the group.
+    std::vector<Keyed> group() {
+        std::vector<double> places(3 * candidates_.size());
+        core::parallel_each(candidates_.size(), seam_grain, [&](std::size_t i) {
+            const Point place = place_of(candidates_[i]);
+            std::ranges::copy(place, places.begin() + static_cast<std::ptrdiff_t>(3 * i));
+        });
+        const std::vector<std::uint64_t> lowest = core::lowest_of_chain(
+            Array::borrow(places, 3), std::vector<std::uint8_t>(candidates_.size(), 1), scale_.lower, scale_.coarse);
+        std::vector<std::uint8_t> has_others(candidates_.size());
+        for (std::size_t i = 0; i < lowest.size(); ++i)
+            if (lowest[i] != i) has_others[lowest[i]] = 1;
+        std::vector<Keyed> grouped;
+        for (std::size_t i = 0; i < lowest.size(); ++i)
+            if (has_others[lowest[i]]) grouped.push_back({lowest[i], i});
+        std::vector<Keyed> scratch(grouped.size());
+        core::radix_sort(grouped, scratch);
+        return grouped;
+    }
+
+    void settle(const std::vector<Keyed>& grouped) {
+        std::mutex mutex;
+        core::parallel_ranges(grouped.size(), seam_grain, [&](std::size_t begin, std::size_t end) {
+            if (progress_.cancelled()) return;
+            SeamGroup group;
+            Seams found;
+            for (std::size_t i = begin; i < end; ++i) {
+                if (i > 0 && grouped[i].key == grouped[i - 1].key) continue;
+                group.points.clear();
+                for (std::size_t j = i; j < grouped.size() && grouped[j].key == grouped[i].key; ++j)
+                    group.points.push_back(seam_point(candidates_[grouped[j].number]));
+                settle_group(group, seams_.ids == IdUse::trusted ? DecideBy::ids : DecideBy::places, found);
+            }
+            const std::lock_guard lock(mutex);
+            seams_.joined.insert(seams_.joined.end(), found.joined.begin(), found.joined.end());
+            seams_.apart += found.apart;
+            seams_.near += found.near;
+            seams_.gap = std::max(seams_.gap, found.gap);
+        });
+    }
+    SeamPoint seam_point(std::uint64_t point) const {
+        SeamPoint result{point, piece_of(point), 0, place_of(point), {}};
+        if (seams_.ids == IdUse::trusted) result.id = id_of(point);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            result.scaled[axis] = (result.place[axis] - scale_.lower[axis]) / scale_.tolerance[axis];
+        return result;
+    }
+
+    const std::vector<SeamPiece>& pieces_;
+    const Progress& progress_;
+    Scale scale_;
+    std::vector<std::uint64_t> first_{0}; ///< number of each piece's first point, and of all
+    std::vector<std::uint64_t> candidates_;
+    Seams seams_;
+};
+
+} // namespace
+
+Result<Seams> find_seams(const std::vector<SeamPiece>& pieces, const Progress& progress) {
+    return SeamFinder(pieces, progress).find();
+}
+
+} // namespace isotet::io

@@ -1,0 +1,245 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Legacy VTK files as grids: unstructured, and the structured kinds as hexahedra.
+#include "io/vtk_legacy/read_legacy_vtk.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+#include <fmt/core.h>
+
+#include "base/errors.hpp"
+#include "base/parallel.hpp"
+#include "grid/cells.hpp"
+#include "io/files/text_scanner.hpp"
+#include "io/pieces/active_filter.hpp"
+#include "io/pieces/join.hpp"
+#include "io/pieces/uniform_cells.hpp"
+#include "io/vtk_legacy/legacy_cells.hpp"
+#include "io/vtk_legacy/legacy_polyhedra.hpp"
+#include "io/vtk_legacy/legacy_vtk.hpp"
+#include "io/vtk_legacy/old_hexahedra.hpp"
+#include "io/vtk_xml/columns.hpp"
+#include "io/vtk_xml/load.hpp"
+
+namespace isotet::io {
+namespace {
+
+using vtk_xml::GridSize;
+
+template <class Offset>
+Array offsets_as(const LegacyCells& cells) {
+    core::Buffer<Offset> offsets(static_cast<std::size_t>(cells.count) + 1);
+    core::parallel_each(offsets.size(), std::size_t{1} << 16,
+                        [&](std::size_t i) { offsets[i] = static_cast<Offset>(i * cells.corners); });
+    return std::move(offsets).to_array();
+}
+
+Array offsets_of(const LegacyCells& cells) {
+    const bool narrow = cells.connectivity.tuples() <= std::numeric_limits<std::int32_t>::max();
+    return narrow ? offsets_as<std::int32_t>(cells) : offsets_as<std::int64_t>(cells);
+}
+
+/// True where types and offsets say nothing.
+bool says_nothing(const LegacyFile& file) {
+    return file.one_type && file.cells.offsets.empty() && core::is_contoured(*file.one_type) &&
+           file.cells.corners == static_cast<std::uint64_t>(core::corners_of(*file.one_type));
+}
+
+/// Cells without types are none, as in VTK.
+Result<Cells> cells_of(const LegacyFile& file) {
+    Cells cells;
+    const LegacyCells& list = file.cells;
+    if (list.count == 0 || file.cell_type_count == 0) return cells;
+    if (file.cell_type_count != list.count)
+        return invalid_data(fmt::format("there are {} cells, but {} cell types", list.count, file.cell_type_count));
+    cells.connectivity = list.connectivity;
+    if (says_nothing(file)) {
+        cells.uniform_type = static_cast<CellType>(*file.one_type);
+        return cells;
+    }
+    cells.types = file.one_type
+                      ? Array::own(std::vector<std::uint8_t>(static_cast<std::size_t>(list.count), *file.one_type))
+                      : file.cell_types;
+    cells.offsets = list.offsets.empty() ? offsets_of(list) : list.offsets;
+    if (auto taken = take_legacy_polyhedra(cells); !taken) return taken.error();
+    if (list.interleaved) reorder_old_hexahedra(cells);
+    vtk_xml::simplify(cells);
+    return cells;
+}
+
+Result<Array> structured_points(const LegacyFile& file, const GridSize& size) {
+    const std::uint64_t count = size.x * size.y * size.z;
+    if (file.dataset == "structured_grid") {
+        if (file.points.tuples() == count) return file.points;
+        return invalid_data(fmt::format("there are {} points, but DIMENSIONS are {} x {} x {}", file.points.tuples(),
+                                        size.x, size.y, size.z));
+    }
+    if (file.dataset == "structured_points") {
+        const auto& s = file.spacing;
+        return points_of(size, vtk_xml::ImagePoints{{0, 0, 0}, {s[0], 0, 0, 0, s[1], 0, 0, 0, s[2]}, file.origin});
+    }
+    std::array<std::vector<double>, 3> ticks;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const Array& along = file.coordinates[axis];
+        if (along.tuples() != file.dimensions[axis])
+            return invalid_data(fmt::format("there are {} coordinates along axis {}, but DIMENSIONS say {}",
+                                            along.tuples(), "xyz"[axis], file.dimensions[axis]));
+        for (std::size_t i = 0; i < along.tuples(); ++i) ticks[axis].push_back(along.at(i));
+    }
+    return points_of(size, ticks);
+}
+
+Result<void> take_structured(const LegacyFile& file, Piece& piece, std::vector<std::string>& notes) {
+    const GridSize size{file.dimensions[0], file.dimensions[1], file.dimensions[2]};
+    constexpr std::uint64_t most = std::uint64_t{1} << 48;
+    if (size.x * size.y > most / std::max<std::uint64_t>(size.z, 1))
+        return invalid_data(fmt::format("DIMENSIONS are {} x {} x {}: too many points", size.x, size.y, size.z));
+    auto points = structured_points(file, size);
+    if (!points) return points.error();
+    auto cells = vtk_xml::hexahedra_of(size, notes);
+    if (!cells) return cells.error();
+    piece.grid.points = std::move(*points);
+    piece.grid.cells = std::move(*cells);
+    piece.flat = vtk_xml::flatness(size);
+    return {};
+}
+
+/// Only the active cells, of corners that are still in the file; nothing where all are needed.
+Result<std::optional<Cells>> active_cells(LegacyValues& values, const LegacyFile& file, const Grid& grid,
+                                          const ReadOptions& options) {
+    std::optional<Cells> cells;
+    if (!says_nothing(file) || file.cell_type_count != file.cells.count || !file.cell_data.empty()) return cells;
+    auto filter = active_filter(grid, static_cast<CellType>(*file.one_type), options);
+    if (!filter) return cells;
+    const auto all = each_of_corners(values, *file.cells.in_file, [&](std::uint64_t first, const Array& corners) {
+        filter->add(first, corners);
+        return true;
+    });
+    if (!all) return all.error();
+    if (!*all) return cells;
+    auto kept = filter->finish();
+    if (kept) cells = *std::move(kept);
+    else if (kept.error().code != ErrorCode::invalid_data) return kept.error();
+    return cells; // what is broken is told when all cells are there
+}
+
+/// `piece`   has points and point fields
+Result<void> take_cells(const ByteSource& source, LegacyFile& file, const ReadOptions& options,
+                        const Progress& progress, Piece& piece) {
+    if (file.cells.in_file) {
+        LegacyValues values(source, progress);
+        values.set_binary(true);
+        auto active = active_cells(values, file, piece.grid, options);
+        if (!active) return active.error();
+        if (*active) {
+            piece.grid.cells = **std::move(active);
+            piece.cells_in_file = file.cells.count;
+            return {};
+        }
+        if (auto read = read_corners(values, file.cells); !read) return read;
+    }
+    auto cells = cells_of(file);
+    if (!cells) return cells.error();
+    piece.grid.cells = *std::move(cells);
+    return {};
+}
+
+/// The sections without which a file was cut off; a count of 0 is an empty grid.
+Result<void> check_sections(const LegacyFile& file) {
+    for (const auto& [has, section] : {std::pair{file.has_points, "POINTS"},
+                                       {file.has_cells && (file.cells.count > 0 || file.cell_type_count == 0), "CELLS"},
+                                       {file.cell_type_count > 0 || file.cells.count == 0, "CELL_TYPES"}})
+        if (!has) return invalid_data(fmt::format("the file ends without {}", section));
+    return {};
+}
+
+bool is_grid(std::string_view dataset) { return dataset.ends_with("_grid") || dataset == "structured_points"; }
+
+} // namespace
+
+Result<Loaded> load_legacy(const ByteSource& source, const ReadOptions& options, Depth depth,
+                           const Progress& progress) {
+    std::string kind;
+    LegacyWants wants;
+    wants.geometry = depth == Depth::arrays;
+    wants.leave_corners = options.active_cells.has_value();
+    wants.dataset = [&](std::string_view name) { return is_grid(kind = name); };
+    wants.field = [&](Association association, std::string_view name) {
+        return wants.geometry && ((association == Association::cell && vtk_xml::is_ghost_array(name)) ||
+                                  (wanted(options, association, name) && !vtk_xml::is_ghost_array(name)));
+    };
+    auto file = read_legacy_vtk(source, wants, progress);
+    if (!kind.empty() && !is_grid(kind))
+        return invalid_data(fmt::format("a legacy VTK file of type {} has no cells with a volume", in_quotes(kind)));
+    if (!file) return file.error();
+    if (file->dataset.empty()) return invalid_data("the file has no DATASET");
+    Loaded loaded;
+    loaded.info = std::move(file->info);
+    std::erase_if(loaded.info.fields, [](const FieldInfo& field) { return vtk_xml::is_ghost_array(field.name); });
+    loaded.notes = std::move(file->notes);
+    if (depth == Depth::description) return loaded;
+    const auto step = choose_step(loaded.info, options);
+    if (!step) return step.error();
+    Piece piece;
+    const bool structured = file->dataset != "unstructured_grid";
+    // If no field is as long as DIMENSIONS say, the file may be much smaller than such a grid.
+    if (structured && loaded.info.fields.empty() && !loaded.info.left_out.empty()) {
+        const LeftOut& first = loaded.info.left_out.front();
+        return invalid_data(fmt::format("{} {} cannot be read: {}", first.what, in_quotes(first.name), first.reason));
+    }
+    if (structured) {
+        if (auto taken = take_structured(*file, piece, loaded.notes); !taken) return taken.error();
+    } else {
+        if (auto whole = check_sections(*file); !whole) return whole.error();
+        piece.grid.points = std::move(file->points);
+    }
+    if (piece.grid.points.empty()) piece.grid.points = Array(ScalarType::float32, nullptr, 0, 3, nullptr);
+    for (Attribute& field : file->point_data) piece.grid.point_fields.push_back({field.name, std::move(field.values)});
+    if (!structured)
+        if (auto taken = take_cells(source, *file, options, progress, piece); !taken) return taken.error();
+    const bool flat = structured && piece.grid.cells.count() == 0; // its cells are not volumes
+    for (Attribute& field : file->cell_data) {
+        if (flat) continue;
+        if (field.name == vtk_xml::ghost_rank_name && field.values.tuples() == piece.grid.cells.count())
+            vtk_xml::mark_left_out(field.values, field.name, piece.left_out);
+        if (!vtk_xml::is_ghost_array(field.name))
+            piece.grid.cell_fields.push_back({field.name, std::move(field.values)});
+        else if (field.values.tuples() == piece.grid.cells.count())
+            vtk_xml::mark_left_out(field.values, field.name, piece.left_out);
+    }
+    loaded.pieces.push_back(std::move(piece));
+    return loaded;
+}
+
+Result<Loaded> load_legacy_file(const std::string& path, const ReadOptions& options, Depth depth,
+                                const Progress& progress) {
+    const auto source = ByteSource::open(path);
+    if (!source) return source.error();
+    auto loaded = load_legacy(*source, options, depth, progress);
+    if (!loaded) return in_file(path, loaded.error());
+    for (Piece& piece : loaded->pieces) piece.name = path;
+    loaded->info.format = "vtk";
+    return loaded;
+}
+
+GridReader legacy_vtk_reader() {
+    GridReader reader;
+    reader.format = Format{"vtk", "VTK legacy file", {".vtk"}};
+    reader.format.reads_grid = true;
+    reader.recognizes = [](std::string_view head, std::string_view) {
+        return head.starts_with("# vtk DataFile") ? 2 : 0;
+    };
+    reader.inspect = [](const std::string& path, const ReadOptions& options, const Progress& progress) {
+        auto loaded = load_legacy_file(path, options, Depth::description, progress);
+        return loaded ? Result<FileInfo>(std::move(loaded->info)) : loaded.error();
+    };
+    reader.read = [](const std::string& path, const ReadOptions& options, const Progress& progress) {
+        auto loaded = load_legacy_file(path, options, Depth::arrays, progress);
+        if (!loaded) return Result<ReadResult>(loaded.error());
+        return join(std::move(*loaded), options, progress);
+    };
+    return reader;
+}
+
+} // namespace isotet::io

@@ -1,0 +1,99 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// PVD: an index of VTK XML files by time step; the parts and groups of one time are pieces of one grid.
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include <fmt/core.h>
+#include <pugixml.hpp>
+
+#include "io/files/text_scanner.hpp"
+#include "io/files/escape.hpp"
+#include "io/files/index_file.hpp"
+#include "io/files/plain_file.hpp"
+#include "io/vtk_xml/read_vtk_xml.hpp"
+#include "io/vtk_xml/load.hpp"
+#include "io/reader.hpp"
+
+namespace isotet::io {
+namespace {
+
+struct Entry {
+    double time = 0;
+    std::string group, part, name, file;
+    bool has_part = false;
+};
+
+Result<std::vector<Entry>> entries(const std::string& path) {
+    if (const auto file = open_plain_file(path); !file) return file.error();
+    pugi::xml_document document;
+    const auto parsed = document.load_file(path.c_str());
+    if (!parsed) return broken(path, fmt::format("broken XML at byte {}: {}", parsed.offset, parsed.description()));
+    std::vector<Entry> entries;
+    for (const auto& found : document.select_nodes("/VTKFile/Collection/DataSet")) {
+        const pugi::xml_node node = found.node();
+        const pugi::xml_attribute stated = node.attribute("timestep"), part = node.attribute("part");
+        Entry entry{0,
+                    node.attribute("group").as_string(),
+                    part.as_string(),
+                    node.attribute("name").as_string(),
+                    node.attribute("file").as_string(),
+                    part && *part.value()};
+        if (stated && *stated.value() && (!parse_number(stated.value(), entry.time) || entry.time != entry.time))
+            return broken(path,
+                          fmt::format("a data set has timestep \"{}\", which is no number", escaped(stated.value())));
+        entries.push_back(std::move(entry));
+    }
+    if (entries.empty()) return broken(path, "the collection has no data sets");
+    return entries;
+}
+
+std::string plain(const std::string& file) { return std::filesystem::path(file).lexically_normal().string(); }
+
+/// Which entries stand for the same part of the same time. Where no part is stated, other files of a time are further
+/// parts, unless times go back: then a run was restarted.
+std::map<double, std::vector<const Entry*>> last_ones(const std::vector<Entry>& entries) {
+    const bool goes_back = !std::ranges::is_sorted(entries, {}, &Entry::time);
+    std::map<double, std::vector<const Entry*>> result;
+    std::map<std::tuple<double, std::string, std::string, std::string, std::string>, std::size_t> places;
+    for (const Entry& entry : entries) {
+        auto& of_time = result[entry.time];
+        const bool by_file = !entry.has_part && !goes_back;
+        const auto [place, is_new] = places.try_emplace(
+            {entry.time, entry.group, entry.part, entry.name, by_file ? plain(entry.file) : std::string()},
+            of_time.size());
+        if (is_new) of_time.push_back(&entry);
+        else of_time[place->second] = &entry;
+    }
+    return result;
+}
+
+std::string note_of_replaced(const std::vector<Entry>& entries, std::size_t kept) {
+    const std::size_t replaced = entries.size() - kept;
+    return fmt::format(
+        "{} of {} data sets of the collection {} replaced by a later one of the same time, group and part", replaced,
+        entries.size(), replaced == 1 ? "is" : "are");
+}
+
+} // namespace
+
+Result<Loaded> load_collection(const std::string& path, const ReadOptions& options, Depth depth,
+                               const Progress& progress) {
+    const auto all = entries(path);
+    if (!all) return all.error();
+    NamesByTime names;
+    std::size_t kept = 0;
+    for (const auto& [time, of_time] : last_ones(*all))
+        for (const Entry* entry : of_time) {
+            names[time].push_back(entry->file);
+            ++kept;
+        }
+    auto loaded = load_times(path, names, options, depth, progress);
+    if (loaded && kept < all->size()) loaded->notes.insert(loaded->notes.begin(), note_of_replaced(*all, kept));
+    return loaded;
+}
+
+} // namespace isotet::io

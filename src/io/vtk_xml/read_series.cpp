@@ -1,0 +1,76 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// A file series of ParaView, as OpenFOAM writes them: JSON that names a file of each time.
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "io/files/escape.hpp"
+#include "io/files/whole_file.hpp"
+#include "io/pieces/join.hpp"
+#include "io/vtk_xml/read_vtk_xml.hpp"
+
+namespace isotet::io {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* version_key = "file-series-version";
+
+/// Of several files of one time the last counts, as where a run was restarted.
+Result<NamesByTime> entries(const std::string& path, std::string_view text, std::vector<std::string>& notes) {
+    const Json series = Json::parse(text, nullptr, false);
+    if (series.is_discarded()) return broken(path, "this is not JSON");
+    const auto files = series.is_object() ? series.find("files") : series.end();
+    if (!series.is_object() || files == series.end() || !files->is_array() || files->empty())
+        return broken(path, "there is no list \"files\" with entries");
+    NamesByTime names;
+    for (const Json& file : *files) {
+        if (!file.is_object() || !file.contains("name") || !file["name"].is_string())
+            return broken(path, "an entry of \"files\" has no \"name\"");
+        const auto& name = file["name"].get_ref<const std::string&>();
+        const auto time = file.find("time");
+        if (time == file.end() || !time->is_number())
+            return broken(path, fmt::format("the entry \"{}\" has no number as its \"time\"", escaped(name)));
+        names[time->get<double>()] = {name};
+    }
+    if (const std::size_t replaced = files->size() - names.size(); replaced > 0)
+        notes.push_back(fmt::format("{} of {} files of the series {} replaced by a later one of the same time",
+                                    replaced, files->size(), replaced == 1 ? "is" : "are"));
+    return names;
+}
+
+Result<Loaded> load(const std::string& path, const ReadOptions& options, Depth depth, const Progress& progress) {
+    const auto file = WholeFile::read(path, progress);
+    if (!file) return file.error();
+    std::vector<std::string> notes;
+    const auto names = entries(path, file->text(), notes);
+    if (!names) return names.error();
+    auto loaded = load_times(path, *names, options, depth, progress);
+    if (!loaded) return loaded;
+    loaded->info.format = "series";
+    loaded->notes.insert(loaded->notes.begin(), notes.begin(), notes.end());
+    return loaded;
+}
+
+} // namespace
+
+GridReader series_reader() {
+    GridReader reader;
+    reader.format = Format{"series", "ParaView file series", {".series"}};
+    reader.format.reads_grid = true;
+    reader.recognizes = [](std::string_view head, std::string_view extension) {
+        if (head.find(version_key) != std::string_view::npos) return 2;
+        return extension == ".series" ? 1 : 0;
+    };
+    reader.inspect = [](const std::string& path, const ReadOptions& options, const Progress& progress) {
+        auto loaded = load(path, options, Depth::description, progress);
+        return loaded ? Result<FileInfo>(std::move(loaded->info)) : loaded.error();
+    };
+    reader.read = [](const std::string& path, const ReadOptions& options, const Progress& progress) {
+        auto loaded = load(path, options, Depth::arrays, progress);
+        if (!loaded) return Result<ReadResult>(loaded.error());
+        return join(std::move(*loaded), options, progress);
+    };
+    return reader;
+}
+
+} // namespace isotet::io

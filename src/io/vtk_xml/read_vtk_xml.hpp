@@ -1,0 +1,46 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// VTK's XML formats as readers of isotet::read().
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/pieces/loaded.hpp"
+#include "io/reader.hpp"
+
+namespace isotet::io {
+
+/// VTU, VTI, VTR, VTS, those in pieces, VTM, VTPC, VTPD and PVD.
+std::vector<GridReader> vtk_xml_readers();
+
+/// The type that the name of a file of these formats stands for ("UnstructuredGrid" for .vtu); empty for others, and for
+/// collections.
+std::string_view vtk_type_of_name(std::string_view name);
+
+/// A grid of any of these types but a collection; `ids`: with global numbers to join it with others by.
+Result<Loaded> load_vtk_file(const std::string& path, std::string_view type, const ReadOptions& options, Depth depth,
+                             bool ids, const Progress& progress);
+
+/// A VTM, VTPC or VTPD: an index of files by block. Blocks that are surfaces are left out.
+///
+/// Errors   invalid_argument: a block that is not there; invalid_data: not such an index, blocks in more than 64 others,
+///          no block with a grid, a file of another kind; as load_files()
+Result<Loaded> load_blocks(const std::string& path, std::string_view type, const ReadOptions& options, Depth depth,
+                           const Progress& progress);
+
+/// A PVD: an index of files of these formats by time; those of one time are pieces of one grid.
+Result<Loaded> load_collection(const std::string& path, const ReadOptions& options, Depth depth,
+                               const Progress& progress);
+
+using NamesByTime = std::map<double, std::vector<std::string>>;
+
+/// The same of any index by time, whose files are of these formats or legacy VTK.
+Result<Loaded> load_times(const std::string& path, const NamesByTime& names, const ReadOptions& options, Depth depth,
+                          const Progress& progress);
+
+/// A file series of ParaView (.vtm.series, .vtu.series and so on): JSON that names the files.
+GridReader series_reader();
+
+} // namespace isotet::io

@@ -1,0 +1,102 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "base/errors.hpp"
+#include "io/vtk_xml/cells_reader.hpp"
+#include "io/vtk_xml/load.hpp"
+
+namespace isotet::io::vtk_xml {
+
+namespace {
+
+/// Tuples of each piece, by an attribute that counts them.
+Result<Layout> layout_by(const Document& document, const char* attribute) {
+    Layout layout;
+    for (const auto& element : pieces_of(document)) {
+        const auto count = count_of(element, attribute);
+        if (!count) return count.error();
+        if (*count > document.source.size() * 0x4000ULL - layout.total) // no compressor makes that of the file
+            return invalid_data(
+                fmt::format("{} points or cells are announced in a file of {} bytes", *count, document.source.size()));
+        layout.tuples.push_back(*count);
+        layout.total += *count;
+    }
+    return layout;
+}
+
+/// Where the tuples of a piece are among those of all.
+struct Range {
+    std::uint64_t first = 0, count = 0;
+};
+
+Range range_of(const Layout& layout, std::size_t piece) {
+    Range range{0, layout.tuples[piece]};
+    for (std::size_t i = 0; i < piece; ++i) range.first += layout.tuples[i];
+    return range;
+}
+
+Array part_of(const Array& values, const Range& range) {
+    if (values.empty()) return values;
+    const std::size_t bytes = values.components() * size_of(values.type());
+    return {values.type(), static_cast<const std::byte*>(values.data()) + range.first * bytes,
+            static_cast<std::size_t>(range.count), values.components(), values.owner().lock()};
+}
+
+/// A piece of arrays that were loaded for all pieces at once. Nothing is copied but ghost marks.
+Piece part_of(const Piece& whole, const Layout& points, const Layout& cells, std::size_t number) {
+    const Range of_points = range_of(points, number), of_cells = range_of(cells, number);
+    Piece piece;
+    piece.name = fmt::format("piece {}", number + 1);
+    piece.grid.points = part_of(whole.grid.points, of_points);
+    for (const Field& field : whole.grid.point_fields)
+        piece.grid.point_fields.push_back({field.name, part_of(field.values, of_points)});
+    for (const Field& field : whole.grid.cell_fields)
+        piece.grid.cell_fields.push_back({field.name, part_of(field.values, of_cells)});
+    piece.point_ids = part_of(whole.point_ids, of_points);
+    piece.cell_ids = part_of(whole.cell_ids, of_cells);
+    if (!whole.left_out.empty()) {
+        const auto first = whole.left_out.begin() + static_cast<std::ptrdiff_t>(of_cells.first);
+        piece.left_out.assign(first, first + static_cast<std::ptrdiff_t>(of_cells.count));
+    }
+    return piece;
+}
+
+} // namespace
+
+Result<Layouts> layouts_of_unstructured(const Document& document) {
+    if (!document.primary().child("Piece")) return invalid_data(fmt::format("the {} has no Piece", document.type));
+    auto points = layout_by(document, "NumberOfPoints"), cells = layout_by(document, "NumberOfCells");
+    if (!points) return points.error();
+    if (!cells) return cells.error();
+    return Layouts{std::move(*points), std::move(*cells)};
+}
+
+Result<std::vector<Piece>> load_unstructured(Document& document, const Layouts& layouts, const Wanted& wanted,
+                                             const Progress& progress, Loaded& loaded) {
+    const auto elements = pieces_of(document);
+    const Layout &points = layouts.points, &cells = layouts.cells;
+    const bool alone = elements.size() == 1;
+    Piece whole;
+    auto places = load_points(document, elements, points, wanted.step, progress);
+    if (!places) return places.error();
+    whole.grid.points = std::move(*places);
+    const Wanted of_pieces{wanted.options, wanted.step, wanted.ids || !alone};
+    if (auto read = load_fields(document, layouts, of_pieces, progress, loaded, whole); !read) return read.error();
+    std::vector<Piece> pieces;
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+        const CellsElement element{elements[i], cells.tuples[i], wanted.step};
+        const ActiveWish active{whole.grid, wanted.options};
+        const bool active_may_do = wanted.options.active_cells && alone && !wanted.ids && whole.left_out.empty();
+        auto part = read_cells(document, element, active_may_do ? &active : nullptr, progress);
+        if (!part) return part.error();
+        pieces.push_back(alone ? whole : part_of(whole, points, cells, i));
+        if (part->only_active) pieces[i].cells_in_file = cells.total;
+        pieces[i].grid.cells = std::move(part->cells);
+    }
+    return pieces;
+}
+
+} // namespace isotet::io::vtk_xml

@@ -1,0 +1,141 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/boundary.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <mutex>
+#include <tuple>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <tbb/parallel_sort.h>
+
+#include "base/carry_out.hpp"
+#include "base/parallel.hpp"
+#include "grid/boundary_faces.hpp"
+#include "packed/packed.hpp"
+#include "packed/stored_cells.hpp"
+
+namespace isotet {
+
+namespace core {
+namespace {
+
+/// The corners of a tet's faces, each counter-clockwise seen from outside.
+constexpr std::array<std::array<std::uint8_t, 3>, 4> tet_faces{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+
+/// A face by its three points, ascending, and by how often it is used as it stands (positive) or mirrored.
+template <class Point>
+struct Face {
+    std::array<Point, 3> points;
+    std::int32_t uses;
+
+    static Face make(std::array<Point, 3> p) {
+        std::int32_t sign = 1;
+        const auto order = [&](std::size_t i, std::size_t j) {
+            if (p[i] <= p[j]) return;
+            std::swap(p[i], p[j]);
+            sign = -sign;
+        };
+        order(0, 1);
+        order(1, 2);
+        order(0, 1);
+        return {p, sign};
+    }
+    friend bool operator<(const Face& a, const Face& b) {
+        return std::tie(a.points, a.uses) < std::tie(b.points, b.uses);
+    }
+};
+
+/// Of sorted faces those that do not cancel, each once.
+template <class Point>
+void cancel(std::vector<Face<Point>>& faces) {
+    std::size_t kept = 0;
+    for (std::size_t begin = 0, end = 0; begin < faces.size(); begin = end) {
+        std::int32_t uses = 0;
+        for (end = begin; end < faces.size() && faces[end].points == faces[begin].points; ++end)
+            uses += faces[end].uses;
+        if (uses != 0) faces[kept++] = {faces[begin].points, uses};
+    }
+    faces.resize(kept);
+}
+
+using LocalFace = Face<std::uint8_t>;
+using PackedFace = Face<std::uint64_t>;
+
+/// The faces of a cluster that its own tets do not cancel.
+void add_faces(const Packed& packed, std::size_t cluster, std::vector<LocalFace>& local, std::vector<PackedFace>& out) {
+    local.clear();
+    for_tets(packed, cluster, [&](const std::array<std::uint8_t, 4>& corners, std::size_t) {
+        for (const auto& f : tet_faces) local.push_back(LocalFace::make({corners[f[0]], corners[f[1]], corners[f[2]]}));
+    });
+    std::sort(local.begin(), local.end());
+    cancel(local);
+    std::array<std::uint64_t, max_cluster_points> points{};
+    local_points(packed, cluster, points.data());
+    for (const LocalFace& face : local) {
+        PackedFace global = PackedFace::make({points[face.points[0]], points[face.points[1]], points[face.points[2]]});
+        global.uses *= face.uses;
+        out.push_back(global);
+    }
+}
+
+Result<std::vector<PackedFace>> packed_boundary(const Packed& packed, const Progress& progress) {
+    std::vector<PackedFace> faces;
+    std::mutex mutex;
+    parallel_ranges(packed.clusters(), 256, [&](std::size_t begin, std::size_t end) {
+        if (progress.cancelled()) return;
+        std::vector<LocalFace> local;
+        std::vector<PackedFace> found;
+        for (std::size_t cluster = begin; cluster < end; ++cluster) add_faces(packed, cluster, local, found);
+        const std::lock_guard lock(mutex);
+        faces.insert(faces.end(), found.begin(), found.end());
+    });
+    if (progress.cancelled()) return Error{ErrorCode::cancelled, "finding the boundary was cancelled"};
+    tbb::parallel_sort(faces.begin(), faces.end());
+    cancel(faces);
+    return faces;
+}
+
+bool is_mirrored(const PackedFace& face) { return face.uses < 0; }
+
+Array positions_of(const Packed& packed, const std::vector<std::uint64_t>& points) {
+    return std::visit(
+        [&]<class Real>(const Values<Real>& reals) {
+            const auto positions = [&]<class To>(To, const auto& user) {
+                std::vector<To> out(3 * points.size());
+                parallel_each(points.size(), 1 << 14, [&](std::size_t i) {
+                    for (std::size_t axis = 0; axis < 3; ++axis)
+                        out[3 * i + axis] = user(reals.positions[3 * points[i] + axis], axis);
+                });
+                return Array::own(std::move(out), 3);
+            };
+            if (packed.point_type == ScalarType::float32)
+                return positions(Real{}, [](Real x, std::size_t) { return x; });
+            return positions(double{}, [&](Real x, std::size_t axis) { return x + packed.origin[axis]; });
+        },
+        packed.reals);
+}
+
+Surface surface_of(const Packed& packed, const std::vector<PackedFace>& faces) {
+    const std::vector<std::uint64_t> points = points_of_faces(faces);
+    Surface surface;
+    surface.positions = positions_of(packed, points);
+    surface.triangles = triangles_of_faces(faces, points);
+    return surface;
+}
+
+} // namespace
+} // namespace core
+
+Result<Surface> boundary_of(const PackedGrid& packed, const Run& run) {
+    return core::carry_out("finding the boundary", run, [&](const Progress& progress) -> Result<Surface> {
+        const auto faces = core::packed_boundary(packed.data(), progress);
+        if (!faces) return faces.error();
+        return core::surface_of(packed.data(), *faces);
+    });
+}
+
+} // namespace isotet

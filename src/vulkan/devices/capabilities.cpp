@@ -1,0 +1,254 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "vulkan/devices/capabilities.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <string_view>
+
+#include <fmt/core.h>
+
+namespace isotet::vulkan {
+
+namespace {
+
+/// What kernels count on.
+constexpr std::uint32_t needed_workgroup_size = 128;
+constexpr std::uint32_t needed_shared_memory = 32768;
+constexpr std::uint32_t needed_push_bytes = 128;
+
+/// Older ones end loops early, silently.
+constexpr int oldest_lavapipe = 25;
+
+std::string version_text(std::uint32_t version) {
+    return fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version),
+                       VK_API_VERSION_PATCH(version));
+}
+
+DeviceKind kind_of(VkPhysicalDeviceType type) {
+    switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return DeviceKind::discrete;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return DeviceKind::integrated;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return DeviceKind::virtual_gpu;
+    case VK_PHYSICAL_DEVICE_TYPE_CPU: return DeviceKind::software;
+    default: return DeviceKind::other;
+    }
+}
+
+/// The 22 of "Mesa 22.3.6 (LLVM 15.0.6)"; 0 where it does not say.
+int mesa_version(std::string_view driver_info) {
+    constexpr std::string_view word = "Mesa ";
+    int version = 0;
+    if (driver_info.starts_with(word))
+        std::from_chars(driver_info.data() + word.size(), driver_info.data() + driver_info.size(), version);
+    return version;
+}
+
+bool has_extension(const InstanceFunctions& call, VkPhysicalDevice device, std::string_view name) {
+    std::uint32_t count = 0;
+    if (call.vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr) != VK_SUCCESS) return false;
+    std::vector<VkExtensionProperties> found(count);
+    if (call.vkEnumerateDeviceExtensionProperties(device, nullptr, &count, found.data()) < VK_SUCCESS) return false;
+    return std::any_of(found.begin(), found.end(), [&](const auto& one) { return one.extensionName == name; });
+}
+
+void choose_queues(Capabilities& found) {
+    constexpr VkQueueFlags works = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+    for (std::uint32_t i = 0; i < found.queues.size(); ++i) {
+        const VkQueueFlags flags = found.queues[i].flags;
+        // One queue that also draws, so that a surface need not change queues to be drawn.
+        const bool better = found.compute_family == Capabilities::none ||
+                            ((flags & works) == works && (found.queues[found.compute_family].flags & works) != works);
+        if ((flags & VK_QUEUE_COMPUTE_BIT) && better) found.compute_family = i;
+        // Copy engines; families for video can copy, too, and are left alone.
+        constexpr VkQueueFlags copies = VK_QUEUE_TRANSFER_BIT | VK_QUEUE_SPARSE_BINDING_BIT;
+        if ((flags & VK_QUEUE_TRANSFER_BIT) && !(flags & ~copies) && found.transfer_family == Capabilities::none)
+            found.transfer_family = i;
+    }
+    if (found.transfer_family == Capabilities::none) found.transfer_family = found.compute_family;
+}
+
+bool is_unified(const Capabilities& capabilities) {
+    const VkPhysicalDeviceType type = capabilities.properties.deviceType;
+    return type == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU || type == VK_PHYSICAL_DEVICE_TYPE_CPU;
+}
+
+/// Of the allowed memory types the one with the highest score; among equals the largest heap, then the first, as Vulkan
+/// orders them.
+template <class Score>
+std::uint32_t best_memory_type(const VkPhysicalDeviceMemoryProperties& memory, MemoryTypes allowed, Score&& score) {
+    std::uint32_t best = Capabilities::none;
+    std::pair<int, VkDeviceSize> best_score{-1, 0};
+    for (std::uint32_t i = 0; i < memory.memoryTypeCount; ++i) {
+        if (!(allowed >> i & 1)) continue;
+        const std::pair<int, VkDeviceSize> here{score(memory.memoryTypes[i].propertyFlags),
+                                                memory.memoryHeaps[memory.memoryTypes[i].heapIndex].size};
+        if (here.first >= 0 && here > best_score) {
+            best = i;
+            best_score = here;
+        }
+    }
+    return best;
+}
+
+constexpr VkMemoryPropertyFlags mappable = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+constexpr VkMemoryPropertyFlags unwanted = VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT | VK_MEMORY_PROPERTY_PROTECTED_BIT |
+                                           VK_MEMORY_PROPERTY_DEVICE_COHERENT_BIT_AMD |
+                                           VK_MEMORY_PROPERTY_DEVICE_UNCACHED_BIT_AMD;
+
+} // namespace
+
+std::uint32_t device_memory_type(const Capabilities& capabilities, MemoryTypes allowed) {
+    const bool unified = is_unified(capabilities);
+    return best_memory_type(capabilities.memory, allowed, [&](VkMemoryPropertyFlags flags) {
+        if (flags & unwanted) return -1;
+        const bool own = flags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, mapped = (flags & mappable) == mappable;
+        const bool cached = flags & VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
+        // A card's memory that the processor can reach is reached over the bus: a copy engine does that better.
+        return 8 * own + 4 * (mapped == unified) + 2 * (unified && cached);
+    });
+}
+
+std::uint32_t upload_memory_type(const Capabilities& capabilities, MemoryTypes allowed) {
+    return best_memory_type(capabilities.memory, allowed, [](VkMemoryPropertyFlags flags) {
+        if ((flags & unwanted) || (flags & mappable) != mappable) return -1;
+        return 2 * !(flags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT) + !(flags & VK_MEMORY_PROPERTY_HOST_CACHED_BIT);
+    });
+}
+
+std::uint32_t download_memory_type(const Capabilities& capabilities, MemoryTypes allowed) {
+    return best_memory_type(capabilities.memory, allowed, [](VkMemoryPropertyFlags flags) {
+        if ((flags & unwanted) || (flags & mappable) != mappable) return -1;
+        return 2 * !!(flags & VK_MEMORY_PROPERTY_HOST_CACHED_BIT) + !(flags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+    });
+}
+
+bool is_unified_type(const Capabilities& capabilities, std::uint32_t type) {
+    return (capabilities.memory.memoryTypes[type].propertyFlags & mappable) == mappable && is_unified(capabilities);
+}
+
+Capabilities ask(const InstanceFunctions& call, VkPhysicalDevice device) {
+    Capabilities found;
+    call.vkGetPhysicalDeviceProperties(device, &found.properties);
+    // What follows came with 1.2; without it the device is unusable, and is listed with what is known so far.
+    if (found.properties.apiVersion < VK_API_VERSION_1_2) return found;
+
+    found.properties11.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES;
+    found.properties12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES;
+    found.properties11.pNext = &found.properties12;
+    VkPhysicalDeviceProperties2 properties{};
+    properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+    properties.pNext = &found.properties11;
+    call.vkGetPhysicalDeviceProperties2(device, &properties);
+
+    found.features12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+    VkPhysicalDeviceMeshShaderFeaturesEXT mesh{};
+    mesh.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MESH_SHADER_FEATURES_EXT;
+    if (has_extension(call, device, VK_EXT_MESH_SHADER_EXTENSION_NAME)) found.features12.pNext = &mesh;
+    VkPhysicalDeviceFeatures2 features{};
+    features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+    features.pNext = &found.features12;
+    call.vkGetPhysicalDeviceFeatures2(device, &features);
+    found.features = features.features;
+    found.mesh_shaders = mesh.meshShader;
+    // The structs are copied from here on; links into the old ones would dangle.
+    found.properties11.pNext = found.properties12.pNext = found.features12.pNext = nullptr;
+
+    std::uint32_t count = 0;
+    call.vkGetPhysicalDeviceQueueFamilyProperties2(device, &count, nullptr);
+    VkQueueFamilyProperties2 empty{};
+    empty.sType = VK_STRUCTURE_TYPE_QUEUE_FAMILY_PROPERTIES_2;
+    std::vector<VkQueueFamilyProperties2> families(count, empty);
+    call.vkGetPhysicalDeviceQueueFamilyProperties2(device, &count, families.data());
+    for (const auto& family : families)
+        found.queues.push_back(
+            {family.queueFamilyProperties.queueFlags, family.queueFamilyProperties.timestampValidBits});
+    choose_queues(found);
+
+    found.memory_budget = has_extension(call, device, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
+    refresh_free_memory(found, call, device);
+    return found;
+}
+
+void refresh_free_memory(Capabilities& capabilities, const InstanceFunctions& call, VkPhysicalDevice device) {
+    VkPhysicalDeviceMemoryBudgetPropertiesEXT budget{};
+    budget.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_BUDGET_PROPERTIES_EXT;
+    VkPhysicalDeviceMemoryProperties2 memory{};
+    memory.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_PROPERTIES_2;
+    if (capabilities.memory_budget) memory.pNext = &budget;
+    call.vkGetPhysicalDeviceMemoryProperties2(device, &memory);
+    capabilities.memory = memory.memoryProperties;
+    for (std::uint32_t heap = 0; heap < capabilities.memory.memoryHeapCount; ++heap) {
+        const VkDeviceSize most =
+            capabilities.memory_budget ? budget.heapBudget[heap] : capabilities.memory.memoryHeaps[heap].size;
+        capabilities.heap_free[heap] = most - std::min(most, budget.heapUsage[heap]);
+    }
+}
+
+std::string why_unusable(const Capabilities& capabilities) {
+    const VkPhysicalDeviceProperties& properties = capabilities.properties;
+    if (properties.apiVersion < VK_API_VERSION_1_2)
+        return fmt::format("it has Vulkan {}, but 1.2 is needed", version_text(properties.apiVersion));
+    if (capabilities.properties12.driverID == VK_DRIVER_ID_MESA_LLVMPIPE &&
+        mesa_version(capabilities.properties12.driverInfo) < oldest_lavapipe) {
+        return fmt::format("it is the software device of {}, which ends long loops early; Mesa {} or later is needed",
+                           capabilities.properties12.driverInfo, oldest_lavapipe);
+    }
+    if (capabilities.compute_family == Capabilities::none) return "it cannot compute: no queue takes compute work";
+    const auto& features = capabilities.features12;
+    if (!features.bufferDeviceAddress) return "it lacks the feature bufferDeviceAddress";
+    if (!features.scalarBlockLayout) return "it lacks the feature scalarBlockLayout";
+    const VkPhysicalDeviceLimits& limits = properties.limits;
+    const auto short_of = [](const char* what, std::uint32_t there, std::uint32_t needed) {
+        return fmt::format("{} is {}, but {} is needed", what, there, needed);
+    };
+    if (const auto size = std::min(limits.maxComputeWorkGroupInvocations, limits.maxComputeWorkGroupSize[0]);
+        size < needed_workgroup_size)
+        return short_of("its largest workgroup", size, needed_workgroup_size);
+    if (limits.maxComputeSharedMemorySize < needed_shared_memory)
+        return short_of("its shared memory in bytes", limits.maxComputeSharedMemorySize, needed_shared_memory);
+    if (limits.maxPushConstantsSize < needed_push_bytes)
+        return short_of("its room for push constants in bytes", limits.maxPushConstantsSize, needed_push_bytes);
+    for (const auto type :
+         {device_memory_type(capabilities), upload_memory_type(capabilities), download_memory_type(capabilities)})
+        if (type == Capabilities::none) return "it has no memory that the processor can reach";
+    return {};
+}
+
+std::string why_unable_to_draw(const Capabilities& capabilities) {
+    if (!(capabilities.queues[capabilities.compute_family].flags & VK_QUEUE_GRAPHICS_BIT))
+        return "no queue takes both compute and graphics work";
+    if (!capabilities.features.fragmentStoresAndAtomics) return "it lacks the feature fragmentStoresAndAtomics";
+    return {};
+}
+
+DeviceInfo describe(const Capabilities& capabilities, std::size_t index) {
+    const VkPhysicalDeviceProperties& properties = capabilities.properties;
+    DeviceInfo info;
+    info.index = index;
+    info.name = properties.deviceName;
+    info.kind = kind_of(properties.deviceType);
+    info.api = version_text(properties.apiVersion);
+    info.driver = fmt::format("{} {}", capabilities.properties12.driverName, capabilities.properties12.driverInfo);
+    if (properties.apiVersion < VK_API_VERSION_1_2)
+        info.driver = fmt::format("version {:#x}", properties.driverVersion);
+    info.unusable = why_unusable(capabilities);
+    if (const std::uint32_t type = device_memory_type(capabilities); type != Capabilities::none) {
+        const std::uint32_t heap = capabilities.memory.memoryTypes[type].heapIndex;
+        info.memory = capabilities.memory.memoryHeaps[heap].size;
+        info.memory_free = capabilities.heap_free[heap];
+        info.unified_memory = is_unified_type(capabilities, type);
+    }
+    info.memory_free_known = capabilities.memory_budget;
+    info.transfer_queue = capabilities.transfer_family != capabilities.compute_family;
+    info.timestamps = capabilities.compute_family != Capabilities::none &&
+                      capabilities.queues[capabilities.compute_family].timestamp_bits > 0;
+    info.allocation_limit = capabilities.properties11.maxMemoryAllocationSize;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        info.workgroups[axis] = properties.limits.maxComputeWorkGroupCount[axis];
+    info.workgroup_size = properties.limits.maxComputeWorkGroupInvocations;
+    info.shared_memory = properties.limits.maxComputeSharedMemorySize;
+    info.subgroup_size = capabilities.properties11.subgroupSize;
+    return info;
+}
+
+} // namespace isotet::vulkan

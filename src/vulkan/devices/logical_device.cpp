@@ -1,0 +1,158 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "vulkan/devices/logical_device.hpp"
+
+#include <array>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "vulkan/devices/failure.hpp"
+
+namespace isotet::vulkan {
+
+Result<std::unique_ptr<LogicalDevice>> LogicalDevice::open(const Instance& instance, VkPhysicalDevice physical,
+                                                           const Capabilities& capabilities,
+                                                           const std::function<void(DeviceFunctions&)>& alter) {
+    std::unique_ptr<LogicalDevice> device(new LogicalDevice(instance));
+    device->physical_ = physical;
+    device->capabilities_ = capabilities;
+    device->device_name_ = capabilities.properties.deviceName;
+    device->compute_.family = capabilities.compute_family;
+    device->transfer_.family = capabilities.transfer_family;
+
+    const float priority = 1;
+    std::array<VkDeviceQueueCreateInfo, 2> queues{};
+    for (VkDeviceQueueCreateInfo& queue : queues) {
+        queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
+        queue.queueCount = 1;
+        queue.pQueuePriorities = &priority;
+    }
+    queues[0].queueFamilyIndex = capabilities.compute_family;
+    queues[1].queueFamilyIndex = capabilities.transfer_family;
+
+    VkPhysicalDeviceVulkan12Features features12{};
+    features12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+    features12.bufferDeviceAddress = VK_TRUE;
+    features12.scalarBlockLayout = VK_TRUE;
+
+    VkPhysicalDeviceMeshShaderFeaturesEXT mesh{};
+    mesh.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MESH_SHADER_FEATURES_EXT;
+    mesh.meshShader = VK_TRUE;
+    if (capabilities.mesh_shaders) features12.pNext = &mesh;
+
+    VkPhysicalDeviceFeatures features{}; // of these none is needed, but for drawing
+    features.fragmentStoresAndAtomics = capabilities.features.fragmentStoresAndAtomics;
+
+    std::vector<const char*> extensions;
+    if (capabilities.memory_budget) extensions.push_back(VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
+
+    if (capabilities.mesh_shaders) extensions.push_back(VK_EXT_MESH_SHADER_EXTENSION_NAME);
+
+    VkDeviceCreateInfo create{};
+    create.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
+    create.pNext = &features12;
+    create.queueCreateInfoCount = device->has_transfer_queue() ? 2 : 1;
+    create.pQueueCreateInfos = queues.data();
+    create.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
+    create.ppEnabledExtensionNames = extensions.data();
+    create.pEnabledFeatures = &features;
+    const InstanceFunctions& ask = instance.call();
+    if (const VkResult made = ask.vkCreateDevice(physical, &create, nullptr, &device->handle_); made != VK_SUCCESS) {
+        device->handle_ = VK_NULL_HANDLE;
+        return failure(fmt::format("opening the device {}", device->device_name_), made);
+    }
+
+    DeviceFunctions& call = device->call_;
+#define ISOTET_LOAD(name) call.name = reinterpret_cast<PFN_##name>(ask.vkGetDeviceProcAddr(device->handle_, #name));
+    ISOTET_VULKAN_DEVICE_FUNCTIONS(ISOTET_LOAD)
+    if (capabilities.mesh_shaders) {
+        ISOTET_VULKAN_MESH_FUNCTIONS(ISOTET_LOAD)
+    }
+    if (ask.vkCreateDebugUtilsMessengerEXT) {
+        ISOTET_VULKAN_NAMING_FUNCTIONS(ISOTET_LOAD)
+    }
+#undef ISOTET_LOAD
+    const char* missing = nullptr;
+#define ISOTET_CHECK(name)                                                                                             \
+    if (!call.name) missing = #name;
+    ISOTET_VULKAN_DEVICE_FUNCTIONS(ISOTET_CHECK)
+    if (capabilities.mesh_shaders) {
+        ISOTET_VULKAN_MESH_FUNCTIONS(ISOTET_CHECK)
+    }
+#undef ISOTET_CHECK
+    if (missing)
+        return Error{ErrorCode::no_device, fmt::format("the driver of {} lacks {}", device->device_name_, missing)};
+
+    call.vkGetDeviceQueue(device->handle_, device->compute_.family, 0, &device->compute_.handle);
+    call.vkGetDeviceQueue(device->handle_, device->transfer_.family, 0, &device->transfer_.handle);
+    device->name(VK_OBJECT_TYPE_QUEUE, device->compute_.handle, "compute");
+    if (device->has_transfer_queue()) device->name(VK_OBJECT_TYPE_QUEUE, device->transfer_.handle, "transfer");
+    if (alter) alter(call);
+    return device;
+}
+
+LogicalDevice::~LogicalDevice() {
+    if (handle_ && call_.vkDestroyDevice && !hung()) call_.vkDestroyDevice(handle_, nullptr);
+}
+
+std::uint64_t LogicalDevice::free_memory(std::uint32_t heap) const {
+    Capabilities now = capabilities_;
+    refresh_free_memory(now, instance_.call(), physical_);
+    return now.heap_free[heap];
+}
+
+void LogicalDevice::name_object(VkObjectType type, std::uint64_t handle, std::string_view name) const {
+    if (!call_.vkSetDebugUtilsObjectNameEXT) return;
+    const std::string text(name);
+    VkDebugUtilsObjectNameInfoEXT info{};
+    info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT;
+    info.objectType = type;
+    info.objectHandle = handle;
+    info.pObjectName = text.c_str();
+    call_.vkSetDebugUtilsObjectNameEXT(handle_, &info); // a name that is not taken does no harm
+}
+
+Error LogicalDevice::lose(std::string why) {
+    if (lost_.empty()) lost_ = std::move(why);
+    return {ErrorCode::device_failed, lost_};
+}
+
+Result<void> LogicalDevice::submit(const Queue& queue, VkCommandBuffer commands, VkFence done, std::string_view what) {
+    if (Result<void> lives = alive(); !lives) return lives;
+    VkSubmitInfo submit{};
+    submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+    submit.commandBufferCount = 1;
+    submit.pCommandBuffers = &commands;
+    const VkResult submitted = call_.vkQueueSubmit(queue.handle, 1, &submit, done);
+    if (submitted == VK_SUCCESS) return {};
+    if (submitted == VK_ERROR_DEVICE_LOST)
+        return lose(fmt::format("the device {} was lost before {}", device_name_, what));
+    return failure(what, submitted);
+}
+
+Result<void> LogicalDevice::wait(VkFence done, std::chrono::milliseconds limit, std::string_view what) {
+    const auto nanoseconds = static_cast<std::uint64_t>(std::chrono::nanoseconds(limit).count());
+    const VkResult waited = call_.vkWaitForFences(handle_, 1, &done, VK_TRUE, nanoseconds);
+    if (waited == VK_SUCCESS) return {};
+    unanswered_ = done; // the work may still be running
+    if (waited == VK_TIMEOUT) {
+        return lose(fmt::format("the device {} did not answer within {} s while {}", device_name_,
+                                static_cast<double>(limit.count()) / 1000, what));
+    }
+    if (waited == VK_ERROR_DEVICE_LOST) return lose(fmt::format("the device {} was lost while {}", device_name_, what));
+    return lose(failure(fmt::format("waiting for the device {} while {}", device_name_, what), waited).message);
+}
+
+Result<void> LogicalDevice::alive() const {
+    if (lost_.empty()) return {};
+    return Error{ErrorCode::device_failed, lost_};
+}
+
+bool LogicalDevice::hung() const {
+    if (!unanswered_ || left_behind_) return left_behind_;
+    left_behind_ = call_.vkGetFenceStatus(handle_, unanswered_) == VK_NOT_READY;
+    if (!left_behind_) unanswered_ = VK_NULL_HANDLE; // its owner destroys it now: it must not be asked again
+    return left_behind_;
+}
+
+} // namespace isotet::vulkan
