@@ -3,7 +3,6 @@
 #include "io/gmsh/read_gmsh.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <set>
@@ -193,16 +192,11 @@ std::vector<const DataSection*> sections_at(const Contents& contents, const Fiel
 /// Values at nodes, of each element its own: one of them where they agree, else means, with a note.
 Result<Array> corner_values(const std::vector<const DataSection*>& sections, const FieldInfo& info, const Mesh& mesh,
                             Pace& pace, ReadResult& result) {
-    constexpr double rounding = 1e-10; ///< of the largest value
-    CornerMeans means(mesh.nodes.size(), info.components);
+    NodeMeans means(mesh.nodes.size(), info.components);
     for (const DataSection* section : sections)
-        if (auto read = means.read(*section, mesh, pace); !read) return read.error();
-    const double largest = means.largest_difference();
-    if (largest > rounding * std::max(std::abs(means.lowest()), std::abs(means.highest())))
-        result.notes.push_back(
-            fmt::format("point field {} has a value for each node of each element ($ElementNodeData): at each node the "
-                        "mean was taken of values that differ by up to {:.6g}, of a range from {:.6g} to {:.6g}",
-                        in_quotes(info.name), largest, means.lowest(), means.highest()));
+        if (auto read = read_corner_values(*section, mesh, pace, means); !read) return read.error();
+    if (auto note = means.note(info.name, "each element ($ElementNodeData)"); !note.empty())
+        result.notes.push_back(std::move(note));
     return Array::own(means.means(), info.components);
 }
 

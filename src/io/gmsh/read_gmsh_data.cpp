@@ -3,7 +3,6 @@
 // versions.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <fmt/core.h>
 
@@ -13,8 +12,6 @@
 namespace isotet::io::gmsh {
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// A string tag stands on a line of its own, in quotation marks or without.
 std::string_view unquoted(std::string_view line) {
@@ -139,16 +136,13 @@ Result<void> read_values(const DataSection& data, const NumberMap& numbers, Pace
     return read_from(TextSource(section, data.values), data, numbers, pace, values, replaced);
 }
 
-CornerMeans::CornerMeans(std::uint64_t points, std::size_t components)
-    : components_(components),
-      sums_(points * components),
-      lowest_(points * components, std::numeric_limits<double>::infinity()),
-      highest_(points * components, -std::numeric_limits<double>::infinity()),
-      counts_(points) {}
+namespace {
 
 template <class Source>
-Result<void> CornerMeans::read_from(Source source, const DataSection& data, const Mesh& mesh, Pace& pace) {
+Result<void> read_corners_from(Source source, const DataSection& data, const Mesh& mesh, Pace& pace,
+                               NodeMeans& means) {
     if (auto fits = check_count(source, data, "element", 1); !fits) return fits;
+    const auto components = static_cast<std::size_t>(data.components);
     for (std::int32_t i = 0; i < data.count; ++i) {
         std::int64_t number = 0;
         std::int32_t corners = 0;
@@ -162,13 +156,11 @@ Result<void> CornerMeans::read_from(Source source, const DataSection& data, cons
                                                      in_quotes(data.name), corners, number, nodes));
         for (std::uint64_t k = begin; k < begin + static_cast<std::uint64_t>(corners); ++k) {
             const std::uint64_t point = mesh.element_points[k];
-            ++counts_[point];
-            for (std::size_t c = point * components_; c < (point + 1) * components_; ++c) {
+            means.count(point);
+            for (std::size_t c = 0; c < components; ++c) {
                 double value = 0;
                 if (!source.real(value)) return broken_at(data, "element", i, source.where());
-                sums_[c] += value;
-                lowest_[c] = std::min(lowest_[c], value);
-                highest_[c] = std::max(highest_[c], value);
+                means.add(point, c, value);
             }
         }
         if (!pace.goes_on(source.position())) return Pace::cancelled();
@@ -176,33 +168,12 @@ Result<void> CornerMeans::read_from(Source source, const DataSection& data, cons
     return finish_section(*data.section, source);
 }
 
-Result<void> CornerMeans::read(const DataSection& data, const Mesh& mesh, Pace& pace) {
+} // namespace
+
+Result<void> read_corner_values(const DataSection& data, const Mesh& mesh, Pace& pace, NodeMeans& means) {
     const Section& section = *data.section;
-    if (section.form.binary) return read_from(ByteSource(section, data.values, 4), data, mesh, pace);
-    return read_from(TextSource(section, data.values), data, mesh, pace);
-}
-
-std::vector<double> CornerMeans::means() const {
-    std::vector<double> means(sums_.size(), nan);
-    for (std::size_t point = 0; point < counts_.size(); ++point)
-        for (std::size_t c = point * components_; counts_[point] > 0 && c < (point + 1) * components_; ++c)
-            means[c] = lowest_[c] == highest_[c] && !std::isnan(sums_[c])
-                           ? lowest_[c]
-                           : sums_[c] / static_cast<double>(counts_[point]);
-    return means;
-}
-
-double CornerMeans::largest_difference() const {
-    double largest = 0;
-    for (std::size_t c = 0; c < sums_.size(); ++c)
-        if (highest_[c] > lowest_[c]) largest = std::max(largest, highest_[c] - lowest_[c]);
-    return largest;
-}
-
-double CornerMeans::lowest() const { return lowest_.empty() ? nan : *std::min_element(lowest_.begin(), lowest_.end()); }
-
-double CornerMeans::highest() const {
-    return highest_.empty() ? nan : *std::max_element(highest_.begin(), highest_.end());
+    if (section.form.binary) return read_corners_from(ByteSource(section, data.values, 4), data, mesh, pace, means);
+    return read_corners_from(TextSource(section, data.values), data, mesh, pace, means);
 }
 
 } // namespace isotet::io::gmsh

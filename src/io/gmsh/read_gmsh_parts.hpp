@@ -17,6 +17,7 @@
 #include "io/files/pace.hpp"
 #include "io/files/text_scanner.hpp"
 #include "io/pieces/cell_list.hpp"
+#include "io/pieces/node_means.hpp"
 #include "io/pieces/number_map.hpp"
 
 namespace isotet::io::gmsh {
@@ -160,30 +161,8 @@ std::vector<DataSection> data_sections(const File& file, FileInfo& info);
 Result<void> read_values(const DataSection& data, const NumberMap& numbers, Pace& pace, std::vector<double>& values,
                          std::uint64_t& replaced);
 
-/// Means of what elements give at their nodes.
-class CornerMeans {
-public:
-    CornerMeans(std::uint64_t points, std::size_t components);
-
-    /// Of a $ElementNodeData section.
-    Result<void> read(const DataSection& data, const Mesh& mesh, Pace& pace);
-
-    /// NaN where no element gave a value.
-    std::vector<double> means() const;
-
-    /// The largest difference at one node, and the range of all values.
-    double largest_difference() const;
-    double lowest() const;
-    double highest() const;
-
-private:
-    template <class Source>
-    Result<void> read_from(Source source, const DataSection& data, const Mesh& mesh, Pace& pace);
-
-    std::size_t components_;
-    std::vector<double> sums_, lowest_, highest_;
-    std::vector<std::uint32_t> counts_;
-};
+/// Adds what a $ElementNodeData section has.
+Result<void> read_corner_values(const DataSection& data, const Mesh& mesh, Pace& pace, NodeMeans& means);
 
 /// Numbers of an ascii section.
 class TextSource {
