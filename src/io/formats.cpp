@@ -68,7 +68,7 @@ struct NeedsReader {
 constexpr NeedsReader need_reader[] = {
     {"an XDMF file", "<Xdmf", ".xdmf .xmf"},
     {"a NetCDF file (Exodus II)", "CDF", ".e .ex2 .exo .g"},
-    {"an HDF5 file (VTKHDF, Exodus II, CGNS)", "\x89HDF", ".hdf .vtkhdf .cgns .h5"},
+    {"an HDF5 file (VTKHDF, Exodus II, CGNS, MED)", "\x89HDF", ".hdf .vtkhdf .cgns .med .rmed .mmed .h5"},
 };
 
 /// What a file is that a build with VTK would read; empty if it is none.

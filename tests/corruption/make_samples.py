@@ -412,6 +412,69 @@ def write_medit(folder):
     })
 
 
+def write_med(path):
+    """As code_aster writes results: tets, hexahedra and polyhedra; two steps, a profile, integers, values at integration
+    points and at the nodes of each cell; groups."""
+    points, cells = box()
+    cubes = [[cell[at] for at in (0, 3, 2, 1, 4, 7, 6, 5)] for cell in cells[:13]]
+    six = [(0, 1, 2, 6), (0, 2, 3, 6), (0, 3, 7, 6), (0, 7, 4, 6), (0, 4, 5, 6), (0, 5, 1, 6)]
+    tets = [[cell[at] for at in (a, c, b, d)] for cell in cells[13:20] for a, b, c, d in six]
+    faces = [[cell[at] for at in face] for cell in cells[20:]
+             for face in ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))]
+    column = lambda rows: numpy.array(rows).flatten(order='F')
+    numbers = lambda rows: column(rows).astype('i4')
+    with h5py.File(path, 'w', libver=('v108', 'v110')) as file:
+        def group(name, **attributes):
+            made = file.create_group(name)
+            for key, value in attributes.items():
+                made.attrs[key] = numpy.bytes_(value) if isinstance(value, str) else value
+            return made
+
+        def step(name, number, time):
+            return group(f'{name}/{number:020}{number:020}', NDT=number, NOR=number, PDT=float(time), RDT=-1, ROR=-1).name
+
+        def values(place, content, points=1, profile='MED_NO_PROFILE_INTERNAL'):
+            group(place, PFL=profile, GAU='')
+            group(f'{place}/{profile}', NGA=points, NBR=1, GAU='')['CO'] = content
+
+        group('INFOS_GENERALES', MAJ=4, MIN=1, REL=0)
+        group('ENS_MAA/box', DIM=3, ESP=3, TYP=0, REP=0, NXT=-1, NXI=-1)
+        mesh = step('ENS_MAA/box', -1, 0)
+        group(f'{mesh}/NOE')['COO'] = column(points).astype('f8')
+        for kind, rows in (('HE8', cubes), ('TE4', tets), ('TR3', [tet[:3] for tet in tets[:4]])):
+            part = group(f'{mesh}/MAI/{kind}')
+            part['NOD'] = numbers(rows)
+            part['NOD'].attrs['NBR'] = len(rows)
+            part['FAM'] = numpy.array([-1 - i % 3 for i in range(len(rows))], 'i4')
+        part = group(f'{mesh}/MAI/POE')
+        part['NOD'] = numpy.array(faces, 'i4').flatten()
+        part['INN'] = numpy.arange(1, 4 * len(faces) + 2, 4, 'i4')
+        part['IFN'] = numpy.arange(1, len(faces) + 2, 6, 'i4')
+        for number, names in ((-1, ['steel']), (-2, ['steel', 'inside'])):
+            family = group(f'FAS/box/ELEME/FAM_{number}', NUM=number)
+            letters = group(f'{family.name}/GRO', NBR=len(names)).create_dataset(
+                'NOM', (len(names),), numpy.dtype(('i1', (80,))))
+            letters[...] = [list(name.encode().ljust(80, b'\0')) for name in names]
+        group('PROFILS/half', NBR=20)['PFL'] = numpy.arange(1, 41, 2, 'i4')
+        for name, components, kind in (('DEPL', 3, 6), ('TEMP', 1, 6), ('MARK', 1, 24), ('SIEF', 6, 6), ('ELNO', 1, 6)):
+            group(f'CHA/{name}', MAI='box', NCO=components, TYP=kind, NOM=''.join(
+                ('SI' + end).ljust(16) for end in 'XX YY ZZ XY XZ YZ'.split()) if name == 'SIEF' else '')
+            for number in (1, 2):
+                at = step(f'CHA/{name}', number, number / 4)
+                made = lambda count: (numpy.arange(count * components) * 7 % 11 / 10 + number).astype('f8')
+                if name == 'DEPL':
+                    values(f'{at}/NOE', made(len(points)))
+                elif name == 'TEMP':
+                    values(f'{at}/NOE', made(20), profile='half')
+                elif name == 'ELNO':
+                    values(f'{at}/NOE.TE4', made(4 * len(tets)), 4)
+                elif name == 'SIEF':
+                    values(f'{at}/MAI.HE8', made(8 * len(cubes)), 8)
+                else:
+                    for kind, rows in (('HE8', cubes), ('TE4', tets), ('POE', faces[::6])):
+                        values(f'{at}/MAI.{kind}', numpy.arange(len(rows), dtype='i4'))
+
+
 def main():
     folder = sys.argv[1]
     os.makedirs(folder, exist_ok=True)
@@ -439,6 +502,8 @@ def main():
     write_gmsh(at('meshes/partitioned_v40.msh'), False)
     write_gmsh(at('meshes/partitioned_v41.msh'), True)
     write_medit(at('meshes'))
+    os.makedirs(at('med'), exist_ok=True)
+    write_med(at('med/results.med'))
 
 
 if __name__ == '__main__':

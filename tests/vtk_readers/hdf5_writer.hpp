@@ -100,6 +100,23 @@ public:
         H5Tclose(type);
     }
 
+    /// Texts of 80 letters, as MED has the names of groups.
+    void long_texts(const std::string& name, const std::vector<std::string>& texts) {
+        const hsize_t letters = 80, count = texts.size();
+        std::string all;
+        for (std::string text : texts) {
+            text.resize(letters, '\0');
+            all += text;
+        }
+        const hid_t type = H5Tarray_create2(H5T_NATIVE_INT8, 1, &letters);
+        const hid_t space = H5Screate_simple(1, &count, nullptr);
+        const hid_t set = H5Dcreate2(file_, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+        H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data());
+        H5Dclose(set);
+        H5Sclose(space);
+        H5Tclose(type);
+    }
+
 private:
     void empty_data(const std::string& name, hsize_t count, hid_t list) {
         const hid_t space = H5Screate_simple(1, &count, nullptr);

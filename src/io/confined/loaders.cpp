@@ -9,7 +9,7 @@ Load loader_of(std::string_view format) {
         Load load;
     };
     static constexpr Named loaders[] = {
-        {"exodus", load_exodus}, {"cgns", load_cgns},       {"vtkhdf", load_vtkhdf},
+        {"exodus", load_exodus}, {"cgns", load_cgns}, {"vtkhdf", load_vtkhdf}, {"med", load_med},
         {"xdmf", load_xdmf},     {"ensight", load_ensight}, {"ucd", load_ucd},
     };
     for (const Named& named : loaders) {

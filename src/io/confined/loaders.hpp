@@ -14,6 +14,7 @@ Load loader_of(std::string_view format);
 
 Result<Loaded> load_exodus(const std::string& path, const ReadOptions& options, Depth depth);
 Result<Loaded> load_cgns(const std::string& path, const ReadOptions& options, Depth depth);
+Result<Loaded> load_med(const std::string& path, const ReadOptions& options, Depth depth);
 Result<Loaded> load_vtkhdf(const std::string& path, const ReadOptions& options, Depth depth);
 Result<Loaded> load_ensight(const std::string& path, const ReadOptions& options, Depth depth);
 Result<Loaded> load_ucd(const std::string& path, const ReadOptions& options, Depth depth);

@@ -54,6 +54,11 @@ int recognizes_cgns(Head head, std::string_view extension) {
     if (!is_hdf5(head)) return 0;
     return has(head, "CGNSLibraryVersion") || has(head, "hdf5version") ? 2 : extension == ".cgns" ? 1 : 0;
 }
+int recognizes_med(Head head, std::string_view extension) {
+    const bool named = extension == ".med" || extension == ".rmed" || extension == ".mmed";
+    if (!is_hdf5(head)) return 0;
+    return has(head, "INFOS_GENERALES") || has(head, "ENS_MAA") ? 2 : named ? 1 : 0;
+}
 int recognizes_vtkhdf(Head head, std::string_view extension) {
     if (!is_hdf5(head)) return 0;
     return has(head, "VTKHDF") ? 2 : extension == ".hdf" || extension == ".vtkhdf" ? 1 : 0;
@@ -91,9 +96,10 @@ struct Named {
 };
 
 const auto& table() {
-    static const std::array<Named, 6> formats = {{
+    static const std::array<Named, 7> formats = {{
         {"exodus", recognizes_exodus, "Exodus II", {".e", ".ex2", ".exo", ".exii", ".g", ".gen"}},
         {"cgns", recognizes_cgns, "CGNS", {".cgns"}},
+        {"med", recognizes_med, "MED (Salome, code_aster)", {".med", ".rmed", ".mmed"}},
         {"vtkhdf", recognizes_vtkhdf, "VTKHDF", {".hdf", ".vtkhdf"}},
         {"xdmf", recognizes_xdmf, "XDMF 2 and 3", {".xdmf", ".xmf"}},
         {"ensight", recognizes_ensight, "EnSight Gold and 6", {".case", ".encas"}},

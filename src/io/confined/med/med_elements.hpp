@@ -1,0 +1,26 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Types of cells in MED files, by the names of their groups.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace isotet::io::vtk {
+
+struct MedElement {
+    std::string_view name;
+    std::uint32_t nodes = 0;              ///< 0: of polyhedra, each its own
+    std::uint8_t vtk_type = 0;
+    std::span<const std::uint8_t> order;  ///< for each node in VTK's order its position in MED's
+};
+
+inline constexpr std::uint8_t med_polyhedron_type = 42;
+
+/// Cells with a volume; null for all others.
+const MedElement* med_element(std::string_view name);
+
+/// Points, lines and faces, of which nothing is read.
+bool is_flat_med_element(std::string_view name);
+
+} // namespace isotet::io::vtk

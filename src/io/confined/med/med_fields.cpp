@@ -1,0 +1,298 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "io/confined/med/med_fields.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <type_traits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/parallel.hpp"
+#include "io/files/escape.hpp"
+#include "io/pieces/common_type.hpp"
+#include "io/pieces/node_means.hpp"
+
+namespace isotet::io::vtk {
+namespace {
+
+constexpr std::string_view no_profile = "MED_NO_PROFILE_INTERNAL";
+constexpr std::int64_t max_components = 4096;
+constexpr std::size_t letters_of_component = 16, entities_at_once = std::size_t{1} << 14;
+
+std::optional<ScalarType> type_of_field(std::optional<std::int64_t> number) {
+    switch (number.value_or(0)) {
+    case 4: return ScalarType::float32;
+    case 6: return ScalarType::float64;
+    case 24:
+    case 28: return ScalarType::int32;
+    case 26: return ScalarType::int64;
+    default: return std::nullopt;
+    }
+}
+
+/// The names of six components end in XX YY ZZ XY XZ YZ.
+bool is_tensor_of_med(const std::string& names) {
+    static constexpr std::array<std::string_view, 6> ends{"XX", "YY", "ZZ", "XY", "XZ", "YZ"};
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        if (names.size() < i * letters_of_component + 1) return false;
+        const std::string_view name = std::string_view(names).substr(i * letters_of_component, letters_of_component);
+        const std::string_view word = name.substr(0, name.find_last_not_of(' ') + 1);
+        if (!word.ends_with(ends[i])) return false;
+    }
+    return true;
+}
+
+const char* kind_of_values(Association association) {
+    return association == Association::point ? "point field" : "cell field";
+}
+
+} // namespace
+
+MedFields::MedFields(const MedFile& file) : file_(file) {
+    for (const std::string& name : file.groups("/CHA")) fields_.push_back(describe(name));
+    for (const MedField& field : fields_)
+        for (const MedStep& step : field.steps)
+            if (!step.always()) steps_.push_back(step);
+    std::ranges::stable_sort(steps_, {}, &MedStep::key);
+    const auto repeated = std::ranges::unique(steps_, {}, &MedStep::key);
+    steps_.erase(repeated.begin(), repeated.end());
+}
+
+MedFields::MedField MedFields::describe(const std::string& name) const {
+    const std::string group = "/CHA/" + name;
+    MedField field;
+    field.name = name;
+    field.mesh = file_.text(group, "MAI");
+    field.steps = med_steps(file_, group);
+    const auto type = type_of_field(file_.integer(group, "TYP"));
+    const auto components = file_.integer(group, "NCO").value_or(0);
+    if (!type || components < 1 || components > max_components) return field;
+    field.type = *type;
+    field.components = static_cast<std::size_t>(components);
+    field.swaps_last = components == 6 && is_tensor_of_med(file_.text(group, "NOM"));
+    for (const MedStep& step : field.steps)
+        for (const std::string& place : file_.groups(step.group)) {
+            const std::string cells = place.size() > 4 ? place.substr(4) : std::string();
+            const bool solid = med_element(cells) != nullptr;
+            if (place == "NOE") field.at_nodes = true;
+            else if (place.starts_with("MAI.") && solid) field.in_cells = true;
+            else if (place.starts_with("NOE.") && solid) field.at_cell_nodes = true;
+            else field.on_flat = true;
+        }
+    return field;
+}
+
+bool MedFields::belong_to(const std::string& mesh) const {
+    return std::ranges::find(fields_, mesh, &MedField::mesh) != fields_.end();
+}
+
+void MedFields::announce_all(FileInfo& info) const {
+    for (const MedField& field : fields_) {
+        const auto drop = [&](std::string reason) { leave_out(info, {"field", field.name, std::move(reason)}); };
+        if (field.components == 0) drop("its type or number of components is not known");
+        else if (field.at_nodes || field.at_cell_nodes)
+            announce(info, {field.name, Association::point, field.type, field.components});
+        if (field.in_cells) announce(info, {field.name, Association::cell, field.type, field.components});
+        if (field.on_flat && !field.at_nodes && !field.at_cell_nodes && !field.in_cells)
+            drop("it has values on points, lines and faces only");
+    }
+}
+
+const MedStep* MedFields::step_of(const MedField& field, std::size_t step) const {
+    const MedStep* found = nullptr;
+    for (const MedStep& own : field.steps) {
+        if (own.always()) found = &own;
+        if (step < steps_.size() && own.key() == steps_[step].key()) return &own;
+    }
+    return found;
+}
+
+MedStep MedFields::step_of_mesh(const std::string& mesh, std::size_t step) const {
+    for (const MedField& field : fields_) {
+        const MedStep* const own = field.mesh == mesh ? step_of(field, step) : nullptr;
+        if (!own) continue;
+        return {file_.integer(own->group, "RDT").value_or(-1), file_.integer(own->group, "ROR").value_or(-1), 0, {}};
+    }
+    return {};
+}
+
+Result<std::vector<std::uint64_t>> MedFields::read_profile(const std::string& name, std::uint64_t count) const {
+    const std::string data_set = "/PROFILS/" + name + "/PFL";
+    const auto shape = file_.shape(data_set);
+    if (!shape || is_floating(shape->type)) return file_.wrong(fmt::format("profile \"{}\" is not there", escaped(name)));
+    const auto numbers = file_.numbers(data_set, shape->rows);
+    if (!numbers) return numbers.error();
+    std::vector<std::uint64_t> places(numbers->size());
+    bool inside = true;
+    numbers->visit([&](auto from) {
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            places[i] = static_cast<std::uint64_t>(from[i]) - 1;
+            inside = inside && places[i] < count;
+        }
+    });
+    if (!inside) return file_.wrong(fmt::format("profile \"{}\" has numbers that are not 1 to {}", escaped(name), count));
+    return places;
+}
+
+Result<std::vector<MedFields::MedPart>> MedFields::parts_of(const MedField& field, const std::string& group,
+                                                            std::uint64_t first, std::uint64_t count) const {
+    std::vector<MedPart> parts;
+    for (const std::string& profile : file_.groups(group)) {
+        MedPart part;
+        part.first = first;
+        part.count = count;
+        const std::string inside = group + "/" + profile;
+        if (profile != no_profile) {
+            auto chosen = read_profile(profile, count);
+            if (!chosen) return chosen.error();
+            part.chosen = *std::move(chosen);
+        }
+        const std::uint64_t entities = part.chosen ? part.chosen->size() : count;
+        const auto points = file_.integer(inside, "NGA").value_or(1);
+        constexpr std::int64_t max_points = 100'000;
+        if (points < 1 || points > max_points)
+            return file_.wrong(fmt::format("\"{}\" has {} values for each of its cells", escaped(inside), points));
+        part.per_entity = static_cast<std::uint64_t>(points);
+        auto values = file_.numbers(inside + "/CO", entities * part.per_entity * field.components);
+        if (!values) return values.error();
+        part.values = *std::move(values);
+        parts.push_back(std::move(part));
+    }
+    return parts;
+}
+
+Result<std::vector<MedFields::MedPart>> MedFields::parts_in_cells(const MedField& field, const MedStep& step,
+                                                                  const MedMeshPlace& place, const char* kind) const {
+    std::vector<MedPart> all;
+    for (const MedCellRun& run : place.runs) {
+        const std::string group = fmt::format("{}/{}.{}", step.group, kind, run.element->name);
+        auto parts = parts_of(field, group, run.first, run.count);
+        if (!parts) return parts.error();
+        for (MedPart& part : *parts) {
+            part.run = &run;
+            all.push_back(std::move(part));
+        }
+    }
+    return all;
+}
+
+/// Where every entity has a value, and one, in the type of the file.
+Array MedFields::joined(const MedField& field, const std::vector<MedPart>& parts, std::uint64_t count) {
+    std::uint64_t given = 0;
+    bool means = false;
+    ScalarType type = parts.front().values.type();
+    for (const MedPart& part : parts) {
+        if (!part.chosen) given += part.count;
+        means = means || part.per_entity > 1;
+        type = common_type(type, part.values.type());
+    }
+    if (means || type != parts.front().values.type()) type = ScalarType::float64;
+    if (given != count) type = with_missing(type);
+    return Array(type, nullptr, 0, 1, nullptr).visit([&](auto none) {
+        using T = std::remove_const_t<typename decltype(none)::value_type>;
+        const std::size_t width = field.components;
+        std::vector<T> values(count * width, std::is_floating_point_v<T> ? std::numeric_limits<T>::quiet_NaN() : T{});
+        for (const MedPart& part : parts) {
+            const std::uint64_t entities = part.chosen ? part.chosen->size() : part.count;
+            part.values.visit([&](auto from) {
+                // A broken profile may name an entity twice.
+                const std::size_t grain = part.chosen ? entities + 1 : entities_at_once;
+                core::parallel_ranges(entities, grain, [&](std::size_t begin, std::size_t end) {
+                    for (std::size_t c = 0; c < width; ++c) {
+                        const std::size_t to = field.swaps_last && c > 3 ? 9 - c : c;
+                        for (std::size_t i = begin; i < end; ++i) {
+                            const std::uint64_t entity = part.first + (part.chosen ? (*part.chosen)[i] : i);
+                            const auto* const own = &from[(c * entities + i) * part.per_entity];
+                            if (part.per_entity == 1) {
+                                values[entity * width + to] = static_cast<T>(*own);
+                                continue;
+                            }
+                            double sum = 0;
+                            for (std::uint64_t g = 0; g < part.per_entity; ++g) sum += static_cast<double>(own[g]);
+                            values[entity * width + to] = static_cast<T>(sum / static_cast<double>(part.per_entity));
+                        }
+                    }
+                });
+            });
+        }
+        return Array::own(std::move(values), width);
+    });
+}
+
+Result<Array> MedFields::at_cell_nodes(const MedField& field, const std::vector<MedPart>& parts, const MedMesh& mesh,
+                                       const MedMeshPlace& place, std::vector<std::string>& notes) const {
+    NodeMeans means(place.points, field.components);
+    for (const MedPart& part : parts) {
+        const std::size_t width = part.run->element->nodes;
+        if (part.per_entity != width)
+            return file_.wrong(fmt::format("field \"{}\" has {} values in each cell of {}, which has {} nodes",
+                                           escaped(field.name), part.per_entity, part.run->element->name, width));
+        const auto nodes = mesh.nodes_of(*part.run, place.points);
+        if (!nodes) return nodes.error();
+        const std::uint64_t entities = part.chosen ? part.chosen->size() : part.count;
+        part.values.visit([&](auto from) {
+            for (std::uint64_t i = 0; i < entities; ++i)
+                for (std::size_t node = 0; node < width; ++node) {
+                    const std::uint64_t cell = part.chosen ? (*part.chosen)[i] : i;
+                    const auto point = static_cast<std::uint64_t>((*nodes)[cell * width + node]);
+                    means.count(point);
+                    for (std::size_t c = 0; c < field.components; ++c)
+                        means.add(point, field.swaps_last && c > 3 ? 9 - c : c,
+                                  static_cast<double>(from[(c * entities + i) * width + node]));
+                }
+        });
+    }
+    if (auto note = means.note(field.name, "each cell (ELNO)"); !note.empty()) notes.push_back(std::move(note));
+    return Array::own(means.means(), field.components);
+}
+
+/// An array of no component: the field has no values here.
+Result<Array> MedFields::at_nodes(const MedField& field, const MedStep& step, const MedMesh& mesh,
+                                  const MedMeshPlace& place, std::vector<std::string>& notes) const {
+    const auto parts = parts_of(field, step.group + "/NOE", 0, place.points);
+    if (!parts) return parts.error();
+    if (!parts->empty()) return joined(field, *parts, place.points);
+    const auto in_each = parts_in_cells(field, step, place, "NOE");
+    if (!in_each) return in_each.error();
+    return in_each->empty() ? Result<Array>(Array()) : at_cell_nodes(field, *in_each, mesh, place, notes);
+}
+
+Result<Array> MedFields::in_cells(const MedField& field, const MedStep& step, const MedMeshPlace& place,
+                                  std::vector<std::string>& notes) const {
+    const auto parts = parts_in_cells(field, step, place, "MAI");
+    if (!parts) return parts.error();
+    if (parts->empty()) return Array();
+    std::uint64_t most = 1;
+    for (const MedPart& part : *parts) most = std::max(most, part.per_entity);
+    if (most > 1)
+        notes.push_back(fmt::format("cell field \"{}\" has up to {} values in a cell, at integration points: their mean "
+                                    "was taken",
+                                    escaped(field.name), most));
+    return joined(field, *parts, place.cells);
+}
+
+Result<void> MedFields::read(const ReadOptions& options, std::size_t step, const MedMesh& mesh,
+                             const MedMeshPlace& place, Grid& grid, Loaded& loaded) const {
+    std::vector<std::string> without;
+    for (const MedField& field : fields_)
+        for (const auto association : {Association::point, Association::cell}) {
+            const bool of_points = association == Association::point;
+            const bool known = of_points ? field.at_nodes || field.at_cell_nodes : field.in_cells;
+            if (!known || field.mesh != mesh.name() || !wanted(options, association, field.name)) continue;
+            const MedStep* const own = step_of(field, step);
+            auto values = !own        ? Result<Array>(Array())
+                          : of_points ? at_nodes(field, *own, mesh, place, loaded.notes)
+                                      : in_cells(field, *own, place, loaded.notes);
+            if (!values && values.error().code != ErrorCode::invalid_data) return values.error();
+            if (!values) leave_out(loaded.info, {kind_of_values(association), field.name, values.error().message});
+            else if (values->empty()) without.push_back("\"" + escaped(field.name) + "\"");
+            else (of_points ? grid.point_fields : grid.cell_fields).push_back({field.name, *std::move(values)});
+        }
+    if (!without.empty())
+        loaded.notes.push_back(fmt::format("step {} has no values of {}", step, fmt::join(without, ", ")));
+    return {};
+}
+
+} // namespace isotet::io::vtk

@@ -1,0 +1,80 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// A mesh of a MED file: points, cells with a volume, families and groups.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <isotet/grid.hpp>
+#include <isotet/result.hpp>
+
+#include "io/confined/med/med_elements.hpp"
+#include "io/confined/med/med_file.hpp"
+
+namespace isotet::io::vtk {
+
+/// Cells of one type, one after another in the grid.
+struct MedCellRun {
+    const MedElement* element = nullptr;
+    std::string group; ///< where they are in the file
+    std::uint64_t first = 0, count = 0;
+};
+
+/// Where the parts of a mesh are at one of its steps.
+struct MedMeshPlace {
+    std::string coordinates; ///< a data set
+    std::uint64_t points = 0;
+    std::vector<MedCellRun> runs;
+    std::uint64_t cells = 0;
+};
+
+class MedMesh {
+public:
+    /// Looks at the groups of a mesh, not at its numbers.
+    MedMesh(const MedFile& file, const std::string& name);
+
+    const std::string& name() const { return name_; }
+    /// Why it cannot be read; empty where it can.
+    const std::string& problem() const { return problem_; }
+    const std::vector<MedStep>& steps() const { return steps_; }
+
+    /// What holds at a step of the mesh; where it states no coordinates or cells, those of the step before it.
+    ///
+    /// Errors   invalid_data: counts that do not fit together
+    Result<MedMeshPlace> place_at(std::int64_t number, std::int64_t iteration) const;
+
+    /// Coordinates as float64.
+    Result<Array> points(const MedMeshPlace& place) const;
+
+    /// Nodes in VTK's order.
+    ///
+    /// Errors   invalid_data: nodes that are not there; as write_out_faces()
+    Result<Cells> cells(const MedMeshPlace& place) const;
+
+    /// Nodes of a run in MED's order, from 0, those of a cell one after another.
+    ///
+    /// Errors   invalid_data: nodes that are not there
+    Result<std::vector<std::int64_t>> nodes_of(const MedCellRun& run, std::uint64_t points) const;
+
+    bool has_families(const MedMeshPlace& place) const;
+    /// A number for each cell; 0 in runs without any.
+    Result<std::vector<std::int64_t>> families(const MedMeshPlace& place) const;
+
+    /// Families of cells by number, and the groups that each is in.
+    std::map<std::int64_t, std::vector<std::string>> groups_of_families() const;
+
+private:
+    Result<MedCellRun> run_of(const MedElement& element, const std::string& group) const;
+    template <class Index>
+    Result<Array> connectivity(const MedMeshPlace& place) const;
+    Result<void> add_polyhedra(const MedMeshPlace& place, Cells& cells) const;
+
+    const MedFile& file_;
+    std::string name_, problem_;
+    std::vector<MedStep> steps_;
+};
+
+} // namespace isotet::io::vtk
