@@ -225,6 +225,44 @@ TEST_P(ReadExodus, IsAnErrorWhenASetHasAnElementThatIsNotThere) {
 
 INSTANTIATE_TEST_SUITE_P(Containers, ReadExodus, testing::Values(0, EX_64BIT_OFFSET, EX_64BIT_DATA, EX_NETCDF4));
 
+TEST(ReadExodusPieces, AVariableThatIsBrokenIsLeftOutAndOthersAreRead) {
+    const TemporaryFolder folder;
+    write_exodus({}, folder.file("a.e"));
+    std::string bytes = content_of(folder.file("a.e"));
+    for (const std::string name : {"vals_nod_var4", "vals_elem_var1eb1"}) {
+        const std::size_t at = bytes.find(name);
+        ASSERT_NE(at, std::string::npos) << name;
+        bytes[at] = 'w'; // a variable of another name: Exodus does not find its own
+    }
+    const auto result = read(folder.write("b.e", bytes));
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(result->grid.point_fields.size(), 3u);
+    EXPECT_EQ(result->grid.cell_fields.size(), 0u);
+    ASSERT_EQ(result->info.left_out.size(), 2u);
+    EXPECT_EQ(result->info.left_out[0].name, "temp");
+    EXPECT_EQ(result->info.left_out[1].name, "load");
+    ReadOptions options;
+    options.point_fields = {"temp"};
+    EXPECT_FALSE(read(folder.file("b.e"), options));
+}
+
+TEST(ReadExodusPieces, BlocksOfUnknownElementsAreLeftOutWithTheirNames) {
+    const TemporaryFolder folder;
+    ExodusSample sample;
+    sample.block_names = {"solid", "bezier"};
+    write_exodus(sample, folder.file("a.e"));
+    std::string bytes = content_of(folder.file("a.e"));
+    const std::size_t second = bytes.rfind("TETRA");
+    ASSERT_NE(second, std::string::npos);
+    bytes.replace(second, 5, "BEX_T");
+    const auto result = read(folder.write("b.e", bytes));
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(survey(result->grid).value().tets, 1u);
+    ASSERT_EQ(result->info.left_out.size(), 1u);
+    EXPECT_EQ(result->info.left_out[0].name, "bezier");
+    EXPECT_EQ(result->info.left_out[0].reason, "its elements are BEX_T (Bezier extraction), which is not read");
+}
+
 /// Two parts of one run: the second block's cell is in both of them.
 class ReadExodusParts : public testing::Test {
 protected:

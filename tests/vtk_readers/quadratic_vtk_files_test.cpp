@@ -90,6 +90,31 @@ TEST(QuadraticFiles, OfExodusHaveTheirNodesWhereExodusPutsThem) {
     }
 }
 
+/// VTK has no cell for them: those of their first nodes.
+TEST(QuadraticFiles, OfExodusWithNodesInFacesAreReadWithoutThem) {
+    const std::vector<std::string> triangles{"014", "124", "234", "304"};
+    const std::vector<CellInFile> cells{
+        {"TETRA14", 4, joined(tet_middles, {"013", "123", "023", "012"})},
+        {"TETRA15", 4, joined(tet_middles, {"0123", "012", "013", "123", "023"})},
+        {"HEX21", 8, joined(hex_middles, {"01234567"})},
+        {"WEDGE16", 6, joined(wedge_middles, {"012345"})},
+        {"WEDGE20", 6, joined(joined(wedge_middles, wedge_squares), {"012", "345"})},
+        {"PRISM21", 6, joined(joined(wedge_middles, {"012345", "012", "345"}), wedge_squares)},
+        {"PYRAMID18", 5, joined(joined(pyramid_middles, {"0123"}), triangles)},
+        {"PYRAMID19", 5, joined(joined(pyramid_middles, {"0123"}), joined(triangles, {"01234"}))}};
+    const TemporaryFolder folder;
+    for (const CellInFile& cell : cells) {
+        const std::string path = folder.file(cell.type + ".e");
+        write_exodus_cell(cell, path);
+        const auto result = read(path);
+        ASSERT_TRUE(result) << cell.type << ": " << result.error().message;
+        expect_exact(result->grid, result->grid.point_fields.at(0).values, cell.corners, cell.type);
+        ASSERT_EQ(result->notes.size(), 1u) << cell.type;
+        EXPECT_NE(result->notes[0].find("without nodes in faces and in the middle: 1 quadratic"), std::string::npos)
+            << result->notes[0];
+    }
+}
+
 void write_cgns_cell(const CellInFile& cell, CG_ElementType_t type, const std::string& path) {
     const Columns columns = columns_of(cell);
     const auto nodes = static_cast<cgsize_t>(columns.values.size());

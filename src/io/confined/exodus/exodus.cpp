@@ -3,9 +3,10 @@
 // by the global numbers of their nodes.
 #include <algorithm>
 #include <array>
+#include <map>
 #include <span>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "io/reader.hpp"
 #include "io/pieces/block_choice.hpp"
@@ -34,7 +35,7 @@ bool is_uniform(const std::vector<ExodusFile::Block>& blocks, std::uint8_t& type
     type = 0;
     for (const auto& block : blocks) {
         if (block.cells == 0) continue;
-        const std::uint8_t here = cell_type_of_element(block.topology, block.corners);
+        const std::uint8_t here = exodus_element(block.topology, block.corners).type;
         if (here < 10 || here > 14 || (type != 0 && here != type)) return false;
         type = here;
     }
@@ -56,21 +57,19 @@ std::span<const std::uint8_t> node_order(std::uint8_t type) {
     }
 }
 
-/// Node numbers of the file, from 1, to point numbers from 0, appended.
+/// Node numbers of the file, from 1, to point numbers from 0, appended; of each element those that are read.
 Result<void> append_corners(const std::vector<std::int64_t>& nodes, const ExodusFile::Block& block,
                             std::uint64_t points, std::vector<std::int64_t>& connectivity) {
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
+    for (std::size_t i = 0; i < nodes.size(); ++i)
         if (nodes[i] < 1 || static_cast<std::uint64_t>(nodes[i]) > points)
             return Error{ErrorCode::invalid_data,
                          fmt::format("element {} of block {} has node {}, but the nodes are 1 to {}", i / block.corners,
                                      block.id, nodes[i], points)};
-        connectivity.push_back(nodes[i] - 1);
-    }
-    const auto order = node_order(cell_type_of_element(block.topology, block.corners));
-    if (order.size() != block.corners) return {};
-    for (std::size_t first = 0; first + order.size() <= nodes.size(); first += order.size())
-        for (std::size_t i = 0; i < order.size(); ++i)
-            connectivity[connectivity.size() - nodes.size() + first + i] = nodes[first + order[i]] - 1;
+    const ExodusElement element = exodus_element(block.topology, block.corners);
+    const auto order = node_order(element.type);
+    for (std::size_t first = 0; first + block.corners <= nodes.size() && block.corners > 0; first += block.corners)
+        for (std::size_t i = 0; i < element.nodes; ++i)
+            connectivity.push_back(nodes[first + (order.empty() ? i : order[i])] - 1);
     return {};
 }
 
@@ -122,21 +121,24 @@ Result<Cells> read_cells(ExodusFile& file) {
     std::uint8_t uniform_type = 0;
     const bool uniform = is_uniform(file.blocks(), uniform_type);
     std::uint64_t corner_count = 0;
-    for (const auto& block : file.blocks()) corner_count += block.cells * block.corners;
+    for (const auto& block : file.blocks())
+        corner_count += block.cells * exodus_element(block.topology, block.corners).nodes;
     std::vector<std::int64_t> connectivity, offsets;
     std::vector<std::uint8_t> types;
     connectivity.reserve(corner_count);
     if (!uniform) offsets.push_back(0);
     for (const auto& block : file.blocks()) {
-        auto nodes = file.connectivity(block);
-        if (!nodes) return nodes.error();
-        if (auto appended = append_corners(*nodes, block, file.points(), connectivity); !appended)
-            return appended.error();
+        const ExodusElement element = exodus_element(block.topology, block.corners);
+        if (element.nodes > 0) {
+            auto nodes = file.connectivity(block);
+            if (!nodes) return nodes.error();
+            if (auto appended = append_corners(*nodes, block, file.points(), connectivity); !appended)
+                return appended.error();
+        }
         if (uniform) continue;
-        const std::uint8_t type = cell_type_of_element(block.topology, block.corners);
-        types.insert(types.end(), block.cells, type);
+        types.insert(types.end(), block.cells, element.type);
         for (std::uint64_t i = 0; i < block.cells; ++i)
-            offsets.push_back(offsets.back() + static_cast<std::int64_t>(block.corners));
+            offsets.push_back(offsets.back() + static_cast<std::int64_t>(element.nodes));
     }
     cells.connectivity = Array::own(std::move(connectivity));
     if (uniform) cells.uniform_type = static_cast<CellType>(uniform_type);
@@ -149,28 +151,61 @@ Result<Cells> read_cells(ExodusFile& file) {
     return cells;
 }
 
-Result<void> read_fields(ExodusFile& file, const ReadOptions& options, std::size_t step, Grid& grid,
-                         std::vector<std::string>& notes) {
+/// A variable that cannot be read is left out.
+Result<void> take_variable(Association association, const std::string& name, Result<Array> values, FileInfo& info,
+                           std::vector<Field>& fields) {
+    if (values) fields.push_back({name, *std::move(values)});
+    else if (values.error().code != ErrorCode::invalid_data) return values.error();
+    else
+        leave_out(info, {association == Association::point ? "point field" : "cell field", name,
+                         values.error().message});
+    return {};
+}
+
+Result<void> read_fields(ExodusFile& file, const ReadOptions& options, Loaded& loaded, Grid& grid) {
     if (file.times().empty()) return {};
     for (std::size_t i = 0; i < file.point_variables().size(); ++i) {
         const std::string& name = file.point_variables()[i];
         if (!wanted(options, Association::point, name)) continue;
-        auto values = file.point_variable(i, step);
-        if (!values) return values.error();
-        grid.point_fields.push_back({name, std::move(*values)});
+        auto taken = take_variable(Association::point, name, file.point_variable(i, loaded.step), loaded.info,
+                                   grid.point_fields);
+        if (!taken) return taken;
     }
     for (std::size_t i = 0; i < file.cell_variables().size(); ++i) {
         const std::string& name = file.cell_variables()[i];
         if (!wanted(options, Association::cell, name)) continue;
         std::size_t blocks_without = 0;
-        auto values = file.cell_variable(i, step, blocks_without);
-        if (!values) return values.error();
-        grid.cell_fields.push_back({name, std::move(*values)});
-        if (blocks_without > 0)
-            notes.push_back(fmt::format("cell field \"{}\" is not defined in {} of {} element blocks: NaN there",
-                                        escaped(name), blocks_without, file.blocks().size()));
+        auto values = file.cell_variable(i, loaded.step, blocks_without);
+        if (values && blocks_without > 0)
+            loaded.notes.push_back(fmt::format("cell field \"{}\" is not defined in {} of {} element blocks: NaN there",
+                                               escaped(name), blocks_without, file.blocks().size()));
+        auto taken = take_variable(Association::cell, name, std::move(values), loaded.info, grid.cell_fields);
+        if (!taken) return taken;
     }
     return {};
+}
+
+/// Elements of which not all nodes are read, and those of which nothing is.
+void say_what_is_read(const ExodusFile& file, Loaded& loaded) {
+    std::map<std::string, std::uint64_t> shorter;
+    for (const auto& block : file.blocks()) {
+        const ExodusElement element = exodus_element(block.topology, block.corners);
+        if (block.cells == 0 || element.nodes == block.corners) continue;
+        if (element.type == 0)
+            leave_out(loaded.info, {"block", block.name.empty() ? std::to_string(block.id) : block.name,
+                                    block.topology.starts_with("BEX")
+                                        ? fmt::format("its elements are {} (Bezier extraction), which is not read",
+                                                      escaped(block.topology))
+                                        : fmt::format("its elements are {} with {} nodes, which are not read",
+                                                      escaped(block.topology), block.corners)});
+        else shorter[fmt::format("{} of {} nodes", name_of_cell_type(element.type), block.corners)] += block.cells;
+    }
+    std::vector<std::string> parts;
+    for (const auto& [kind, cells] : shorter) parts.push_back(fmt::format("{} {}", cells, kind));
+    if (!parts.empty())
+        loaded.notes.push_back(fmt::format("cells were read by their corners and the nodes on edges, if there are any, "
+                                           "without nodes in faces and in the middle: {}",
+                                           fmt::join(parts, ", ")));
 }
 
 /// "disp" or "disp_" stands for the variables disp_x, disp_y and disp_z, as a vector to move the points by.
@@ -263,7 +298,8 @@ Result<Piece> read_piece(ExodusFile& file, const std::string& path, const ReadOp
     if (!cells) // what the library says names the file already
         return cells.error().message.starts_with(escaped(path)) ? cells.error() : broken(path, cells.error().message);
     piece.grid.cells = std::move(*cells);
-    if (auto read = read_fields(file, options, loaded.step, piece.grid, loaded.notes); !read) return read.error();
+    say_what_is_read(file, loaded);
+    if (auto read = read_fields(file, options, loaded, piece.grid); !read) return read.error();
     if (auto read = read_displacement(file, options.displace, loaded.step, piece.grid); !read) return read.error();
     if (!with_ids) return piece;
     auto point_ids = file.point_ids();

@@ -286,10 +286,10 @@ Result<Array> ExodusFile::cell_ids() {
     return Array::own(std::move(ids));
 }
 
-std::uint8_t cell_type_of_element(std::string_view topology, std::uint64_t corners) {
+ExodusElement exodus_element(std::string_view topology, std::uint64_t nodes) {
     struct Known {
         std::string_view begins;
-        std::uint64_t corners;
+        std::uint64_t nodes;
         std::uint8_t type;
     };
     static constexpr Known known[] = {
@@ -301,9 +301,24 @@ std::uint8_t cell_type_of_element(std::string_view topology, std::uint64_t corne
         {"EDGE", 2, 3},  {"EDGE", 0, 21}, {"SPHERE", 0, 1}, {"CIRCLE", 0, 1}, {"NSIDED", 0, 7}, {"NFACED", 0, 42},
     };
     for (const Known& element : known)
-        if (topology.starts_with(element.begins) && (element.corners == corners || element.corners == 0))
-            return element.type;
-    return 0; // other numbers of nodes (TET14, WEDGE20, PYRAMID18) too: an empty cell, left out
+        if (topology.starts_with(element.begins) && (element.nodes == nodes || element.nodes == 0))
+            return {element.type, nodes};
+    // Nodes in faces and in the middle stand behind those of a smaller element. WEDGE also as PRISM.
+    struct Longer {
+        std::string_view begins;
+        std::uint64_t nodes;
+        ExodusElement element;
+    };
+    static constexpr Longer longer[] = {
+        {"TET", 8, {10, 4}},    {"TET", 11, {24, 10}},  {"TET", 14, {24, 10}},  {"TET", 15, {24, 10}},
+        {"HEX", 9, {12, 8}},    {"HEX", 21, {25, 20}},  {"WED", 16, {26, 15}},  {"WED", 20, {26, 15}},
+        {"WED", 21, {26, 15}},  {"PRISM", 6, {13, 6}},  {"PRISM", 15, {26, 15}}, {"PRISM", 16, {26, 15}},
+        {"PRISM", 18, {32, 18}}, {"PRISM", 20, {26, 15}}, {"PRISM", 21, {26, 15}}, {"PYR", 18, {27, 13}},
+        {"PYR", 19, {27, 13}},
+    };
+    for (const Longer& one : longer)
+        if (topology.starts_with(one.begins) && one.nodes == nodes) return one.element;
+    return {}; // an empty cell, left out
 }
 
 } // namespace isotet::io::vtk

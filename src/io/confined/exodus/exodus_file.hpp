@@ -97,7 +97,13 @@ private:
     std::vector<double> times_;
 };
 
-/// VTK's cell type of an Exodus element with so many corners.
-std::uint8_t cell_type_of_element(std::string_view topology, std::uint64_t corners);
+/// What is read of an element.
+struct ExodusElement {
+    std::uint8_t type = 0;   ///< VTK's; 0: not known
+    std::uint64_t nodes = 0; ///< the first ones are read; fewer than the element has where VTK has no such type
+};
+
+/// An element with so many nodes.
+ExodusElement exodus_element(std::string_view topology, std::uint64_t nodes);
 
 } // namespace isotet::io::vtk
