@@ -121,7 +121,6 @@ TEST_F(ReadFile, ThatIsPackedOrAPointerOrOfAnotherProgramIsNamed) {
     EXPECT_NE(message("a.szplt", "#!SZPLT").find("a Tecplot file"), std::string::npos);
     EXPECT_NE(message("a.dat", "TITLE = \"x\"\n").find("a Tecplot file"), std::string::npos);
     EXPECT_NE(message("a.su2", "NDIME= 3\n").find("a mesh of SU2"), std::string::npos);
-    EXPECT_NE(message("a.rmed", "made by Salome").find("MED"), std::string::npos);
     EXPECT_NE(message("a.stl", "solid x\n").find("is a surface"), std::string::npos);
     EXPECT_NE(message("a.xyz", "1 2 3\n").find("has no format that isotet reads"), std::string::npos);
 }

@@ -368,12 +368,24 @@ TEST_F(ReadMed, AFileThatIsNotSoundIsAnErrorThatSaysWhy) {
     EXPECT_NE(message([](MedWriter&) {}).find("it has no mesh"), std::string::npos);
     EXPECT_NE(message(mesh("TE4", 4, two_tets), 2).find("a MED file of version 2.1, but 3.0 and later are read"),
               std::string::npos);
+    EXPECT_NE(read(folder_.write("text.med", "made by Salome")).error().message.find("not a MED file"),
+              std::string::npos);
     for (const MedNumbers& faces : {MedNumbers{1, 4, 99}, MedNumbers{1, 3, 2}, MedNumbers{-5, 4, 7}})
         EXPECT_NE(message([&](MedWriter& file) {
                       file.mesh("m", points_of_tets);
                       file.polyhedra({1, 2, 3, 1, 2, 4}, faces, {1, 3});
                   }),
                   "no error");
+}
+
+TEST(MedSamples, AreErrorsWhereverTheyAreCut) {
+    const TemporaryFolder folder;
+    const std::string whole = content_of((source_folder() / "tests/corruption/samples/med/gmsh.med").string());
+    for (std::size_t length = whole.size() / 16; length < whole.size(); length += whole.size() / 16) {
+        const auto result = read(folder.write("cut.med", whole.substr(0, length)));
+        ASSERT_FALSE(result) << length << " of " << whole.size();
+        EXPECT_NE(result.error().message.find("cut short"), std::string::npos) << result.error().message;
+    }
 }
 
 struct Range {
