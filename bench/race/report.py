@@ -72,8 +72,7 @@ def tables(results: list[CaseResult], lines: list[Line], facts: dict) -> str:
              "### On processors that can do less\n", levels_table(results, lines),
              "### Packing, new fields, and everything once\n", steps_table(results, lines),
              "### What normals and attributes cost\n", attributes_table(results, lines),
-             "### Memory\n", memory_table(results),
-             "### All methods\n", *(all_methods(result, lines) for result in results)]
+             "### Memory\n", memory_table(results)]
     return "\n".join(part for part in parts if part)
 
 
@@ -201,19 +200,6 @@ def memory_table(results: list[CaseResult]) -> str:
     return "Bytes a cell. Peaks: beyond the input, in a process of its own.\n\n" + table(
         ["grid", "cells a point", "packed grid", "source cells", "gradients", "peak: pack", "peak: one surface from arrays",
          "peak: one surface, packed before", "peak: VTK merged", "peak: VTK span space", "peak: VTK wheel"], rows)
-
-
-def all_methods(result: CaseResult, lines: list[Line]) -> str:
-    rows = []
-    for line in lines:
-        if line.case == result.case.name:
-            triangles = f"{line.triangles:,.0f}" if line.triangles is not None else ""
-            one = " (1 run)" if line.runs == 1 else ""
-            rows.append([BY_KEY[line.method].label + one, short_time(line.best), short_time(line.median),
-                         short_time(line.worst), triangles, f"{line.must_move / 1e6:,.1f}",
-                         f"{line.bandwidth / 1e9:.2f}", f"{100 * line.share:.0f} %"])
-    return f"#### {result.case.name}\n\n" + table(
-        ["method", "best", "median", "worst", "triangles", "MB that must move", "GB/s", "share of copying"], rows)
 
 
 def publish(results_folder: Path, docs: Path) -> None:
