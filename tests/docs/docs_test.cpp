@@ -30,7 +30,8 @@ std::string content(const fs::path& path) {
 }
 
 std::vector<fs::path> documents() {
-    std::vector<fs::path> result = {root / "README.md", root / "CHANGELOG.md", root / "data" / "README.md"};
+    std::vector<fs::path> result = {root / "README.md", root / "CHANGELOG.md", root / "CONTRIBUTING.md",
+                                    root / "data" / "README.md"};
     for (const auto& entry : fs::recursive_directory_iterator(root / "docs")) {
         if (entry.path().extension() == ".md") result.push_back(entry.path());
     }
