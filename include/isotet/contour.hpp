@@ -191,4 +191,11 @@ private:
     std::unique_ptr<Data> data_;
 };
 
+/// One isosurface, of which nothing is kept: for more than one make a Contour.
+///
+/// `points`   3 components;  `cells`   as Grid::cells;  `values`   a scalar for each point
+/// Errors     as Contour::create() and Contour::extract()
+ISOTET_API Result<Surface> contour(const Array& points, const Cells& cells, const Array& values, double isovalue,
+                                   const Run& run = {});
+
 } // namespace isotet

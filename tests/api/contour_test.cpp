@@ -64,6 +64,16 @@ TEST(Contour, ExtractsDirectlyForAFewSurfacesAndPacksForMany) {
     EXPECT_EQ(contour.extract(0.5).value().pack_seconds, 0) << "packed once";
 }
 
+TEST(Contour, OfArraysIsThatOfASession) {
+    const Grid grid = kuhn();
+    const Array values = point_field(grid, 0).values;
+    const Surface surface = contour(grid.points, grid.cells, values, 0.1).value();
+    EXPECT_EQ(bytes_of(surface), direct_bytes(grid, 0, 0.1));
+    EXPECT_GT(surface.triangle_count(), 0u);
+    const Array wrong = Array::own(std::vector<float>(3));
+    EXPECT_EQ(contour(grid.points, grid.cells, wrong, 0.1).error().code, ErrorCode::invalid_argument);
+}
+
 TEST(Contour, TellsWhichCellTypesItContours) {
     for (int type = 0; type < 256; ++type) {
         const bool contoured = (type >= 10 && type <= 16) || type == 42;

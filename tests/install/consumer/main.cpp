@@ -11,19 +11,12 @@ int main() {
     const std::vector<int> tets{0, 1, 2, 3, 1, 2, 3, 4};
     const std::vector<float> temperature{10, 20, 30, 40, 80};
 
-    isotet::ContourInput input;
-    input.grid.points = isotet::Array::borrow(points, 3);
-    input.grid.cells.connectivity = isotet::Array::borrow(tets);
-    input.field.name = "temperature";
-    input.field.values = isotet::Array::borrow(temperature);
-
-    isotet::Result<isotet::Contour> contour = isotet::Contour::create(input);
-    if (!contour) return std::puts(contour.error().message.c_str()), 1;
-    const isotet::Result<isotet::ContourResult> result = contour->extract(25);
-    if (!result) return std::puts(result.error().message.c_str()), 1;
-
-    const isotet::Surface& surface = result->surfaces[0].surface;
-    std::printf("%zu vertices, %zu triangles\n", surface.vertex_count(), surface.triangle_count());
-    const auto written = isotet::write_surface(surface, "surface.vtp");
+    isotet::Cells cells;
+    cells.connectivity = isotet::Array::borrow(tets);
+    const isotet::Result<isotet::Surface> surface =
+        isotet::contour(isotet::Array::borrow(points, 3), cells, isotet::Array::borrow(temperature), 25);
+    if (!surface) return std::puts(surface.error().message.c_str()), 1;
+    std::printf("%zu vertices, %zu triangles\n", surface->vertex_count(), surface->triangle_count());
+    const auto written = isotet::write_surface(*surface, "surface.vtp");
     if (!written) return std::puts(written.error().message.c_str()), 1;
 }
