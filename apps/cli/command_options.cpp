@@ -89,8 +89,8 @@ Where edges must be used equally often: with --closed everywhere; with --grid ev
 points all lie in one boundary face of the grid's valid tets; with neither they are only counted. --grid needs the
 point array edge_ends, which isotet extract --edge-ends writes into .vtp and .vtk, and excuses a repeated triangle on
 a face with two tets on one side. A tet is valid when the field has a value (not NaN) at its four points. Where
-quadratic cells were refined for the surface, -i and the tolerances say how, as for isotet extract: all isovalues of
-that call. Their points are derived again.
+quadratic cells were refined for the surface, their points are derived again: the file says how they were refined
+(field data isotet:refinement), unless -i and the tolerances do, as for isotet extract: all isovalues of that call.
 Edges at hanging points, where the face of a larger cell meets smaller ones, are excused, too; the verdict counts them.
 
 With --strict it also fails for: triangles of zero area, edges with more than two triangles, double sheets (two

@@ -137,6 +137,7 @@ struct SurfaceFile {
     Surface surface;
     std::string format;
     std::vector<std::string> notes = {}; ///< what of it is left out (arrays of a VTP)
+    std::vector<Field> field_data = {};  ///< WriteOptions::field_data
 };
 
 /// Reads a surface (VTP, PLY, STL, OBJ, legacy VTK, Gocad TSurf), polygons split into triangles. STL has no shared

@@ -34,6 +34,9 @@ struct WriteOptions {
     Compression compression =
         Compression::none; ///< of vtp and vtu; takes memory for the file. Its bytes are those of the
                            ///< installed libdeflate or LZ4: another version may pack otherwise
+    std::vector<Field> field_data =
+        {}; ///< arrays of a surface's file as a whole, in vtp and vtk; read_surface() returns those whose names begin with
+            ///< "isotet:"
 };
 
 /// Writes a surface: vtp, ply, stl, obj, vtk (legacy), ts (Gocad TSurf); the format from the ending of `path` unless

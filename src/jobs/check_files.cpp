@@ -9,6 +9,7 @@
 #include <isotet/linear_cells.hpp>
 #include <isotet/read.hpp>
 
+#include "jobs/refinement_record.hpp"
 #include "jobs/refuse.hpp"
 
 namespace isotet::jobs {
@@ -62,12 +63,20 @@ std::vector<double> isovalues_of(const Surface& surface) {
     return out;
 }
 
+bool is_default(const RefineOptions& options) {
+    const RefineOptions none;
+    return options.tolerance == none.tolerance && options.relative_tolerance == none.relative_tolerance &&
+           options.geometry_tolerance == none.geometry_tolerance && options.distance == none.distance;
+}
+
 /// The grid with its curved cells refined as for the surface, where they were.
-Result<Origin> refined_origin(Origin origin, const CheckJob& job, const Surface& surface, const Run& run) {
+Result<Origin> refined_origin(Origin origin, const CheckJob& job, const SurfaceFile& file, const Run& run) {
     if (!job.refine || !origin.field || !has_curved_cells(origin.grid.cells)) return origin;
-    if (origin.field->averaged && !job.refine_averaged) return origin;
-    RefineOptions options = *job.refine;
-    options.isovalues = job.isovalues.empty() ? isovalues_of(surface) : job.isovalues;
+    const std::optional<RefineOptions> recorded = find_refinement_record(file.field_data);
+    if (origin.field->averaged && !job.refine_averaged && !recorded) return origin;
+    RefineOptions options = recorded && is_default(*job.refine) ? *recorded : *job.refine;
+    if (!job.isovalues.empty()) options.isovalues = job.isovalues;
+    else options.isovalues = recorded ? recorded->isovalues : isovalues_of(file.surface);
     if (options.isovalues.empty()) return origin;
     const auto linear = refine(origin.grid, *origin.field, options, run);
     if (!linear) return linear.error();
@@ -81,8 +90,8 @@ Result<Origin> refined_origin(Origin origin, const CheckJob& job, const Surface&
 /// Points that the grid does not have are of curved cells that were refined.
 Error with_advice(Error error, const CheckJob& job, bool curved) {
     if (curved && error.code == ErrorCode::invalid_data && job.isovalues.empty())
-        error.message += "; where curved cells were refined, `isovalue` and `tolerance` must be given as for extracting, "
-                         "so that the points are derived again";
+        error.message += "; where curved cells were refined, and the file does not say how, `isovalue` and `tolerance` "
+                         "must be given as for extracting, so that the points are derived again";
     return error;
 }
 
@@ -124,7 +133,7 @@ Result<CheckedFiles> check_files(const CheckJob& job, Caller& caller) {
         Result<Origin> read = read_origin(job, caller);
         if (!read) return read.error();
         curved = has_curved_cells(read->grid.cells);
-        read = refined_origin(*std::move(read), job, file->surface, caller.run());
+        read = refined_origin(*std::move(read), job, *file, caller.run());
         if (!read) return read.error();
         origin = *std::move(read);
         options.grid = &origin->grid;

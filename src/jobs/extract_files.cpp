@@ -18,6 +18,7 @@
 #include "jobs/extract_notes.hpp"
 #include "jobs/extract_plan.hpp"
 #include "jobs/part_table.hpp"
+#include "jobs/refinement_record.hpp"
 #include "jobs/refuse.hpp"
 
 namespace isotet::jobs {
@@ -48,6 +49,7 @@ private:
     std::size_t isovalues_together(std::size_t isovalues) const;
     Result<void> choose_values(std::size_t step);
     Result<void> extract_step(std::size_t step);
+    std::vector<Field> field_data_of(const Surface& surface) const;
     Result<std::vector<Surface>> extract_pass(std::span<const double> isovalues, std::size_t step);
     Result<std::vector<Surface>> extract_solid(double isovalue, std::size_t step);
     Result<FieldReport> range_of_field();
@@ -424,13 +426,24 @@ Result<void> ExtractRun::find_parts_of(Surface& surface, SurfaceNumbers& numbers
     return {};
 }
 
+/// Edge ends that are points of refined cells mean something only with what these were refined by.
+std::vector<Field> ExtractRun::field_data_of(const Surface& surface) const {
+    if (surface.edge_ends.empty() || !plan_.contour.refine || !numbers_.refinement.refined ||
+        numbers_.refinement.isovalues.empty())
+        return {};
+    RefineOptions options = *plan_.contour.refine;
+    options.isovalues = numbers_.refinement.isovalues;
+    return {refinement_record(options)};
+}
+
 Result<void> ExtractRun::write(const Surface& surface, SurfaceNumbers& numbers) {
     const core::Stopwatch writing;
     caller_.detail("writing " + numbers.file);
     std::error_code ignored;
     const bool replaces = surface.triangle_count() == 0 && std::filesystem::exists(numbers.file, ignored);
     const Result<WriteReport> written =
-        write_surface(surface, numbers.file, {.compression = job_.compression}, caller_.run());
+        write_surface(surface, numbers.file, {.compression = job_.compression, .field_data = field_data_of(surface)},
+                      caller_.run());
     if (!written) return written.error();
     caller_.notes(written->notes);
     if (replaces) caller_.note(fmt::format("'{}' was replaced by an empty surface", numbers.file));

@@ -7,6 +7,7 @@
 #include <vtkCellData.h>
 #include <vtkCommand.h>
 #include <vtkDataArray.h>
+#include <vtkFieldData.h>
 #include <vtkOBJReader.h>
 #include <vtkNew.h>
 #include <vtkPLYReader.h>
@@ -53,6 +54,23 @@ auto read_with(const std::string& path) {
     reader->Update();
     EXPECT_EQ(reader->GetErrorCode(), 0U) << path;
     return vtkSmartPointer(reader->GetOutput());
+}
+
+TEST(VtkReadsBack, ArraysOfTheFileAsAWhole) {
+    const Folder folder;
+    WriteOptions options;
+    options.field_data = {{"isotet:x", Array::own(std::vector<double>{1, 2, 0.3})}};
+    const auto expect_there = [&](vtkPolyData* surface) {
+        vtkDataArray* const array = surface->GetFieldData()->GetArray("isotet:x");
+        ASSERT_TRUE(array);
+        EXPECT_EQ(array->GetNumberOfTuples(), 3);
+        EXPECT_EQ(array->GetComponent(2, 0), 0.3);
+        EXPECT_GT(surface->GetNumberOfPolys(), 0);
+    };
+    ASSERT_TRUE(write_surface(bare_surface(), folder / "out.vtp", options));
+    expect_there(read_with<vtkXMLPolyDataReader>(folder / "out.vtp"));
+    ASSERT_TRUE(write_surface(bare_surface(), folder / "out.vtk", options));
+    expect_there(read_with<vtkPolyDataReader>(folder / "out.vtk"));
 }
 
 template <class Reader>

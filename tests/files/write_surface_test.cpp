@@ -58,6 +58,22 @@ TEST_P(ExactFormat, GivesBackTheSameBits) {
     EXPECT_TRUE(back.cell_fields.empty());
 }
 
+TEST(WriteSurface, KeepsArraysOfTheFileAsAWholeInVtksFormats) {
+    const Folder folder;
+    for (const char* name : {"out.vtp", "out.vtk", "out.ply"}) {
+        WriteOptions options;
+        options.field_data = {{"isotet:x", Array::own(std::vector<double>{1, 2, 0.3})},
+                              {"of others", Array::own(std::vector<double>{4})}};
+        ASSERT_TRUE(write_surface(bare_surface(), folder / name, options));
+        const SurfaceFile back = read_surface(folder / name).value();
+        expect_same(back.surface.triangles, bare_surface().triangles, name);
+        ASSERT_EQ(back.field_data.size(), std::string_view(name) == "out.ply" ? 0u : 1u) << name;
+        if (back.field_data.empty()) continue;
+        EXPECT_EQ(back.field_data[0].name, "isotet:x");
+        expect_same(back.field_data[0].values, options.field_data[0].values, name);
+    }
+}
+
 TEST_P(ExactFormat, GivesBackNormalsOfVerticesAndFaces) {
     for (const auto kind : {Normals::gradient, Normals::face}) {
         const Surface surface = with_normals(bare_surface(), kind), back = written_and_read(surface, GetParam());

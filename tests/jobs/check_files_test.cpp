@@ -47,6 +47,28 @@ TEST(CheckFiles, DerivesThePointsOfRefinedCellsAgain) {
     }
 }
 
+TEST(CheckFiles, TheFileSaysHowCurvedCellsWereRefined) {
+    const test::TemporaryFolder folder;
+    for (const char* name : {"refined.vtp", "refined.vtk"}) {
+        Listener listener;
+        ExtractJob extract;
+        extract.grid.file = "make:tet10:3:sphere";
+        extract.out = folder.file(name);
+        extract.isovalues = {0.6};
+        extract.edge_ends = true;
+        CheckJob job;
+        job.surface = extract_files(extract, listener).value().surfaces[0].file;
+        job.grid.file = extract.grid.file;
+        const auto checked = check_files(job, listener);
+        ASSERT_TRUE(checked) << name << ": " << checked.error().message;
+        EXPECT_TRUE(checked->passed) << name;
+        EXPECT_GT(checked->report.triangles, 100u);
+        job.refine->relative_tolerance = 0.02;
+        const auto other = check_files(job, listener);
+        EXPECT_FALSE(other && other->passed) << "what is asked for counts";
+    }
+}
+
 TEST(CheckFiles, JudgesAgainstTheGrid) {
     const test::TemporaryFolder folder;
     Listener listener;

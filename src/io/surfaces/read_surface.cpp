@@ -39,13 +39,13 @@ bool looks_like_obj(std::string_view head) {
     return std::ranges::find(keywords, word) != keywords.end();
 }
 
-Result<Surface> parse_as(std::string_view format, std::string_view content, std::vector<std::string>& notes,
+Result<Surface> parse_as(std::string_view format, std::string_view content, SurfaceFile& file,
                          const Progress& progress) {
-    if (format == "vtp") return parse_vtp(content, notes, progress);
+    if (format == "vtp") return parse_vtp(content, file.notes, file.field_data, progress);
     if (format == "ply") return parse_ply(content, progress);
     if (format == "stl") return parse_stl(content, progress);
     if (format == "obj") return parse_obj(content, progress);
-    if (format == "vtk") return parse_legacy_vtk(content, progress);
+    if (format == "vtk") return parse_legacy_vtk(content, file.field_data, progress);
     return parse_ts(content, progress);
 }
 
@@ -77,10 +77,12 @@ Result<SurfaceFile> parse_surface(std::string_view content, std::string_view end
             return Error{ErrorCode::invalid_argument,
                          fmt::format("the format {} is none of a surface: {}", in_quotes(format), all)};
         }
-        std::vector<std::string> notes;
-        auto surface = parse_as(chosen, content, notes, progress);
+        SurfaceFile file;
+        file.format = chosen;
+        auto surface = parse_as(chosen, content, file, progress);
         if (!surface) return surface.error();
-        return SurfaceFile{std::move(*surface), std::string(chosen), std::move(notes)};
+        file.surface = *std::move(surface);
+        return file;
     } catch (const std::bad_alloc&) {
         return Error{ErrorCode::out_of_memory, "no memory left to read a surface"};
     } catch (const std::exception& exception) {

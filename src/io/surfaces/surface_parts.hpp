@@ -44,9 +44,13 @@ Result<Surface> assemble(SurfaceParts&& parts);
 Result<Surface> parse_ply(std::string_view content, const Progress& progress);
 Result<Surface> parse_stl(std::string_view content, const Progress& progress);
 Result<Surface> parse_obj(std::string_view content, const Progress& progress);
-Result<Surface> parse_legacy_vtk(std::string_view content, const Progress& progress);
 Result<Surface> parse_ts(std::string_view content, const Progress& progress);
-Result<Surface> parse_vtp(std::string_view content, std::vector<std::string>& notes, const Progress& progress);
+Result<Surface> parse_legacy_vtk(std::string_view content, std::vector<Field>& field_data, const Progress& progress);
+Result<Surface> parse_vtp(std::string_view content, std::vector<std::string>& notes, std::vector<Field>& field_data,
+                          const Progress& progress);
+
+/// Names of field data that is kept begin so: that of others is of no use to a surface.
+inline constexpr std::string_view own_field_data = "isotet:";
 
 /// "vtp", "ply" and so on by the content, then by the ending; empty if neither tells.
 std::string_view recognize_surface(std::string_view content, std::string_view ending);

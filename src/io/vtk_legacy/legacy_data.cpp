@@ -268,13 +268,15 @@ Result<void> LegacyData::read_array(const Header& header) {
         return skip_unknown_type(header);
     }
     const std::string name = decoded_name(header.name);
-    const bool is_wanted = data_ != Data::none && !name.empty() && wants_.field(association(), name);
+    const bool of_file = data_ == Data::none && !wants_.file_arrays.empty() && name.starts_with(wants_.file_arrays);
+    const bool is_wanted = of_file || (data_ != Data::none && !name.empty() && wants_.field(association(), name));
     auto values = values_.read_values(*type, header.tuples, header.components, in_quotes(header.name), is_wanted);
     if (!values) {
         if (!may_go_on(values.error())) return values.error();
         leave_out_array(header, values.error().message);
         return go_on_behind(header.left_in_field, values.error());
     }
+    if (of_file) file_.field_data.push_back({name, *std::move(values)});
     if (data_ == Data::none) return {};
     if (is_wanted && header.colors) *values = bytes_of_colors(*values);
     const ScalarType stored = header.colors ? ScalarType::uint8 : type->widened ? ScalarType::int64 : type->type;

@@ -55,6 +55,7 @@ struct LegacyFile {
     std::array<double, 3> origin{0, 0, 0}, spacing{1, 1, 1};
     std::array<Array, 3> coordinates; ///< of a rectilinear grid
     std::vector<Attribute> point_data, cell_data;
+    std::vector<Field> field_data; ///< of the whole file
     FileInfo info; ///< of fields that were not asked for, too; with what is left out
     std::vector<std::string> notes;
 
@@ -69,6 +70,7 @@ struct LegacyWants {
     std::function<bool(Association association, std::string_view name)> field;
     bool geometry = true;       ///< points and cells
     bool leave_corners = false; ///< corners of CELLS may stay in the file
+    std::string_view file_arrays = {}; ///< of arrays of the whole file those whose names begin so; empty: none
 };
 
 /// Reads a whole file. Arrays that are not wanted are skipped; integers of type vtkIdType become int64, as in VTK.

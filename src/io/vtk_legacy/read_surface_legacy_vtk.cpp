@@ -8,11 +8,12 @@
 
 namespace isotet::io {
 
-Result<Surface> parse_legacy_vtk(std::string_view content, const Progress& progress) {
+Result<Surface> parse_legacy_vtk(std::string_view content, std::vector<Field>& field_data, const Progress& progress) {
     std::string kind;
     LegacyWants wants;
     wants.dataset = [&](std::string_view name) { return (kind = name) == "polydata"; };
     wants.field = [](Association, std::string_view) { return true; };
+    wants.file_arrays = own_field_data;
     auto file = read_legacy_vtk(ByteSource(content), wants, progress);
     if (!kind.empty() && kind != "polydata")
         return invalid_data(fmt::format("this is a dataset of kind {}, not a surface (POLYDATA)", in_quotes(kind)));
@@ -29,6 +30,7 @@ Result<Surface> parse_legacy_vtk(std::string_view content, const Progress& progr
     file->strips.each([&](auto corners) { parts.cells.add_strip(corners); });
     parts.point_data = std::move(file->point_data);
     parts.cell_data = std::move(file->cell_data);
+    field_data = std::move(file->field_data);
     return assemble(std::move(parts));
 }
 

@@ -29,9 +29,20 @@ void write_block(WriteStream& stream, const Column& column) {
     stream.text("\n");
 }
 
-void write_header(WriteStream& stream, std::string_view dataset, const Column& points) {
-    stream.text(fmt::format("# vtk DataFile Version 5.1\nisotet\nBINARY\nDATASET {}\nPOINTS {} {}\n", dataset,
-                            points.tuples, legacy_type(points.type)));
+void write_arrays(WriteStream& stream, const std::vector<Column>& columns) {
+    for (const Column& column : columns) {
+        stream.text(fmt::format("{} {} {} {}\n", legacy_vtk_name(column.name), column.components, column.tuples,
+                                legacy_type(column.type)));
+        write_block(stream, column);
+    }
+}
+
+void write_header(WriteStream& stream, std::string_view dataset, const std::vector<Column>& field_data,
+                  const Column& points) {
+    stream.text(fmt::format("# vtk DataFile Version 5.1\nisotet\nBINARY\nDATASET {}\n", dataset));
+    if (!field_data.empty()) stream.text(fmt::format("FIELD FieldData {}\n", field_data.size()));
+    write_arrays(stream, field_data);
+    stream.text(fmt::format("POINTS {} {}\n", points.tuples, legacy_type(points.type)));
     write_block(stream, points);
 }
 
@@ -57,13 +68,7 @@ void write_data(WriteStream& stream, std::string_view keyword, std::size_t tuple
     }
     if (count == 0) return;
     stream.text(fmt::format("FIELD FieldData {}\n", count));
-    for (const auto* list : lists) {
-        for (const auto& column : *list) {
-            stream.text(fmt::format("{} {} {} {}\n", legacy_vtk_name(column.name), column.components, column.tuples,
-                                    legacy_type(column.type)));
-            write_block(stream, column);
-        }
-    }
+    for (const auto* list : lists) write_arrays(stream, *list);
 }
 
 } // namespace
@@ -72,7 +77,7 @@ Result<WriteReport> write_legacy_surface(const SurfaceToWrite& input) {
     const auto& columns = input.columns;
     const std::size_t triangles = columns.triangles.tuples;
     return write_file(input.path, input.progress, columns.bytes(), [&](WriteStream& stream) {
-        write_header(stream, "POLYDATA", columns.positions);
+        write_header(stream, "POLYDATA", columns.field_data, columns.positions);
         if (triangles) {
             write_cells(stream, "POLYGONS", counting("offsets", columns.triangles.type, triangles + 1, 0, 3),
                         columns.triangles);
@@ -88,7 +93,7 @@ Result<WriteReport> write_legacy_grid(const GridToWrite& input) {
     if (columns.faces)
         return Error{ErrorCode::invalid_argument, "the grid has polyhedra, which are written into .vtu only"};
     return write_file(input.path, input.progress, columns.bytes(), [&](WriteStream& stream) {
-        write_header(stream, "UNSTRUCTURED_GRID", columns.points);
+        write_header(stream, "UNSTRUCTURED_GRID", {}, columns.points);
         if (columns.cells) {
             write_cells(stream, "CELLS", columns.offsets, columns.connectivity);
             stream.text(fmt::format("CELL_TYPES {}\n", columns.cells));

@@ -122,17 +122,36 @@ private:
     SurfaceParts parts_;
 };
 
+/// Of the arrays of the file as a whole those that isotet wrote.
+Result<void> read_field_data(Document& document, std::vector<Field>& field_data, std::vector<std::string>& notes,
+                             const Progress& progress) {
+    for (const auto& element : document.primary().child("FieldData").children("DataArray")) {
+        const std::string_view name = element.attribute("Name").value();
+        if (!name.starts_with(own_field_data)) continue;
+        const auto count = count_of(element, "NumberOfTuples", 0);
+        const auto array = describe_array(document, element);
+        if (!count || !array || !*array) continue;
+        auto values = load_array(document, **array, *count, progress);
+        if (values) field_data.push_back({std::string(name), *std::move(values)});
+        else if (values.error().code != ErrorCode::invalid_data) return values.error();
+        else notes.push_back(fmt::format("the array {} is left out: {}", in_quotes(name), values.error().message));
+    }
+    return {};
+}
+
 } // namespace
 } // namespace isotet::io::vtk_xml
 
 namespace isotet::io {
 
-Result<Surface> parse_vtp(std::string_view content, std::vector<std::string>& notes, const Progress& progress) {
+Result<Surface> parse_vtp(std::string_view content, std::vector<std::string>& notes, std::vector<Field>& field_data,
+                          const Progress& progress) {
     auto document = vtk_xml::open_document(ByteSource(content), progress);
     if (!document) return document.error();
     if (document->type != "PolyData")
         return invalid_data(
             fmt::format("this is a VTK file of type {}, not a surface (PolyData)", in_quotes(document->type)));
+    if (auto read = vtk_xml::read_field_data(*document, field_data, notes, progress); !read) return read.error();
     std::vector<Surface> surfaces;
     for (const auto& piece : document->primary().children("Piece")) {
         auto surface = vtk_xml::SurfaceOfPiece(*document, piece, notes, progress).read();

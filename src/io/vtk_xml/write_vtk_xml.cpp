@@ -48,6 +48,10 @@ void VtkXmlFile::array(const Column& column) {
     add(column, fmt::format(" NumberOfComponents=\"{}\"", column.components));
 }
 
+void VtkXmlFile::array_of_file(const Column& column) {
+    add(column, fmt::format(" NumberOfComponents=\"{}\" NumberOfTuples=\"{}\"", column.components, column.tuples));
+}
+
 void VtkXmlFile::flat_array(const Column& column) { add(column, {}); }
 
 void VtkXmlFile::add(const Column& column, std::string_view components) {

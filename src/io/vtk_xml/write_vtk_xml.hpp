@@ -20,6 +20,8 @@ public:
     void array(const Column& column);
     /// Without a number of components: the scalars one after another.
     void flat_array(const Column& column);
+    /// Of FieldData: with its number of tuples, which nothing else tells.
+    void array_of_file(const Column& column);
     void write(WriteStream& stream) const;
 
     /// Bytes of the whole file without compression, about.

@@ -26,6 +26,11 @@ Result<WriteReport> write_vtp(const SurfaceToWrite& input) {
     const Column offsets = counting("offsets", columns.triangles.type, triangles, 3, 3);
 
     VtkXmlFile file("PolyData", input.compression);
+    if (!columns.field_data.empty()) {
+        file.line("<FieldData>");
+        for (const Column& column : columns.field_data) file.array_of_file(column);
+        file.line("</FieldData>");
+    }
     file.line(fmt::format(
         R"(<Piece NumberOfPoints="{}" NumberOfVerts="0" NumberOfLines="0" NumberOfStrips="0" NumberOfPolys="{}">)",
         columns.positions.tuples, triangles));

@@ -103,8 +103,10 @@ Result<WriteReport> write_surface(const Surface& surface, const std::string& pat
     return io::guarded(path, run, notes, [&](const Progress& progress) -> Result<WriteReport> {
         const auto chosen = io::choose<io::SurfaceFormat>(io::surface_formats, path, options, "surface");
         if (!chosen) return chosen.error();
-        const auto columns = io::columns_of(surface, notes);
+        auto columns = io::columns_of(surface, notes);
         if (!columns) return columns.error();
+        for (const Field& field : options.field_data)
+            columns->field_data.push_back(io::column_of(field.name, field.values));
         return chosen->write({surface, *columns, path, progress, notes, options.compression});
     });
 }

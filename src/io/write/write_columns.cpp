@@ -138,7 +138,7 @@ std::uint64_t SurfaceColumns::bytes() const {
     for (const auto* column : {&point_normals, &cell_normals}) {
         if (*column) sum += (*column)->bytes();
     }
-    for (const auto* list : {&edges, &point_fields, &cell_fields}) {
+    for (const auto* list : {&edges, &point_fields, &cell_fields, &field_data}) {
         for (const auto& column : *list) sum += column.bytes();
     }
     return sum;

@@ -25,6 +25,7 @@ struct SurfaceColumns {
     std::vector<Column> edges;       ///< edge_ends (int64, 2) and edge_weights, as far as there are any
     std::vector<Column> point_fields;
     std::vector<Column> cell_fields; ///< source_cell (int64) first, if there is one
+    std::vector<Column> field_data;  ///< of the file as a whole
 
     std::uint64_t bytes() const;     ///< of all columns
 };
