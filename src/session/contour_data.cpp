@@ -174,7 +174,7 @@ Result<void> Contour::Data::refine_for(std::span<const double> isovalues, const 
     input = *std::move(refined);
     behind = ContourUpdate::grid;
     std::ranges::move(curved.grid()->report.notes(), std::back_inserter(notes));
-    std::ranges::move(session::notes_on(curved.grid()->refinement), std::back_inserter(notes));
+    std::ranges::move(curved.notes(), std::back_inserter(notes));
     update_seconds += session::seconds_since(start);
     return {};
 }

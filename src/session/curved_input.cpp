@@ -81,8 +81,12 @@ Result<void> CurvedInput::take(ContourInput input, const ContourOptions& options
             "contoured field must have 1 component",
             input.field.name, input.field.values.tuples(), input.field.values.components(), cells->points()));
     std::vector<std::uint8_t> types(cells->count());
-    for (std::size_t cell = 0; cell < types.size(); ++cell)
+    own_pyramids_ = 0;
+    for (std::size_t cell = 0; cell < types.size(); ++cell) {
+        constexpr std::uint8_t of_13_nodes = 27, of_19_nodes = 37;
+        if (cells->type(cell) == of_13_nodes || cells->type(cell) == of_19_nodes) ++own_pyramids_;
         types[cell] = type_of_corners(cells->type(cell), cells->corners(cell));
+    }
     corners_ = input;
     corners_.grid.cells.types = Array::own(std::move(types));
     options_ = *options.refine;
@@ -111,6 +115,15 @@ Result<ContourInput> CurvedInput::refine(std::span<const double> isovalues, cons
     auto input = on_linear_grid(*user_, *made, run);
     if (input) refined_ = std::make_shared<const LinearGrid>(*std::move(made));
     return input;
+}
+
+std::vector<std::string> CurvedInput::notes() const {
+    std::vector<std::string> notes = notes_on(refined_->refinement);
+    if (own_pyramids_ > 0)
+        notes.push_back(fmt::format("{} pyramids of 13 or 19 nodes have functions of isotet's own inside: the bound is "
+                                    "against these, not VTK's (docs/cells.md)",
+                                    own_pyramids_));
+    return notes;
 }
 
 FieldReport CurvedInput::field() const {

@@ -38,6 +38,9 @@ public:
     /// Null before refine().
     const std::shared_ptr<const LinearGrid>& grid() const { return refined_; }
 
+    /// After refine(): notes_on(), and which bounds are not those of VTK's cells.
+    std::vector<std::string> notes() const;
+
     /// The range of the field at the nodes of all cells that are contoured.
     FieldReport field() const;
 
@@ -45,6 +48,7 @@ private:
     std::optional<ContourInput> user_;
     ContourInput corners_;
     RefineOptions options_;
+    std::uint64_t own_pyramids_ = 0; ///< of 13 and 19 nodes, whose functions are not VTK's
     std::shared_ptr<const LinearGrid> refined_;
 };
 

@@ -44,6 +44,18 @@ TEST(CurvedSession, KeepsTheToleranceForEachIsovalue) {
     }
 }
 
+TEST(CurvedSession, SaysWhichBoundsAreNotAgainstVtksCells) {
+    for (const char* shape : {"pyramid", "hex"}) {
+        const CurvedGrid made = curved_grid({.shape = shape, .side = 2, .seed = 4, .field = wave});
+        auto session = Contour::create({made.grid, made.field, {}, {}}, refining(0.05)).value();
+        const ContourResult result = session.extract(0.5).value();
+        const bool said = std::ranges::any_of(result.notes, [](const std::string& note) {
+            return note.find("pyramids of 13 or 19 nodes") != note.npos;
+        });
+        EXPECT_EQ(said, std::string(shape) == "pyramid") << shape;
+    }
+}
+
 TEST(CurvedSession, GivesTheUsersCellsAndCarriesFields) {
     const CurvedGrid made = ball(2);
     std::vector<double> x(made.grid.points.tuples()), number(made.grid.cells.count());
