@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include <isotet/array.hpp>
@@ -22,7 +23,7 @@ namespace isotet {
 ///     options.active_cells_only = true;
 ///     extract_direct(grid, field, isovalues, options);
 ///
-/// For tetrahedra, voxels, hexahedra, wedges or pyramids, all cells of one type, without point numbers.
+/// For tetrahedra, voxels, hexahedra, wedges and pyramids, without point numbers.
 ///
 /// Memory    a byte a point for each isovalue, and twice the cells that are kept: of smooth fields a few of a hundred
 /// Threads   add() is safe from many threads
@@ -31,12 +32,13 @@ public:
     /// `points`      of the whole grid, as Grid::points
     /// `field`       one scalar a point
     /// `isovalues`   at least one; those that will be extracted
+    /// `type`        of all cells, for add(); nothing where cells have types of their own, for add_cells()
     /// `options`     those of the extraction. Cell fields, source cells and gradient normals need all cells
     ///
     /// Cost     two passes over points and values for each isovalue
     /// Errors   invalid_argument: no isovalue, one that is not finite, options that need all cells, arrays that do not fit
     static Result<ActiveCellFilter> create(const Array& points, const PointField& field,
-                                           std::span<const double> isovalues, CellType type,
+                                           std::span<const double> isovalues, std::optional<CellType> type,
                                            const DirectOptions& options = {});
 
     /// Point numbers of corners, of 32 or 64 bits; `first`: how many corners of the grid's connectivity come before.
@@ -45,9 +47,14 @@ public:
     /// Cost   at the speed of memory
     void add(std::uint64_t first, const Array& corners);
 
+    /// Whole cells, of VTK's types, and their corners one after another; `first_cell`: how many cells come before.
+    /// Vertices, lines, triangles, pixels and quadrilaterals are kept, all of them; other types are an error of
+    /// finish(). Else as add().
+    void add_cells(std::uint64_t first_cell, std::span<const std::uint8_t> types, const Array& corners);
+
     /// The cells that were kept, in their order, and the first cell of all, so that there is one.
-    /// Errors   invalid_data: a cell has a point that is not there, or one whose coordinates are not finite or 2^91 or
-    ///          more; survey() tells which
+    /// Errors   invalid_data: a cell has a type that is not taken, a point that is not there, or one whose coordinates
+    ///          are not finite or 2^91 or more; survey() tells which
     Result<Cells> finish();
 
     ActiveCellFilter(ActiveCellFilter&&) noexcept;

@@ -32,8 +32,8 @@ ActiveCellFilter& ActiveCellFilter::operator=(ActiveCellFilter&&) noexcept = def
 ActiveCellFilter::~ActiveCellFilter() = default;
 
 Result<ActiveCellFilter> ActiveCellFilter::create(const Array& points, const PointField& field,
-                                                  std::span<const double> isovalues, CellType type,
-                                                  const DirectOptions& options) {
+                                                  std::span<const double> isovalues,
+                                                  std::optional<CellType> type, const DirectOptions& options) {
     return core::guarded("looking for active cells", [&]() -> Result<ActiveCellFilter> {
         if (isovalues.empty()) return invalid_argument("active cells are those that isovalues cut, but there is none");
         if (auto ok = api::check_isovalues(isovalues); !ok) return ok.error();
@@ -42,7 +42,7 @@ Result<ActiveCellFilter> ActiveCellFilter::create(const Array& points, const Poi
         Grid grid;
         grid.points = points;
         grid.cells.connectivity = Array(ScalarType::int32, nullptr, 0, 1, nullptr);
-        grid.cells.uniform_type = type;
+        grid.cells.uniform_type = type.value_or(CellType::tetrahedron);
         const auto cells = core::CellReader::open(grid);
         if (!cells) return cells.error();
         if (auto ok = api::check_point_fields(points.tuples(), field, extract.point_fields); !ok) return ok.error();
@@ -67,14 +67,23 @@ void ActiveCellFilter::add(std::uint64_t first, const Array& corners) {
     }
 }
 
+void ActiveCellFilter::add_cells(std::uint64_t first_cell, std::span<const std::uint8_t> types, const Array& corners) {
+    if (!data_) return;
+    try {
+        data_->filter->add_cells(first_cell, types, corners);
+    } catch (const std::bad_alloc&) {
+        data_->out_of_memory = true;
+    }
+}
+
 Result<Cells> ActiveCellFilter::finish() {
     return core::guarded("looking for active cells", [&]() -> Result<Cells> {
         if (!data_) return moved_from("the filter of active cells");
         if (data_->out_of_memory) return Error{ErrorCode::out_of_memory, "looking for active cells ran out of memory"};
         auto cells = data_->filter->finish();
         if (!cells)
-            return invalid_data("a cell has a point that is not there, or one whose coordinates are not finite or 2^91 "
-                                "or more");
+            return invalid_data("a cell has a type that is not taken, a point that is not there, or one whose "
+                                "coordinates are not finite or 2^91 or more");
         return *std::move(cells);
     });
 }

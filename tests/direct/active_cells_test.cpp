@@ -39,6 +39,27 @@ Result<Cells> filtered(const Grid& grid, const PointField& field, const std::vec
     return filter->finish();
 }
 
+/// The same with the type of each cell.
+Result<Cells> filtered_by_cells(const Grid& grid, const PointField& field, const std::vector<double>& isovalues,
+                                const DirectOptions& options, std::uint32_t seed) {
+    auto filter = ActiveCellFilter::create(grid.points, field, isovalues, std::nullopt, options);
+    if (!filter) return filter.error();
+    std::mt19937 draw(seed);
+    const auto types = grid.cells.types.as<std::uint8_t>();
+    std::vector<std::pair<std::size_t, std::size_t>> pieces;
+    for (std::size_t begin = 0; begin < types.size(); begin += pieces.back().second)
+        pieces.emplace_back(begin, std::min<std::size_t>(types.size() - begin, 1 + draw() % (seed % 2 ? 3000 : 5)));
+    std::ranges::shuffle(pieces, draw);
+    for (const auto& [begin, size] : pieces) {
+        std::vector<std::int64_t> corners;
+        const auto end = static_cast<std::size_t>(grid.cells.offsets.at(begin + size));
+        for (auto i = static_cast<std::size_t>(grid.cells.offsets.at(begin)); i < end; ++i)
+            corners.push_back(static_cast<std::int64_t>(grid.cells.connectivity.at(i)));
+        filter->add_cells(begin, types.subspan(begin, size), Array::borrow(corners));
+    }
+    return filter->finish();
+}
+
 /// A grid whose cells stand one after another without types, as they are here.
 Grid one_kind(const Grid& grid) {
     Grid out = grid;
@@ -72,7 +93,8 @@ std::optional<std::size_t> expect_same_surfaces(const Grid& grid, const PointFie
                                                 std::uint32_t seed) {
     const DirectExtraction all = extract_direct(grid, field, isovalues, options).value();
     Grid some = grid;
-    some.cells = filtered(grid, field, isovalues, options, seed).value();
+    const auto filter = grid.cells.types.empty() ? filtered : filtered_by_cells;
+    some.cells = filter(grid, field, isovalues, options, seed).value();
     options.active_cells_only = true;
     const DirectExtraction active = extract_direct(some, field, isovalues, options).value();
     if (active.needs_all_cells) return std::nullopt;
@@ -108,6 +130,30 @@ TEST(ActiveCells, GiveTheSurfacesOfAllCellsOfSmoothFields) {
             // A few more, of points at the ends of the range.
             EXPECT_LT(*kept, count_active(grid, field, isovalues) * 11 / 10);
         }
+    }
+}
+
+TEST(ActiveCells, MayHaveTypesOfTheirOwn) {
+    const Grid grid = made_grid("mixed", 20, {"gyroid", "integer"});
+    for (const std::uint32_t seed : {1U, 2U})
+        for (const Ties ties : {Ties::merge, Ties::keep}) {
+            const auto kept = expect_same_surfaces(grid, point_field(grid, 0), {-0.5, 0.1}, with_edge_ends(ties), seed);
+            ASSERT_TRUE(kept);
+            EXPECT_LT(*kept, grid.cells.count() / 2);
+            EXPECT_TRUE(expect_same_surfaces(grid, point_field(grid, 1), {2}, with_edge_ends(ties), seed));
+        }
+}
+
+TEST(ActiveCells, RefuseTypesThatAreNotTakenAndCornersThatDoNotFit) {
+    const Grid grid = made_grid("mixed", 3, {"gyroid"});
+    const std::vector<double> isovalues{0.1};
+    const std::vector<std::int32_t> corners{0, 1, 2, 3, 4};
+    for (const std::vector<std::uint8_t>& types : {std::vector<std::uint8_t>{7}, {24}, {10}, {10, 10}, {1, 10, 10}}) {
+        auto filter = ActiveCellFilter::create(grid.points, point_field(grid, 0), isovalues, std::nullopt).value();
+        filter.add_cells(0, types, Array::borrow(corners));
+        const auto cells = filter.finish();
+        ASSERT_FALSE(cells);
+        EXPECT_EQ(cells.error().code, ErrorCode::invalid_data);
     }
 }
 

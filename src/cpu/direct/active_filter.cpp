@@ -16,6 +16,7 @@
 #include "base/parallel.hpp"
 #include "cpu/direct/arena.hpp"
 #include "cpu/direct/side_sums.hpp"
+#include "grid/fixed_corners.hpp"
 
 namespace isotet::cpu::direct {
 
@@ -25,16 +26,29 @@ namespace {
 template <class Point>
 class Filter final : public ActiveFilter {
 public:
-    Filter(std::vector<Sides> sides, CellType type)
+    Filter(std::vector<Sides> sides, std::optional<CellType> type)
         : sides_(std::move(sides)),
-          type_(type),
-          corners_(static_cast<std::size_t>(core::corners_of(static_cast<std::uint8_t>(type)))) {}
+          mixed_(!type),
+          type_(static_cast<std::uint8_t>(type.value_or(CellType::tetrahedron))),
+          corners_(core::fixed_corners_of(type_)) {}
 
     void add(std::uint64_t first, const Array& corners) override {
         corners.visit([&](auto values) {
             using Index = std::remove_const_t<typename decltype(values)::element_type>;
-            if constexpr (std::is_integral_v<Index> && sizeof(Index) >= 4) add_typed(first, values);
-            else broken_ = true;
+            if constexpr (std::is_integral_v<Index> && sizeof(Index) >= 4) {
+                if (!mixed_) return add_typed(first, values);
+            }
+            broken_ = true;
+        });
+    }
+
+    void add_cells(std::uint64_t first_cell, std::span<const std::uint8_t> types, const Array& corners) override {
+        corners.visit([&](auto values) {
+            using Index = std::remove_const_t<typename decltype(values)::element_type>;
+            if constexpr (std::is_integral_v<Index> && sizeof(Index) >= 4) {
+                if (mixed_) return add_mixed(first_cell, types, values);
+            }
+            broken_ = true;
         });
     }
 
@@ -55,7 +69,8 @@ public:
         Cells cells;
         cells.connectivity =
             places.back() ? std::move(connectivity).to_array() : Array(scalar_type_of<Index>(), nullptr, 0, 1, nullptr);
-        cells.uniform_type = type_;
+        cells.uniform_type = static_cast<CellType>(type_);
+        if (mixed_ && !runs.empty()) add_types(runs, cells);
         return cells;
     }
 
@@ -65,7 +80,22 @@ private:
         std::uint64_t first_cell; ///< of those that were looked at
         const Point* corners;
         std::size_t count;
+        std::uint8_t type;
     };
+
+    static void add_types(const std::vector<Run>& runs, Cells& cells) {
+        std::vector<std::int64_t> offsets{0};
+        std::vector<std::uint8_t> types;
+        for (const Run& run : runs) {
+            const std::size_t corners = core::fixed_corners_of(run.type);
+            for (std::size_t i = 0; i < run.count; i += corners) {
+                offsets.push_back(offsets.back() + static_cast<std::int64_t>(corners));
+                types.push_back(run.type);
+            }
+        }
+        cells.offsets = Array::own(std::move(offsets));
+        cells.types = Array::own(std::move(types));
+    }
 
     /// What a thread has kept, in blocks that stay where they are.
     struct Kept {
@@ -96,7 +126,21 @@ private:
         const std::size_t cells = (corners.size() - head) / corners_, tail = corners.size() - head - cells * corners_;
         if (head) keep_fragment(first, corners.first(head));
         if (tail) keep_fragment(first + head + cells * corners_, corners.last(tail));
-        pass((first + head) / corners_, corners.data() + head, cells);
+        pass(type_, (first + head) / corners_, corners.data() + head, cells);
+    }
+
+    template <class Index>
+    void add_mixed(std::uint64_t first_cell, std::span<const std::uint8_t> types, std::span<const Index> corners) {
+        std::size_t next = 0;
+        for (std::size_t begin = 0, end = 0; begin < types.size(); begin = end) {
+            while (end < types.size() && types[end] == types[begin]) ++end;
+            const std::size_t count = (end - begin) * core::fixed_corners_of(types[begin]);
+            if (count == 0 || count > corners.size() - next) broken_ = true;
+            if (broken_.load(std::memory_order_relaxed)) return;
+            pass(types[begin], first_cell + begin, corners.data() + next, end - begin);
+            next += count;
+        }
+        if (next != corners.size()) broken_ = true;
     }
 
     template <class Index>
@@ -113,35 +157,55 @@ private:
         for (const Fragment& fragment : fragments_) {
             cell.insert(cell.end(), fragment.corners.begin(), fragment.corners.end());
             if (cell.size() < corners_) continue;
-            pass(fragment.first / corners_, cell.data(), 1);
+            pass(type_, fragment.first / corners_, cell.data(), 1);
             cell.clear();
         }
         fragments_.clear();
     }
 
     template <class Index>
-    void pass(std::uint64_t first_cell, const Index* corners, std::size_t cells) {
-        switch (corners_) {
-        case 4: return pass_like<4>(first_cell, corners, cells);
-        case 5: return pass_like<5>(first_cell, corners, cells);
-        case 6: return pass_like<6>(first_cell, corners, cells);
-        default: return pass_like<8>(first_cell, corners, cells);
+    void pass(std::uint8_t type, std::uint64_t first_cell, const Index* corners, std::size_t cells) {
+        if (!core::is_contoured(type)) return keep_all(type, first_cell, corners, cells);
+        switch (core::corners_of(type)) {
+        case 4: return pass_like<4>(type, first_cell, corners, cells);
+        case 5: return pass_like<5>(type, first_cell, corners, cells);
+        case 6: return pass_like<6>(type, first_cell, corners, cells);
+        default: return pass_like<8>(type, first_cell, corners, cells);
+        }
+    }
+
+    /// Cells that are not contoured are counted later.
+    template <class Index>
+    void keep_all(std::uint8_t type, std::uint64_t first_cell, const Index* corners, std::size_t cells) {
+        Kept& kept = kept_.local();
+        const std::size_t n = core::fixed_corners_of(type);
+        for (std::size_t begin = 0; begin < cells; begin += cells_at_once) {
+            const std::size_t count = n * std::min(cells_at_once, cells - begin);
+            Point* const room = kept.room(count);
+            for (std::size_t i = 0; i < count; ++i) {
+                const auto corner = static_cast<std::make_unsigned_t<Index>>(corners[n * begin + i]);
+                if (corner >= sides_.front().points()) broken_ = true;
+                room[i] = static_cast<Point>(corner);
+            }
+            kept.left -= count;
+            kept.runs.push_back({first_cell + begin, room, count, type});
         }
     }
 
     template <std::size_t n, class Index>
-    void pass_like(std::uint64_t first_cell, const Index* corners, std::size_t cells) {
+    void pass_like(std::uint8_t type, std::uint64_t first_cell, const Index* corners, std::size_t cells) {
         std::array<std::uint16_t, cells_at_once> sums;
         std::array<std::uint32_t, cells_at_once> places;
         for (std::size_t begin = 0; begin < cells && !broken_.load(std::memory_order_relaxed); begin += cells_at_once) {
-            const std::size_t size = std::min(cells_at_once, cells - begin);
+            const std::size_t size = std::min(cells_at_once, cells - begin), looked_at = (size + 15) / 16 * 16;
             const Index* const part = corners + n * begin;
             std::array<std::uint64_t, cells_at_once / 64> keep{};
             if (first_cell + begin == 0 && size) keep[0] = 1; // so that there is a cell to contour
             for (Sides& sides : sides_) {
                 if (!add_up_sides<n>(sides, part, size, sums.data())) broken_ = true;
-                std::fill(sums.begin() + static_cast<std::ptrdiff_t>(size), sums.end(), 0);
-                const std::size_t found = find_worth_looking<n>(sums, places.data());
+                std::fill(sums.data() + size, sums.data() + looked_at, std::uint16_t{0});
+                const std::size_t found =
+                    find_worth_looking<n>(sums, places.data(), static_cast<std::uint32_t>(looked_at));
                 for (std::size_t i = 0; i < found; ++i) {
                     const std::uint32_t place = places[i];
                     const bool asked_for = sums[place] >= 16 && uses_watched<n>(sides, part + n * place);
@@ -149,7 +213,7 @@ private:
                         keep[place / 64] |= std::uint64_t{1} << (place % 64);
                 }
             }
-            take<n>(first_cell + begin, part, keep);
+            take<n>(type, first_cell + begin, part, keep);
         }
     }
 
@@ -171,7 +235,7 @@ private:
     }
 
     template <std::size_t n, class Index>
-    void take(std::uint64_t first_cell, const Index* corners,
+    void take(std::uint8_t type, std::uint64_t first_cell, const Index* corners,
               const std::array<std::uint64_t, cells_at_once / 64>& keep) {
         std::size_t count = 0;
         for (const std::uint64_t word : keep) count += static_cast<std::size_t>(std::popcount(word));
@@ -185,12 +249,13 @@ private:
                 for (std::size_t k = 0; k < n; ++k) *next++ = static_cast<Point>(corners[n * place + k]);
             }
         kept.left -= n * count;
-        kept.runs.push_back({first_cell, room, n * count});
+        kept.runs.push_back({first_cell, room, n * count, type});
     }
 
     std::vector<Sides> sides_; ///< one an isovalue
-    CellType type_;
-    std::size_t corners_; ///< of a cell
+    bool mixed_; ///< each cell has its own type
+    std::uint8_t type_;
+    std::size_t corners_; ///< of a cell of the type
     std::atomic<bool> broken_{false};
     tbb::enumerable_thread_specific<Kept> kept_;
     std::mutex mutex_;
@@ -204,7 +269,7 @@ namespace isotet::cpu {
 
 template <class Real>
 std::unique_ptr<ActiveFilter> make_active_filter(const ops::DirectInput& input, const ops::DirectRequest& request,
-                                                 CellType type) {
+                                                 std::optional<CellType> type) {
     using namespace direct;
     const std::size_t points = input.grid.points.tuples();
     const PointSurvey survey = survey_points<Real>(input, nullptr);
@@ -219,8 +284,8 @@ std::unique_ptr<ActiveFilter> make_active_filter(const ops::DirectInput& input, 
 }
 
 template std::unique_ptr<ActiveFilter> make_active_filter<float>(const ops::DirectInput&, const ops::DirectRequest&,
-                                                                 CellType);
+                                                                 std::optional<CellType>);
 template std::unique_ptr<ActiveFilter> make_active_filter<double>(const ops::DirectInput&, const ops::DirectRequest&,
-                                                                  CellType);
+                                                                  std::optional<CellType>);
 
 } // namespace isotet::cpu

@@ -1,12 +1,14 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// The cells that direct extraction of some isovalues needs, kept of cells of one type that come by in pieces.
+// The cells that direct extraction of some isovalues needs, kept of cells that come by in pieces.
 //
 // These are the cells with corners on both sides of an isovalue, and one for each point that must be known to be used
 // (points.hpp): with them extraction sees all that it would see with all cells.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "ops/direct.hpp"
 
@@ -20,14 +22,18 @@ public:
     /// order, from any thread.
     virtual void add(std::uint64_t first, const Array& corners) = 0;
 
+    /// Whole cells with their types, of filters without a type: each cell once, in any order, from any thread.
+    virtual void add_cells(std::uint64_t first_cell, std::span<const std::uint8_t> types, const Array& corners) = 0;
+
     /// The cells in their order; nothing where one has a point that is not there, or that no cell may use.
     virtual std::optional<Cells> finish() = 0;
 };
 
 /// `input`   the cells are not looked at
+/// `type`    of all cells; nothing: of each its own
 /// Cost      two passes over points and values, a byte a point for each isovalue
 template <class Real>
 std::unique_ptr<ActiveFilter> make_active_filter(const ops::DirectInput& input, const ops::DirectRequest& request,
-                                                 CellType type);
+                                                 std::optional<CellType> type);
 
 } // namespace isotet::cpu

@@ -66,12 +66,14 @@ constexpr bool has_both_sides(unsigned sum) {
 }
 
 /// Writes the places of cells of `n` corners on both sides, or with one that needs attention; returns how many.
+/// `cells`   a multiple of 16
 template <std::size_t n>
-std::size_t find_worth_looking(const std::array<std::uint16_t, cells_at_once>& sums, std::uint32_t* places) {
+std::size_t find_worth_looking(const std::array<std::uint16_t, cells_at_once>& sums, std::uint32_t* places,
+                               std::uint32_t cells = cells_at_once) {
     std::size_t found = 0;
 #if defined(__SSE2__)
     const __m128i one = _mm_set1_epi8(1), most = _mm_set1_epi8(n - 2), attention = _mm_set1_epi8(16);
-    for (std::uint32_t i = 0; i < cells_at_once; i += 16) {
+    for (std::uint32_t i = 0; i < cells; i += 16) {
         const __m128i low = _mm_loadu_si128(reinterpret_cast<const __m128i*>(&sums[i]));
         const __m128i high = _mm_loadu_si128(reinterpret_cast<const __m128i*>(&sums[i + 8]));
         const __m128i sum = _mm_packus_epi16(low, high); // 255 where it is more
@@ -82,7 +84,7 @@ std::size_t find_worth_looking(const std::array<std::uint16_t, cells_at_once>& s
             places[found++] = i + static_cast<std::uint32_t>(std::countr_zero(bits));
     }
 #else
-    for (std::uint32_t i = 0; i < cells_at_once; ++i) {
+    for (std::uint32_t i = 0; i < cells; ++i) {
         places[found] = i;
         found += has_both_sides<n>(sums[i]) || sums[i] >= 16;
     }

@@ -1,0 +1,22 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "grid/cells.hpp"
+
+namespace isotet::core {
+
+/// Corners of a contoured type, a vertex, line, triangle, pixel or quadrilateral; 0 for all others.
+constexpr std::uint64_t fixed_corners_of(std::uint8_t vtk_type) {
+    switch (vtk_type) {
+    case 1: return 1;
+    case 3: return 2;
+    case 5: return 3;
+    case 8:
+    case 9: return 4;
+    default: return static_cast<std::uint64_t>(corners_of(vtk_type));
+    }
+}
+
+} // namespace isotet::core
