@@ -54,7 +54,7 @@ std::string reference_file(ExtractJob job, const test::TemporaryFolder& folder) 
 TEST(ActiveCellsOfFiles, AreReadWhereThatCanBeDone) {
     const test::TemporaryFolder folder;
     const std::string file = folder.file("grid.vtu");
-    for (const char* shape : {"kuhn", "shuffled", "hex"})
+    for (const char* shape : {"kuhn", "shuffled", "hex", "mixed"})
         for (const Compression compression : {Compression::none, Compression::zlib, Compression::lz4}) {
             SCOPED_TRACE(testing::Message() << shape << " " << name_of(compression));
             const Grid grid = made(shape, 40);
@@ -72,7 +72,7 @@ TEST(ActiveCellsOfFiles, AreReadWhereThatCanBeDone) {
 TEST(ActiveCellsOfFiles, GiveTheFileOfAllCells) {
     const test::TemporaryFolder folder;
     const std::string file = folder.file("grid.vtu");
-    for (const char* shape : {"kuhn", "shuffled", "hex", "layer"})
+    for (const char* shape : {"kuhn", "shuffled", "hex", "layer", "mixed"})
         for (const bool degenerate : {false, true}) {
             SCOPED_TRACE(testing::Message() << shape << " " << degenerate);
             const Grid grid = made(shape, 16);
@@ -86,6 +86,39 @@ TEST(ActiveCellsOfFiles, GiveTheFileOfAllCells) {
             EXPECT_FALSE(was_read_twice(listener));
             EXPECT_TRUE(test::content_of(job.out) == reference_file(job, folder));
         }
+}
+
+TEST(ActiveCellsOfFiles, AreAmongCellsWithoutVolume) {
+    const test::TemporaryFolder folder;
+    Grid grid = made("mixed", 8);
+    std::vector<std::int64_t> corners{0, 1, 2, 5}, offsets{0, 1, 4}; // a vertex and a triangle come first
+    std::vector<std::uint8_t> types{1, 5};
+    for (std::size_t cell = 0; cell < grid.cells.count(); ++cell) {
+        for (auto i = static_cast<std::size_t>(grid.cells.offsets.at(cell)); i < grid.cells.offsets.at(cell + 1); ++i)
+            corners.push_back(static_cast<std::int64_t>(grid.cells.connectivity.at(i)));
+        types.push_back(static_cast<std::uint8_t>(grid.cells.types.at(cell)));
+        offsets.push_back(static_cast<std::int64_t>(corners.size()));
+        if (cell % 3 != 0) continue;
+        corners.insert(corners.end(), {3, 7, 8, 4}); // a quadrilateral
+        types.push_back(9);
+        offsets.push_back(static_cast<std::int64_t>(corners.size()));
+    }
+    grid.cells.connectivity = Array::own(std::move(corners));
+    grid.cells.offsets = Array::own(std::move(offsets));
+    grid.cells.types = Array::own(std::move(types));
+    const std::string file = folder.file("grid.vtu");
+    ASSERT_TRUE(write_grid(grid, file));
+    EXPECT_EQ(read(file, active_options({0.1})).value().cells_in_file, grid.cells.count());
+    for (const double isovalue : {0.1, 17.0}) {
+        ExtractJob job = active_job(file, folder.file("active.vtp"));
+        job.isovalues = {isovalue};
+        Listener listener, other;
+        EXPECT_EQ(extract_files(job, listener).value().cells, grid.cells.count());
+        EXPECT_TRUE(test::content_of(job.out) == reference_file(job, folder));
+        job.engine = EngineChoice::reference;
+        EXPECT_TRUE(extract_files(job, other));
+        EXPECT_EQ(listener.noted, other.noted) << "cells left out are told";
+    }
 }
 
 TEST(ActiveCellsOfFiles, AreOfEachStep) {
@@ -150,7 +183,7 @@ TEST(ActiveCellsOfFiles, AreNotReadAloneWhereOthersMatter) {
     options.active_cells = ReadActiveCells{"gyroid", {}, {}};
     EXPECT_FALSE(read(file, options).value().cells_in_file);
 
-    ASSERT_TRUE(write_grid(made("mixed", 6), file));
+    ASSERT_TRUE(write_grid(made("kelvin", 3), file));
     EXPECT_FALSE(read(file, active_options({0.1})).value().cells_in_file);
 
     grid = made("kuhn", 6);

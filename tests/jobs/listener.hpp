@@ -13,7 +13,10 @@ namespace isotet::test {
 /// A caller that keeps what it is told.
 class Listener : public jobs::Caller {
 public:
-    Listener() { run_.progress.cancel = &stop; }
+    explicit Listener(int threads = 0) {
+        run_.threads = threads;
+        run_.progress.cancel = &stop;
+    }
 
     void note(const std::string& sentence) override {
         const std::lock_guard lock(mutex_);

@@ -5,7 +5,8 @@
 
 namespace isotet::io {
 
-std::optional<ActiveCellFilter> active_filter(const Grid& grid, CellType type, const ReadOptions& options) {
+std::optional<ActiveCellFilter> active_filter(const Grid& grid, std::optional<CellType> type,
+                                              const ReadOptions& options) {
     if (!options.active_cells || !grid.cell_fields.empty() || !options.displace.empty()) return std::nullopt;
     if (may_have_coincident_points(grid.points)) return std::nullopt;
     const auto field = find_field(grid, options.active_cells->field);

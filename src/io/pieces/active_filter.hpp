@@ -13,7 +13,8 @@ namespace isotet::io {
 /// there, there are cell fields, or points coincide, of which more can only be said with all cells.
 ///
 /// `grid`   points and fields, without cells
-/// `type`   of all cells
-std::optional<ActiveCellFilter> active_filter(const Grid& grid, CellType type, const ReadOptions& options);
+/// `type`   of all cells; nothing where they have types of their own
+std::optional<ActiveCellFilter> active_filter(const Grid& grid, std::optional<CellType> type,
+                                              const ReadOptions& options);
 
 } // namespace isotet::io

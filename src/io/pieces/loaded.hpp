@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,6 +14,8 @@
 #include <isotet/grid.hpp>
 #include <isotet/read.hpp>
 #include <isotet/result.hpp>
+
+#include "io/pieces/cell_source.hpp"
 
 namespace isotet::io {
 
@@ -27,6 +30,9 @@ struct Piece {
     /// Of a structured grid: first and last point along each axis, as the file numbers them.
     std::optional<std::array<std::int64_t, 6>> extent = {};
     std::string flat = {}; ///< of a structured grid without cells that have a volume: "a plane of 3 x 4 points"
+    std::shared_ptr<const CellSource> unread = {}; ///< the cells, where `grid` does not have them yet
+
+    std::uint64_t cell_count() const { return unread ? unread->count() : grid.cells.count(); }
 };
 
 struct Loaded {

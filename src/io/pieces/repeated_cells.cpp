@@ -23,11 +23,6 @@ using Corners = std::vector<std::uint64_t>;
 
 constexpr std::size_t cells_at_once = std::size_t{1} << 14;
 
-/// Solids are told apart by their points alone: a voxel may be a hexahedron. Of others the type tells, too.
-std::uint64_t kind_of(std::uint8_t type) {
-    return core::is_contoured(type) || is_curved(type) || core::is_polyhedral(type) ? 256 : type;
-}
-
 class Finder {
 public:
     Finder(std::vector<Piece>& pieces, const PointNumbers& numbers, const Progress& progress)
@@ -94,7 +89,7 @@ private:
         for (std::uint64_t i = cells_[p].begin(cell); i < end; ++i)
             result.push_back(numbers_.pieces[p](cells_[p].corner(i)));
         std::ranges::sort(result);
-        result.push_back(kind_of(cells_[p].type(cell)));
+        result.push_back(kind_for_repetition(cells_[p].type(cell)));
         return result;
     }
 
@@ -138,6 +133,10 @@ private:
 };
 
 } // namespace
+
+std::uint64_t kind_for_repetition(std::uint8_t type) {
+    return core::is_contoured(type) || is_curved(type) || core::is_polyhedral(type) ? 256 : type;
+}
 
 Result<RepeatedCells> leave_out_repeated(std::vector<Piece>& pieces, const PointNumbers& numbers,
                                          const Progress& progress) {

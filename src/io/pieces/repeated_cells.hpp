@@ -18,6 +18,9 @@ struct RepeatedCells {
     std::vector<std::size_t> pieces; ///< that have them, ascending
 };
 
+/// Solids are told apart by their points alone: a voxel may be a hexahedron. Of others the type tells, too.
+std::uint64_t kind_for_repetition(std::uint8_t type);
+
 /// Marks cells whose points are those of a cell of an earlier piece as left out (Piece::left_out).
 ///
 /// `numbers`   of points in the joined grid

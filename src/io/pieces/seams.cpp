@@ -126,12 +126,60 @@ private:
         for (const Chunk& chunk : chunks) candidates_.insert(candidates_.end(), chunk.found.begin(), chunk.found.end());
     }
 
+    static constexpr std::uint32_t no_point = ~std::uint32_t{0};
+    static constexpr std::uint64_t no_id = ~std::uint64_t{0};
+
+    std::pair<std::uint64_t, std::uint64_t> range_of_ids() const {
+        std::vector<std::pair<std::uint64_t, std::uint64_t>> ranges(pieces_.size(), {no_id, 0});
+        core::parallel_each(pieces_.size(), 1, [&](std::size_t p) {
+            pieces_[p].ids.visit([&](auto ids) {
+                for (const auto id : ids) {
+                    ranges[p].first = std::min(ranges[p].first, static_cast<std::uint64_t>(id));
+                    ranges[p].second = std::max(ranges[p].second, static_cast<std::uint64_t>(id));
+                }
+            });
+        });
+        std::pair<std::uint64_t, std::uint64_t> all{no_id, 0};
+        for (const auto& [lowest, highest] : ranges)
+            all = {std::min(all.first, lowest), std::max(all.second, highest)};
+        return all;
+    }
+
+    /// With a table of the last point of each number, in place of sorting all.
+    Result<void> judge_dense_ids(std::uint64_t lowest, std::uint64_t highest) {
+        const std::uint64_t numbers = highest - lowest + 1;
+        if (auto enough = core::require_memory("comparing global point numbers", sizeof no_point * numbers); !enough)
+            return enough.error();
+        core::Buffer<std::uint32_t> last(numbers);
+        core::parallel_each(numbers, seam_grain, [&](std::size_t i) { last[i] = no_point; });
+        bool shared = false, wrong = false;
+        for (std::size_t p = 0; p < pieces_.size() && !wrong; ++p) {
+            if (progress_.cancelled()) return cancelled();
+            pieces_[p].ids.visit([&](auto ids) {
+                for (std::size_t i = 0; i < ids.size() && !wrong; ++i) {
+                    if (!pieces_[p].use.empty() && pieces_[p].use[i] != PointUse::kept) continue;
+                    std::uint32_t& known = last[static_cast<std::uint64_t>(ids[i]) - lowest];
+                    const std::uint64_t here = first_[p] + i;
+                    if (known != no_point) {
+                        wrong = !are_near(place_of(here), place_of(known));
+                        shared = shared || piece_of(known) != p;
+                    }
+                    known = static_cast<std::uint32_t>(here);
+                }
+            });
+        }
+        seams_.ids = wrong ? IdUse::wrong : shared ? IdUse::trusted : IdUse::unshared;
+        return {};
+    }
+
     /// Whether global numbers can be trusted: of all points that are used, not of candidates only, since numbers that
     /// each piece counts for itself may agree by chance at some.
     Result<void> judge_ids() {
         for (const SeamPiece& piece : pieces_)
             if (piece.ids.size() != piece.points.tuples() || is_floating(piece.ids.type())) return {};
         const std::uint64_t count = first_.back();
+        if (const auto [lowest, highest] = range_of_ids(); highest - lowest < 4 * count && count < no_point)
+            return judge_dense_ids(lowest, highest);
         if (auto enough = core::require_memory("comparing global point numbers", 2 * sizeof(Keyed) * count); !enough)
             return enough.error();
         core::Buffer<Keyed> numbered(count), scratch(count);

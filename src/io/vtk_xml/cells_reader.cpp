@@ -15,6 +15,7 @@
 #include "base/errors.hpp"
 #include "base/parallel.hpp"
 #include "grid/cell_faces.hpp"
+#include "grid/fixed_corners.hpp"
 #include "io/files/scalars.hpp"
 #include "io/files/text_scanner.hpp"
 #include "io/pieces/active_filter.hpp"
@@ -43,14 +44,43 @@ bool is_whole(Value value) {
     else return true;
 }
 
+/// As int32 where all values fit; nothing where that gains nothing, or where one does not fit.
+Result<std::optional<Array>> narrowed(const StoredArray& stored, std::uint64_t size, std::size_t zeros) {
+    if (!NarrowIndices::narrows(stored.array().type) || !stored.has_blocks()) return std::optional<Array>();
+    NarrowIndices narrow(static_cast<std::size_t>(size) + zeros);
+    constexpr std::int64_t zero_in_front = 0;
+    for (std::size_t i = 0; i < zeros; ++i) narrow.add(i, std::span(&zero_in_front, 1));
+    auto done = stored.each_block([&](std::uint64_t first, std::span<const std::byte> bytes) {
+        with_type(stored.array().type, [&](auto zero) {
+            using Scalar = decltype(zero);
+            const auto* const values = reinterpret_cast<const Scalar*>(bytes.data());
+            narrow.add(first + zeros, std::span(values, bytes.size() / sizeof(Scalar)));
+        });
+    });
+    if (!done) return done.error();
+    return std::move(narrow).to_array();
+}
+
+/// As int32 where the type is narrower; floating ones, which some writers take, as int64.
+Result<Array> as_indices_of_cells(Array array, std::string_view name) {
+    if (!is_floating(array.type())) return size_of(array.type()) < 4 ? converted<std::int32_t>(array) : array;
+    const bool whole = all_pieces(array, [](std::uint64_t, auto values) {
+        return std::ranges::all_of(values, [](auto value) { return is_whole(value); });
+    });
+    if (!whole)
+        return invalid_data(fmt::format("Cells {} is {}, and not all of its values are whole numbers",
+                                        in_quotes(name), isotet::name_of(array.type())));
+    return converted<std::int64_t>(array);
+}
+
 class CellsReader {
 public:
-    CellsReader(Document& document, const CellsElement& element, const ActiveWish* active, const Progress& progress)
+    CellsReader(Document& document, const CellsElement& element, const CellsWish& wish, const Progress& progress)
         : document_(document),
           piece_(element.piece),
           count_(element.count),
           step_(element.step),
-          active_(active),
+          wish_(wish),
           progress_(progress) {}
 
     Result<CellsRead> read() {
@@ -61,31 +91,44 @@ public:
         if (!size) return size.error();
         const auto stored = find_stored("connectivity", *size);
         if (!stored) return stored.error();
-        if (active_ && cells.offsets.empty()) {
-            auto active = read_active(*stored, cells.uniform_type);
+        if (places_ && has_blocks_of_indices(*stored)) {
+            if (wish_.corners_later) return CellsRead{std::move(cells), false, *stored, std::move(places_)};
+            auto active = read_active(*stored);
             if (!active) return active.error();
             if (*active) return CellsRead{**std::move(active), true};
         }
-        auto connectivity = indices(*stored);
+        auto connectivity = read_corners(*stored);
         if (!connectivity) return connectivity.error();
-        cells.connectivity = std::move(*connectivity);
+        if (places_) cells = cells_at(*places_, cells.types, *std::move(connectivity));
+        else cells.connectivity = *std::move(connectivity);
         if (auto read = read_faces(cells); !read) return read.error();
         if (is_of_vtk_8()) reorder_old_hexahedra(cells);
-        return CellsRead{std::move(cells), false};
+        return CellsRead{std::move(cells)};
     }
 
 private:
+    static bool has_blocks_of_indices(const StoredArray& stored) {
+        return size_of(stored.array().type) >= 4 && !is_floating(stored.array().type) && stored.has_blocks();
+    }
+
     /// Nothing where all cells are needed.
-    Result<std::optional<Cells>> read_active(const StoredArray& corners, CellType type) const {
+    Result<std::optional<Cells>> read_active(const StoredArray& corners) const {
         std::optional<Cells> cells;
+        if (!wish_.active) return cells;
         const ScalarType index = corners.array().type;
-        if (size_of(index) < 4 || !corners.has_blocks()) return cells;
-        auto filter = active_filter(active_->grid, type, active_->options);
+        std::optional<CellType> type;
+        if (places_->are_uniform()) type = static_cast<CellType>(places_->type(0));
+        auto filter = active_filter(wish_.active->grid, type, wish_.active->options);
         if (!filter) return cells;
+        WholeCells whole(*places_, [&](std::uint64_t first, std::uint64_t count, const Array& of_cells) {
+            filter->add_cells(first, places_->types(first, count), of_cells);
+        });
         auto done = corners.each_block([&](std::uint64_t first, std::span<const std::byte> bytes) {
-            filter->add(first, Array(index, bytes.data(), bytes.size() / size_of(index), 1, nullptr));
+            const Array block(index, bytes.data(), bytes.size() / size_of(index), 1, nullptr);
+            type ? filter->add(first, block) : whole.add(first, block);
         });
         if (!done) return done.error();
+        whole.finish();
         auto kept = filter->finish();
         if (kept) cells = *std::move(kept);
         else if (kept.error().code != ErrorCode::invalid_data) return kept.error();
@@ -211,7 +254,7 @@ private:
     }
 
     /// Returns how many corners there are. Neither types nor offsets become arrays where they say nothing.
-    Result<std::uint64_t> read_types_and_offsets(Cells& cells) const {
+    Result<std::uint64_t> read_types_and_offsets(Cells& cells) {
         const auto types = find_of_cells("types");
         if (!types) return types.error();
         const auto type = one_type(*types);
@@ -226,17 +269,43 @@ private:
             if (!regular) return regular.error();
             if (*regular) {
                 cells.uniform_type = static_cast<CellType>(**type);
+                places_ = CellPlaces(cells.uniform_type, count_);
                 return count_ * *corners;
             }
         }
         if (*type)
             if (auto read = read_types(*types, cells); !read) return read.error();
+        if (wish_.active || wish_.corners_later) {
+            if (auto found = find_places(*offsets, cells.types); !found) return found.error();
+            if (places_) return places_->corners();
+        }
         auto from_0 = offsets_from_0(*offsets);
         if (!from_0) return from_0.error();
         const auto last = last_of(*from_0);
         cells.offsets = std::move(*from_0);
         simplify(cells);
         return last;
+    }
+
+    /// Sets places_ where the types tell all that the offsets do.
+    Result<void> find_places(const StoredArray& offsets, const Array& types) {
+        auto places = CellPlaces::make(types.as<std::uint8_t>());
+        if (!places || !offsets.has_blocks()) return {};
+        const auto same = with_type(offsets.array().type, [&](auto zero) -> Result<bool> {
+            using Scalar = decltype(zero);
+            if constexpr (std::is_integral_v<Scalar>) {
+                if (!std::in_range<Scalar>(places->corners())) return false;
+                return offsets.holds([&](std::uint64_t first, std::span<std::byte> bytes) {
+                    auto* const values = reinterpret_cast<Scalar*>(bytes.data());
+                    std::uint64_t end = places->begin(first);
+                    for (std::size_t i = 0; i < bytes.size() / sizeof(Scalar); ++i)
+                        values[i] = static_cast<Scalar>(end += core::fixed_corners_of(places->type(first + i)));
+                });
+            } else return false; // find() takes no floating offsets
+        });
+        if (!same) return same.error();
+        if (*same) places_ = std::move(places);
+        return {};
     }
 
     /// The type of all cells, looked at block by block; nothing where there are several, or no such blocks.
@@ -280,23 +349,6 @@ private:
         });
     }
 
-    /// As int32 where all values fit; nothing where that gains nothing, or where one does not fit.
-    static Result<std::optional<Array>> narrowed(const StoredArray& stored, std::uint64_t size, std::size_t zeros) {
-        if (!NarrowIndices::narrows(stored.array().type) || !stored.has_blocks()) return std::optional<Array>();
-        NarrowIndices narrow(static_cast<std::size_t>(size) + zeros);
-        constexpr std::int64_t zero_in_front = 0;
-        for (std::size_t i = 0; i < zeros; ++i) narrow.add(i, std::span(&zero_in_front, 1));
-        auto done = stored.each_block([&](std::uint64_t first, std::span<const std::byte> bytes) {
-            with_type(stored.array().type, [&](auto zero) {
-                using Scalar = decltype(zero);
-                const auto* const values = reinterpret_cast<const Scalar*>(bytes.data());
-                narrow.add(first + zeros, std::span(values, bytes.size() / sizeof(Scalar)));
-            });
-        });
-        if (!done) return done.error();
-        return std::move(narrow).to_array();
-    }
-
     /// With the 0 in front that files leave out.
     Result<Array> offsets_from_0(const StoredArray& stored) const {
         auto narrow = narrowed(stored, count_, 1);
@@ -320,44 +372,34 @@ private:
 
     Result<Array> indices(const char* name, std::uint64_t size) const {
         const auto stored = find_stored(name, size);
-        return stored ? indices(*stored) : stored.error();
-    }
-
-    static Result<Array> indices(const StoredArray& stored) {
-        auto narrow = narrowed(stored, stored.scalars(), 0);
-        if (!narrow) return narrow.error();
-        if (*narrow) return **std::move(narrow);
-        auto values = filled_array(stored.array().type, static_cast<std::size_t>(stored.scalars()), 1,
-                                   [&](std::byte* to) { return stored.decode(to); });
-        if (!values) return values;
-        return as_indices_of_cells(std::move(*values), stored.array().name);
-    }
-
-    /// As int32 where the type is narrower; floating ones, which some writers take, as int64.
-    static Result<Array> as_indices_of_cells(Array array, std::string_view name) {
-        if (!is_floating(array.type())) return size_of(array.type()) < 4 ? converted<std::int32_t>(array) : array;
-        const bool whole = all_pieces(
-            array, [](std::uint64_t, auto values) { return std::ranges::all_of(values, [](auto value) { return is_whole(value); }); });
-        if (!whole)
-            return invalid_data(fmt::format("Cells {} is {}, and not all of its values are whole numbers",
-                                            in_quotes(name), isotet::name_of(array.type())));
-        return converted<std::int64_t>(array);
+        return stored ? read_corners(*stored) : stored.error();
     }
 
     Document& document_;
     pugi::xml_node piece_;
     std::uint64_t count_;
     std::size_t step_;
-    const ActiveWish* active_; ///< null: all cells are wanted
+    CellsWish wish_;
     const Progress& progress_;
     Section section_;
+    std::optional<CellPlaces> places_; ///< where there are no offsets
 };
 
 } // namespace
 
-Result<CellsRead> read_cells(Document& document, const CellsElement& element, const ActiveWish* active,
+Result<CellsRead> read_cells(Document& document, const CellsElement& element, const CellsWish& wish,
                              const Progress& progress) {
-    return CellsReader(document, element, active, progress).read();
+    return CellsReader(document, element, wish, progress).read();
+}
+
+Result<Array> read_corners(const StoredArray& stored) {
+    auto narrow = narrowed(stored, stored.scalars(), 0);
+    if (!narrow) return narrow.error();
+    if (*narrow) return **std::move(narrow);
+    auto values = filled_array(stored.array().type, static_cast<std::size_t>(stored.scalars()), 1,
+                               [&](std::byte* to) { return stored.decode(to); });
+    if (!values) return values;
+    return as_indices_of_cells(std::move(*values), stored.array().name);
 }
 
 } // namespace isotet::io::vtk_xml

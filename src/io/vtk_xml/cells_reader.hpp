@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include <pugixml.hpp>
 
@@ -12,7 +13,9 @@
 #include <isotet/read.hpp>
 #include <isotet/result.hpp>
 
+#include "io/pieces/cell_places.hpp"
 #include "io/vtk_xml/document.hpp"
+#include "io/vtk_xml/stored_array.hpp"
 
 namespace isotet::io::vtk_xml {
 
@@ -28,14 +31,24 @@ struct ActiveWish {
     const ReadOptions& options;
 };
 
-struct CellsRead {
-    Cells cells;              ///< offsets and types are empty where all cells are of one kind, one after another
-    bool only_active = false; ///< others were left out
+/// Which cells are to be read.
+struct CellsWish {
+    const ActiveWish* active = nullptr; ///< null: all cells
+    bool corners_later = false;         ///< linear cells may be left where they are
 };
 
-/// `active`   null: all cells are wanted
+struct CellsRead {
+    Cells cells = {};         ///< offsets and types are empty where all cells are of one kind, one after another
+    bool only_active = false; ///< others were left out
+    std::optional<StoredArray> corners = {}; ///< where they were left: StoredArray::each_block() can be called
+    std::optional<CellPlaces> places = {};   ///< of these, which borrow the types of `cells`
+};
+
 /// Errors     invalid_data: arrays that are missing, too short, of other types; as StoredArray
-Result<CellsRead> read_cells(Document& document, const CellsElement& element, const ActiveWish* active,
+Result<CellsRead> read_cells(Document& document, const CellsElement& element, const CellsWish& wish,
                              const Progress& progress);
+
+/// Corners as Cells::connectivity, of 32 bits where all fit.
+Result<Array> read_corners(const StoredArray& stored);
 
 } // namespace isotet::io::vtk_xml

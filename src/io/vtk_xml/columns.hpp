@@ -61,6 +61,7 @@ struct Wanted {
     const ReadOptions& options;
     std::size_t step = 0;
     bool ids = false; ///< global numbers, to join files by
+    std::string path = {}; ///< where the file can be opened again; empty: nowhere
 };
 
 /// Reads point data and cell data into `piece`: fields that are wanted, ghost marks, global numbers. All arrays side by

@@ -28,8 +28,9 @@ void note_odd_lengths(const Document& document, std::vector<std::string>& notes)
 }
 
 /// Describes the document, and reads the grid of the step that is wanted.
-Result<Loaded> load_document(Document& document, const ReadOptions& options, Depth depth, bool ids,
-                             const Progress& progress) {
+Result<Loaded> load_document(const std::shared_ptr<Document>& shared, const std::string& path,
+                             const ReadOptions& options, Depth depth, bool ids, const Progress& progress) {
+    Document& document = *shared;
     const bool unstructured = document.type == "UnstructuredGrid";
     const auto layouts = unstructured ? layouts_of_unstructured(document) : layouts_of_structured(document);
     if (!layouts) return layouts.error();
@@ -39,9 +40,9 @@ Result<Loaded> load_document(Document& document, const ReadOptions& options, Dep
     if (auto told = announce_fields(document, *layouts, options, progress, loaded); !told) return told.error();
     loaded.cells = *cells;
     if (depth == Depth::description) return loaded;
-    const Wanted wanted{options, loaded.step, ids};
+    const Wanted wanted{options, loaded.step, ids, path};
     if (unstructured) {
-        auto pieces = load_unstructured(document, *layouts, wanted, progress, loaded);
+        auto pieces = load_unstructured(shared, *layouts, wanted, progress, loaded);
         if (!pieces) return pieces.error();
         loaded.pieces = *std::move(pieces);
     } else {
@@ -77,21 +78,24 @@ std::string_view type_of(std::string_view head) {
 }
 
 Result<Loaded> load(const ByteSource& source, std::string_view type, const ReadOptions& options, Depth depth, bool ids,
-                    const Progress& progress) {
-    auto document = open_document(source, progress);
-    if (!document) return document.error();
+                    const Progress& progress, const std::string& path) {
+    auto opened = open_document(source, progress);
+    if (!opened) return opened.error();
+    const auto document = std::make_shared<Document>(*std::move(opened));
     if (document->type != type)
         return invalid_data(
             fmt::format("this is a VTK file of type {}, not {}", in_quotes(document->type), in_quotes(type)));
     if (!document->primary()) return invalid_data(fmt::format("there is no element {}", type));
-    return load_document(*document, options, depth, ids, progress);
+    auto loaded = load_document(document, path, options, depth, ids, progress);
+    document->source = ByteSource(std::string_view()); // cells that are read later open the file again
+    return loaded;
 }
 
 Result<Loaded> load_file(const std::string& path, std::string_view type, const ReadOptions& options, Depth depth,
                          bool ids, const Progress& progress) {
     const auto source = ByteSource::open(path);
     if (!source) return source.error();
-    auto loaded = load(*source, type, options, depth, ids, progress);
+    auto loaded = load(*source, type, options, depth, ids, progress, path);
     if (!loaded) return in_file(path, loaded.error());
     for (Piece& piece : loaded->pieces) piece.name = piece.name.empty() ? path : fmt::format("{}, {}", path, piece.name);
     return loaded;

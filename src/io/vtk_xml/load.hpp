@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -26,11 +27,12 @@ std::string_view type_of(std::string_view head);
 ///
 /// `type`     that it must have
 /// `ids`      global numbers are read, too, to join files by
+/// `path`     where the file can be opened again, for cells that are read later; empty: all are read now
 /// Errors     invalid_data: not such a file, arrays that are missing or too short, pieces that do not cover a box;
 ///            what open_document() and StoredArray give; out_of_memory; cancelled
 /// Cost       the memory of the arrays that are wanted, and a few MB a thread
 Result<Loaded> load(const ByteSource& source, std::string_view type, const ReadOptions& options, Depth depth, bool ids,
-                    const Progress& progress);
+                    const Progress& progress, const std::string& path = {});
 
 /// The same of a file, whose path its errors and its piece name.
 Result<Loaded> load_file(const std::string& path, std::string_view type, const ReadOptions& options, Depth depth,
@@ -63,9 +65,10 @@ Result<std::vector<std::string>> files_of_pieces(const std::string& path, std::s
 Result<Loaded> load_pieces(const std::string& path, std::string_view type, const ReadOptions& options, Depth depth,
                            const Progress& progress);
 
-/// The pieces of an UnstructuredGrid with their points, cells and fields; of several with global numbers.
-Result<std::vector<Piece>> load_unstructured(Document& document, const Layouts& layouts, const Wanted& wanted,
-                                             const Progress& progress, Loaded& loaded);
+/// The pieces of an UnstructuredGrid with their points, cells and fields; of several with global numbers. Cells of
+/// pieces to be joined may be unread where active ones do (ReadOptions::active_cells).
+Result<std::vector<Piece>> load_unstructured(const std::shared_ptr<Document>& document, const Layouts& layouts,
+                                             const Wanted& wanted, const Progress& progress, Loaded& loaded);
 
 /// How many points and cells the pieces announce.
 Result<Layouts> layouts_of_unstructured(const Document& document);

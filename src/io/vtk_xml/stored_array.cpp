@@ -268,6 +268,12 @@ Result<void> StoredArray::read_block(const Block& block, std::span<std::byte> to
     return {};
 }
 
+StoredArray StoredArray::in(const ByteSource& source) const {
+    StoredArray other(*this);
+    if (!other.stream_.text) other.stream_.source = source;
+    return other;
+}
+
 Result<void> StoredArray::read_first(std::span<std::byte> to) const {
     Scratch stored;
     const auto packed = packed_bytes(0, 1, stored);

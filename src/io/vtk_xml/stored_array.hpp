@@ -74,6 +74,9 @@ public:
     using Expect = std::function<void(std::uint64_t first, std::span<std::byte> values)>;
     Result<bool> holds(const Expect& expect) const;
 
+    /// The same values of the same file, which was opened again.
+    StoredArray in(const ByteSource& source) const;
+
     const DataArray& array() const noexcept { return array_; }
     std::uint64_t scalars() const noexcept { return scalars_; }
 

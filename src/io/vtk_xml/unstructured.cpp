@@ -7,6 +7,7 @@
 #include "base/errors.hpp"
 #include "io/vtk_xml/cells_reader.hpp"
 #include "io/vtk_xml/load.hpp"
+#include "io/vtk_xml/unread_cells.hpp"
 
 namespace isotet::io::vtk_xml {
 
@@ -74,27 +75,32 @@ Result<Layouts> layouts_of_unstructured(const Document& document) {
     return Layouts{std::move(*points), std::move(*cells)};
 }
 
-Result<std::vector<Piece>> load_unstructured(Document& document, const Layouts& layouts, const Wanted& wanted,
-                                             const Progress& progress, Loaded& loaded) {
-    const auto elements = pieces_of(document);
+Result<std::vector<Piece>> load_unstructured(const std::shared_ptr<Document>& document, const Layouts& layouts,
+                                             const Wanted& wanted, const Progress& progress, Loaded& loaded) {
+    const auto elements = pieces_of(*document);
     const Layout &points = layouts.points, &cells = layouts.cells;
     const bool alone = elements.size() == 1;
     Piece whole;
-    auto places = load_points(document, elements, points, wanted.step, progress);
+    auto places = load_points(*document, elements, points, wanted.step, progress);
     if (!places) return places.error();
     whole.grid.points = std::move(*places);
-    const Wanted of_pieces{wanted.options, wanted.step, wanted.ids || !alone};
-    if (auto read = load_fields(document, layouts, of_pieces, progress, loaded, whole); !read) return read.error();
+    const Wanted of_pieces{wanted.options, wanted.step, wanted.ids || !alone, wanted.path};
+    if (auto read = load_fields(*document, layouts, of_pieces, progress, loaded, whole); !read) return read.error();
+    const ActiveWish active{whole.grid, wanted.options};
+    const bool active_may_do = wanted.options.active_cells && whole.grid.cell_fields.empty(),
+               is_whole = alone && !wanted.ids && whole.left_out.empty();
+    const CellsWish wish{active_may_do && is_whole ? &active : nullptr,
+                         active_may_do && !is_whole && !wanted.path.empty()};
     std::vector<Piece> pieces;
     for (std::size_t i = 0; i < elements.size(); ++i) {
-        const CellsElement element{elements[i], cells.tuples[i], wanted.step};
-        const ActiveWish active{whole.grid, wanted.options};
-        const bool active_may_do = wanted.options.active_cells && alone && !wanted.ids && whole.left_out.empty();
-        auto part = read_cells(document, element, active_may_do ? &active : nullptr, progress);
+        auto part = read_cells(*document, {elements[i], cells.tuples[i], wanted.step}, wish, progress);
         if (!part) return part.error();
-        pieces.push_back(alone ? whole : part_of(whole, points, cells, i));
-        if (part->only_active) pieces[i].cells_in_file = cells.total;
-        pieces[i].grid.cells = std::move(part->cells);
+        Piece& piece = pieces.emplace_back(alone ? whole : part_of(whole, points, cells, i));
+        if (part->only_active) piece.cells_in_file = cells.total;
+        if (part->corners)
+            piece.unread = std::make_shared<const UnreadCells>(
+                CellsInFile{wanted.path, document, *std::move(part->places), part->cells.types}, *part->corners);
+        else piece.grid.cells = std::move(part->cells);
     }
     return pieces;
 }

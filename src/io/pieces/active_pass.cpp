@@ -1,0 +1,183 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "io/pieces/active_pass.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+#include "base/parallel.hpp"
+#include "grid/fixed_corners.hpp"
+
+namespace isotet::io {
+namespace {
+
+constexpr std::size_t cells_per_send = std::size_t{1} << 10;
+/// Of an entry of numbers_: other pieces have the point, too; a cell has it.
+constexpr std::uint32_t shared_bit = std::uint32_t{1} << 31, used_bit = std::uint32_t{1} << 30;
+constexpr std::uint32_t number_bits = used_bit - 1;
+
+core::Buffer<std::uint32_t> numbers_of_points(const PieceNumbers& numbers, std::uint64_t points) {
+    core::Buffer<std::uint32_t> result(points);
+    for (std::uint64_t i = 0; i < points; ++i)
+        result[i] = (static_cast<std::uint32_t>(numbers(i)) & number_bits) | (numbers.is_shared(i) ? shared_bit : 0);
+    return result;
+}
+
+core::Buffer<std::uint8_t> no_marks(std::uint64_t points) {
+    core::Buffer<std::uint8_t> marks(points);
+    std::ranges::fill(marks, std::uint8_t{0});
+    return marks;
+}
+
+} // namespace
+
+void SharedCells::add(const std::vector<Cell>& cells) {
+    const std::lock_guard lock(mutex_);
+    cells_.insert(cells_.end(), cells.begin(), cells.end());
+}
+
+RepeatedCells SharedCells::settle(ActiveCellFilter& filter, bool typed) {
+    const auto key = [](const Cell& cell) { return std::tuple(kind_for_repetition(cell.type), cell.ascending); };
+    std::ranges::sort(cells_, {}, [&](const Cell& cell) { return std::tuple(key(cell), cell.piece, cell.in_piece); });
+    RepeatedCells repeated;
+    std::set<std::size_t> in;
+    const Cell* first = nullptr; // of those with the same corners
+    for (const Cell& cell : cells_) {
+        if (!first || key(*first) != key(cell)) first = &cell;
+        if (first->piece != cell.piece) {
+            ++repeated.left_out;
+            in.insert({first->piece, cell.piece});
+            continue;
+        }
+        const std::size_t corners = core::fixed_corners_of(cell.type);
+        const Array numbers(ScalarType::int32, cell.corners.data(), corners, 1, nullptr);
+        if (typed) filter.add_cells(cell.number, std::span(&cell.type, 1), numbers);
+        else filter.add(cell.number * corners, numbers);
+    }
+    repeated.pieces.assign(in.begin(), in.end());
+    cells_ = {};
+    return repeated;
+}
+
+ActivePass::ActivePass(const Piece& piece, const PieceNumbers& numbers, const Target& target)
+    : piece_(piece),
+      target_(target),
+      places_(piece.unread->places()),
+      points_(piece.grid.points.tuples()),
+      whole_(places_, [this](std::uint64_t first, std::uint64_t cells, const Array& corners) {
+          corners.visit([&](auto values) {
+              using Index = std::remove_const_t<typename decltype(values)::element_type>;
+              if constexpr (std::is_integral_v<Index> && sizeof(Index) >= 4) pass_block(first, cells, values.data());
+              else broken_ = true;
+          });
+      }) {
+    if (target.filter) numbers_ = numbers_of_points(numbers, points_);
+    else kept_ = no_marks(points_), left_out_ = no_marks(points_);
+}
+
+void ActivePass::add(std::uint64_t first, const Array& corners) { whole_.add(first, corners); }
+
+bool ActivePass::finish() {
+    whole_.finish();
+    return !broken_;
+}
+
+std::vector<PointUse> ActivePass::use() const {
+    std::vector<PointUse> use(points_, PointUse::none);
+    for (std::uint64_t i = 0; i < points_; ++i)
+        if (target_.filter ? (numbers_[i] & used_bit) != 0 : kept_[i] != 0) use[i] = PointUse::kept;
+        else if (!target_.filter && left_out_[i] != 0) use[i] = PointUse::left_out;
+    return use;
+}
+
+bool ActivePass::uses_all_points() const {
+    return std::ranges::all_of(numbers_, [](std::uint32_t number) { return (number & used_bit) != 0; });
+}
+
+template <class Index>
+void ActivePass::pass_block(std::uint64_t first_cell, std::uint64_t cells, const Index* corners) {
+    const auto each = [&](const auto& corners_of) { pass(first_cell, cells, corners, corners_of); };
+    if (!places_.are_uniform())
+        return each([&](std::uint64_t cell) { return core::fixed_corners_of(places_.type(cell)); });
+    switch (core::fixed_corners_of(places_.type(0))) {
+    case 4: return each([](std::uint64_t) { return std::uint64_t{4}; });
+    case 5: return each([](std::uint64_t) { return std::uint64_t{5}; });
+    case 6: return each([](std::uint64_t) { return std::uint64_t{6}; });
+    default: return each([](std::uint64_t) { return std::uint64_t{8}; });
+    }
+}
+
+/// The entry of a point that a cell has.
+std::uint32_t ActivePass::see(std::uint64_t point) {
+    const std::atomic_ref entry(numbers_[point]);
+    const std::uint32_t number = entry.load(std::memory_order_relaxed);
+    if ((number & used_bit) == 0) entry.store(number | used_bit, std::memory_order_relaxed);
+    return number;
+}
+
+template <class Index>
+void ActivePass::mark(std::uint64_t cell, std::span<const Index> corners) {
+    core::Buffer<std::uint8_t>& marks = is_left_out(cell) ? left_out_ : kept_;
+    for (const Index corner : corners)
+        std::atomic_ref(marks[static_cast<std::size_t>(corner)]).store(1, std::memory_order_relaxed);
+}
+
+template <class Index, class CornersOf>
+void ActivePass::pass(std::uint64_t first_cell, std::uint64_t cells, const Index* corners,
+                      const CornersOf& corners_of) {
+    std::array<std::int32_t, 8 * cells_per_send> numbered;
+    std::array<std::uint8_t, cells_per_send> types;
+    std::vector<SharedCells::Cell> shared;
+    std::uint64_t first = first_cell; // of those in `numbered`
+    std::size_t filled = 0, count = 0;
+    const auto send_them = [&] {
+        if (count > 0) send(first, std::span(types).first(count), std::span(numbered).first(filled));
+        filled = count = 0;
+    };
+    for (std::uint64_t cell = first_cell, n = 0; cell < first_cell + cells; ++cell, corners += n) {
+        n = corners_of(cell);
+        const std::span<const Index> own(corners, n);
+        if (std::ranges::any_of(own, [&](Index corner) { return core::widened(corner) >= points_; })) broken_ = true;
+        if (broken_.load(std::memory_order_relaxed)) return;
+        if (!target_.filter) mark(cell, own);
+        if (!target_.filter || is_left_out(cell)) continue;
+        std::uint32_t all = shared_bit;
+        for (std::size_t k = 0; k < n; ++k) {
+            const std::uint32_t number = see(static_cast<std::uint64_t>(own[k]));
+            all &= number;
+            numbered[filled + k] = static_cast<std::int32_t>(number & number_bits);
+        }
+        if (all != 0) { // later ones are sent after it, so they are not sent together with earlier ones
+            shared.push_back(shared_cell(cell, std::span(numbered).subspan(filled, n)));
+            send_them();
+            continue;
+        }
+        if (count == 0) first = cell;
+        if (target_.typed) types[count] = places_.type(cell);
+        filled += n;
+        if (++count == cells_per_send) send_them();
+    }
+    send_them();
+    if (!shared.empty()) target_.shared->add(shared);
+}
+
+void ActivePass::send(std::uint64_t first_cell, std::span<const std::uint8_t> types,
+                      std::span<const std::int32_t> corners) const {
+    const Array numbers(ScalarType::int32, corners.data(), corners.size(), 1, nullptr);
+    if (target_.typed) target_.filter->add_cells(target_.first + first_cell, types, numbers);
+    else target_.filter->add((target_.first + first_cell) * (corners.size() / types.size()), numbers);
+}
+
+SharedCells::Cell ActivePass::shared_cell(std::uint64_t cell, std::span<const std::int32_t> corners) const {
+    SharedCells::Cell shared{{}, {}, places_.type(cell), target_.piece, cell, target_.first + cell};
+    shared.corners.fill(-1);
+    std::ranges::copy(corners, shared.corners.begin());
+    shared.ascending = shared.corners;
+    std::sort(shared.ascending.begin(), shared.ascending.begin() + static_cast<std::ptrdiff_t>(corners.size()));
+    return shared;
+}
+
+} // namespace isotet::io

@@ -1,0 +1,97 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What is done with the cells of a piece that go by.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include <isotet/active_cells.hpp>
+
+#include "base/buffer.hpp"
+#include "io/pieces/cell_places.hpp"
+#include "io/pieces/loaded.hpp"
+#include "io/pieces/piece_points.hpp"
+#include "io/pieces/point_numbers.hpp"
+#include "io/pieces/repeated_cells.hpp"
+
+namespace isotet::io {
+
+/// Cells all of whose points other pieces have, too: whether such a cell is one of theirs is known at the end.
+class SharedCells {
+public:
+    struct Cell {
+        std::array<std::int32_t, 8> ascending; ///< its corners; -1 behind the last
+        std::array<std::int32_t, 8> corners;
+        std::uint8_t type;
+        std::uint32_t piece;   ///< in the order in which the first of several stays
+        std::uint64_t in_piece; ///< its number there
+        std::uint64_t number;  ///< in the joined grid
+    };
+
+    void add(const std::vector<Cell>& cells);
+
+    /// Hands those that no earlier piece has to the filter, and tells of the others.
+    /// `typed`   the filter takes cells with their types
+    RepeatedCells settle(ActiveCellFilter& filter, bool typed);
+
+private:
+    std::mutex mutex_;
+    std::vector<Cell> cells_;
+};
+
+/// One call for each piece. add() is safe from many threads.
+class ActivePass {
+public:
+    struct Target {
+        ActiveCellFilter* filter = nullptr; ///< null: uses are looked for, and nothing else
+        SharedCells* shared = nullptr;
+        bool typed = false;      ///< the filter takes cells with their types
+        std::uint64_t first = 0; ///< number of the piece's first cell in the joined grid
+        std::uint32_t piece = 0;
+    };
+
+    static constexpr std::uint64_t max_points = std::uint64_t{1} << 30; ///< of the joined grid
+
+    /// `numbers`   of the points in the joined grid; not looked at without a filter
+    ActivePass(const Piece& piece, const PieceNumbers& numbers, const Target& target);
+
+    /// Corners from place `first` on, of those of all cells.
+    void add(std::uint64_t first, const Array& corners);
+
+    /// When all corners were added. False: a cell has a point that is not there.
+    bool finish();
+
+    /// Of the points: without a filter those of left-out cells are told apart, with one all are `kept` or `none`, and
+    /// left-out cells do not count.
+    std::vector<PointUse> use() const;
+    bool uses_all_points() const; ///< with a filter
+
+private:
+    template <class Index, class CornersOf>
+    void pass(std::uint64_t first_cell, std::uint64_t cells, const Index* corners, const CornersOf& corners_of);
+    template <class Index>
+    void pass_block(std::uint64_t first_cell, std::uint64_t cells, const Index* corners);
+    template <class Index>
+    void mark(std::uint64_t cell, std::span<const Index> corners);
+    std::uint32_t see(std::uint64_t point);
+    bool is_left_out(std::uint64_t cell) const { return !piece_.left_out.empty() && piece_.left_out[cell] != 0; }
+    void send(std::uint64_t first_cell, std::span<const std::uint8_t> types,
+              std::span<const std::int32_t> corners) const;
+    SharedCells::Cell shared_cell(std::uint64_t cell, std::span<const std::int32_t> corners) const;
+
+    const Piece& piece_;
+    Target target_;
+    const CellPlaces& places_;
+    std::uint64_t points_;
+    core::Buffer<std::uint32_t> numbers_;        ///< in the joined grid, and two bits; with a filter
+    core::Buffer<std::uint8_t> kept_, left_out_; ///< 1 for a point of such a cell; without
+    std::atomic<bool> broken_{false};
+    WholeCells whole_;
+};
+
+} // namespace isotet::io

@@ -1,0 +1,251 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Which points of pieces are one depends on those that cells use. All are assumed to be used: the pass over the cells,
+// which keeps the active ones, tells whether that is so, and is made again with what it found where it is not.
+#include "io/pieces/join_active.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <iterator>
+#include <string>
+#include <utility>
+
+#include "base/memory.hpp"
+#include "base/parallel.hpp"
+#include "io/files/first_error.hpp"
+#include "io/pieces/active_filter.hpp"
+#include "io/pieces/active_pass.hpp"
+#include "io/pieces/joined_fields.hpp"
+#include "io/pieces/ordered_pieces.hpp"
+
+namespace isotet::io {
+namespace {
+
+OrderedPieces in_order_of_file(std::vector<Piece> pieces) {
+    OrderedPieces all;
+    all.pieces = std::move(pieces);
+    all.boxes.resize(all.size());
+    for (const Piece& piece : all.pieces) {
+        all.places.push_back(all.places.size());
+        all.uses.emplace_back(piece.cell_count() == 0 ? piece.grid.points.tuples() : 0, PointUse::none);
+    }
+    return all;
+}
+
+/// Points and their fields only.
+std::vector<Piece> points_of(const std::vector<Piece>& pieces) {
+    std::vector<Piece> result;
+    for (const Piece& piece : pieces) {
+        Piece& points = result.emplace_back();
+        points.grid.points = piece.grid.points;
+        points.grid.point_fields = piece.grid.point_fields;
+    }
+    return result;
+}
+
+class ActiveJoin {
+public:
+    ActiveJoin(std::vector<Piece>& pieces, const ReadResult& begun, const ReadOptions& options,
+               const Progress& progress)
+        : begun_(begun), options_(options), progress_(progress), all_(in_order_of_file(std::move(pieces))) {}
+
+    Result<std::optional<ReadResult>> join() {
+        if (!are_unread()) return std::optional<ReadResult>();
+        if (auto found = find_uses_with_ghosts(); !found) return found.error();
+        std::optional<ReadResult> result;
+        for (bool again = true; again && !needs_all_;) {
+            again = false;
+            auto tried = attempt(again);
+            if (!tried) return tried.error();
+            result = *std::move(tried);
+        }
+        return needs_all_ ? std::optional<ReadResult>() : std::move(result);
+    }
+
+    std::vector<Piece> pieces() && {
+        all_.arrange(all_.order_of_file());
+        return std::move(all_.pieces);
+    }
+
+private:
+    bool are_unread() {
+        std::optional<std::uint8_t> type;
+        for (const Piece& piece : all_.pieces) {
+            if (piece.cell_count() == 0) continue;
+            if (!piece.unread || !piece.grid.cell_fields.empty() || !check_shape(points_as_piece(piece))) return false;
+            if (!piece.left_out.empty() && piece.left_out.size() != piece.cell_count()) return false;
+            const CellPlaces& places = piece.unread->places();
+            typed_ = typed_ || !places.are_uniform() || (type && *type != places.type(0));
+            type = places.type(0);
+        }
+        if (type && !typed_) type_ = static_cast<CellType>(*type);
+        return type.has_value();
+    }
+
+    static Piece points_as_piece(const Piece& piece) {
+        Piece points;
+        points.grid.points = piece.grid.points;
+        points.grid.point_fields = piece.grid.point_fields;
+        points.point_ids = piece.point_ids;
+        return points;
+    }
+
+    /// Where ghost cells are left out, points that only they have are, too.
+    Result<void> find_uses_with_ghosts() {
+        if (all_.size() == 1) return {};
+        FirstError failed;
+        core::parallel_each(all_.size(), 1, [&](std::size_t p) {
+            const Piece& piece = all_.pieces[p];
+            if (piece.left_out.empty() || !piece.unread || failed) return;
+            ActivePass pass(piece, {}, {});
+            const auto add = [&](std::uint64_t first, const Array& corners) { pass.add(first, corners); };
+            if (auto done = piece.unread->each_block(add); !done) return failed.add(p, done.error());
+            if (!pass.finish()) needs_all_ = true; // what is broken is told when all cells are there
+            all_.uses[p] = pass.use();
+        });
+        return failed.result();
+    }
+
+    /// Nothing where all cells are needed, or where uses are not as assumed: then `again`, with those that were found.
+    Result<std::optional<ReadResult>> attempt(bool& again) {
+        ReadResult result = begun_;
+        note_left_out(all_.pieces, result.notes);
+        all_.arrange(all_.order_of_file());
+        for (std::size_t p = 0; p < all_.size(); ++p) all_.boxes[p] = box_of(all_.pieces[p].grid.points, all_.uses[p]);
+        const auto joined = number_points(all_, options_, result.notes, progress_);
+        if (!joined) return joined.error();
+        if (joined->numbers.count > ActivePass::max_points || has_twins(*joined)) needs_all_ = true;
+        if (needs_all_) return std::optional<ReadResult>();
+        if (auto enough = core::require_memory("joining the points of pieces", bytes_of_points()); !enough)
+            return enough.error();
+        const std::size_t notes = result.notes.size();
+        if (auto done = join_points_of(*joined, result); !done) return done.error();
+        std::vector<std::string> of_fields(result.notes.begin() + static_cast<std::ptrdiff_t>(notes),
+                                           result.notes.end());
+        result.notes.resize(notes);
+
+        auto filter = active_filter(result.grid, type_, options_);
+        if (!filter) needs_all_ = true;
+        if (needs_all_) return std::optional<ReadResult>();
+        SharedCells shared;
+        if (auto done = pass_all(joined->numbers, *filter, shared, again); !done) return done.error();
+        if (needs_all_ || again) return std::optional<ReadResult>();
+        const RepeatedCells repeated = shared.settle(*filter, typed_);
+        note_repeated(repeated, all_.pieces, result.notes);
+        std::ranges::move(of_fields, std::back_inserter(result.notes));
+        auto cells = filter->finish();
+        if (!cells && cells.error().code != ErrorCode::invalid_data) return cells.error();
+        if (!cells) needs_all_ = true;
+        else result.grid.cells = *std::move(cells);
+        result.cells_in_file = kept_cells() - repeated.left_out;
+        return std::optional(std::move(result));
+    }
+
+    /// Whether pieces have the same points, so that only their cells could tell which comes first.
+    bool has_twins(const JoinedNumbers& joined) const {
+        for (std::size_t p = 1; p < all_.size() && !joined.seams.joined.empty(); ++p)
+            if (all_.boxes[p] == all_.boxes[p - 1] &&
+                compare_bytes(all_.pieces[p].grid.points, all_.pieces[p - 1].grid.points) == 0)
+                return true;
+        return false;
+    }
+
+    /// Of the joined points, their fields and what is noted of each.
+    std::uint64_t bytes_of_points() const {
+        std::uint64_t bytes = 0;
+        for (const Piece& piece : all_.pieces) {
+            bytes += piece.grid.points.bytes() + piece.grid.points.tuples() * options_.active_cells->isovalues.size();
+            for (const Field& field : piece.grid.point_fields) bytes += field.values.bytes();
+        }
+        return bytes;
+    }
+
+    Result<void> join_points_of(const JoinedNumbers& joined, ReadResult& result) const {
+        if (all_.size() == 1) {
+            result.grid.points = all_.pieces[0].grid.points;
+            result.grid.point_fields = all_.pieces[0].grid.point_fields;
+            return {};
+        }
+        std::vector<Piece> pieces = points_of(all_.pieces);
+        auto fields = join_point_fields(pieces, joined.numbers, joined.seams.joined, result, progress_);
+        if (!fields) return fields.error();
+        result.grid.point_fields = *std::move(fields);
+        auto points = join_points(pieces, joined.numbers);
+        if (!points) return points.error();
+        result.grid.points = *std::move(points);
+        return {};
+    }
+
+    /// By piece: the number of its first cell, such that the first cell that stays has number 0.
+    std::vector<std::uint64_t> first_cells() const {
+        std::vector<std::uint64_t> first(all_.size());
+        std::uint64_t next = 0, origin = 0;
+        bool found = false;
+        for (const std::size_t p : all_.order_of_file()) {
+            const Piece& piece = all_.pieces[p];
+            first[p] = next;
+            if (!found && piece.cell_count() > 0) {
+                const auto stays = std::ranges::find(piece.left_out, std::uint8_t{0});
+                found = piece.left_out.empty() || stays != piece.left_out.end();
+                origin = next + static_cast<std::uint64_t>(stays - piece.left_out.begin());
+            }
+            next += piece.cell_count();
+        }
+        for (std::uint64_t& number : first) number -= origin; // wraps for cells that are left out
+        return first;
+    }
+
+    std::uint64_t kept_cells() const {
+        std::uint64_t count = 0;
+        for (const Piece& piece : all_.pieces)
+            count += piece.cell_count() - static_cast<std::uint64_t>(std::ranges::count_if(
+                                              piece.left_out, [](std::uint8_t out) { return out != 0; }));
+        return count;
+    }
+
+    Result<void> pass_all(const PointNumbers& numbers, ActiveCellFilter& filter, SharedCells& shared, bool& again) {
+        const std::vector<std::uint64_t> first = first_cells();
+        std::vector<std::vector<PointUse>> found(all_.size());
+        std::atomic<std::size_t> done_pieces = 0;
+        FirstError failed;
+        core::parallel_each(all_.size(), 1, [&](std::size_t p) {
+            const Piece& piece = all_.pieces[p];
+            if (!piece.unread || failed || needs_all_) return;
+            const bool assumed = all_.size() > 1 && all_.uses[p].empty();
+            ActivePass pass(piece, numbers.pieces[p],
+                            {&filter, &shared, typed_, first[p], static_cast<std::uint32_t>(p)});
+            const auto add = [&](std::uint64_t place, const Array& corners) { pass.add(place, corners); };
+            if (auto done = piece.unread->each_block(add); !done) return failed.add(p, done.error());
+            progress_("join pieces",
+                      0.7 + 0.3 * static_cast<double>(++done_pieces) / static_cast<double>(all_.size()));
+            if (!pass.finish()) needs_all_ = true;
+            else if (assumed && !pass.uses_all_points()) found[p] = pass.use();
+        });
+        if (auto done = failed.result(); !done) return done;
+        for (std::size_t p = 0; p < all_.size() && !needs_all_; ++p) {
+            if (found[p].empty()) continue;
+            all_.uses[p] = std::move(found[p]);
+            again = true;
+        }
+        return {};
+    }
+
+    const ReadResult& begun_;
+    const ReadOptions& options_;
+    const Progress& progress_;
+    OrderedPieces all_;
+    bool typed_ = false;           ///< not all cells are of one type
+    std::optional<CellType> type_; ///< of all
+    std::atomic<bool> needs_all_ = false;
+};
+
+} // namespace
+
+Result<std::optional<ReadResult>> join_active(std::vector<Piece>& pieces, const ReadResult& begun,
+                                              const ReadOptions& options, const Progress& progress) {
+    ActiveJoin joining(pieces, begun, options, progress);
+    auto result = joining.join();
+    pieces = std::move(joining).pieces();
+    return result;
+}
+
+} // namespace isotet::io

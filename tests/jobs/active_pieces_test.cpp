@@ -1,0 +1,394 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Of grids in pieces active cells only are read: the files are those of all cells.
+#include <isotet/jobs/extract_files.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include <isotet/make.hpp>
+#include <isotet/read.hpp>
+#include <isotet/write.hpp>
+
+#include "jobs/listener.hpp"
+#include "pieces/partition.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace isotet::jobs {
+namespace {
+
+using test::Listener;
+
+/// What the pieces of a grid are like.
+struct Cut {
+    std::string shape = "kuhn";
+    std::uint64_t side = 12;
+    std::size_t pieces = 5;
+    bool ids = false;
+    std::uint64_t more = 0; ///< of so many cells of the grid one more is in each piece,
+    bool marked = false;    ///< marked as a ghost cell or not
+    bool rounded = false;   ///< points of different pieces differ by rounding
+    bool wide = false;      ///< float64 points
+    bool blocks = true;     ///< of cells along x, else at random
+};
+
+std::vector<std::vector<std::uint64_t>> cells_of(const Grid& grid, const Cut& cut, std::mt19937& random) {
+    const core::CellReader reader = core::CellReader::open(grid).value();
+    std::vector<std::vector<std::uint64_t>> cells(cut.pieces);
+    for (std::uint64_t cell = 0; cell < reader.count(); ++cell) {
+        const double x = (grid.points.at(reader.corner(reader.first(cell))) + 1) / 2;
+        const auto slab = static_cast<std::size_t>(x * static_cast<double>(cut.pieces));
+        cells[cut.blocks ? std::min(slab, cut.pieces - 1) : random() % cut.pieces].push_back(cell);
+    }
+    return cells;
+}
+
+/// Coordinates that differ by a rounding, in some of the points.
+Array rounded(const Array& points, std::mt19937& random) {
+    std::vector<float> out;
+    for (const float value : points.as<float>())
+        out.push_back(random() % 4 == 0 ? std::nextafter(value, 2.0f) : value);
+    return Array::own(std::move(out), 3);
+}
+
+Array widened(const Array& values) {
+    std::vector<double> out;
+    for (std::size_t i = 0; i < values.tuples(); ++i)
+        for (std::size_t k = 0; k < values.components(); ++k) out.push_back(1e3 + values.at(i, k));
+    return Array::own(std::move(out), values.components());
+}
+
+Cells no_cells() {
+    Cells cells;
+    cells.connectivity = Array::own(std::vector<std::int64_t>{});
+    return cells;
+}
+
+using Change = std::function<void(std::size_t piece, Grid& grid)>;
+
+/// Writes the pieces and their index; returns the path of this.
+std::string write_pieces(const test::TemporaryFolder& folder, const Cut& cut, const Change& change = {},
+                         Compression compression = Compression::none) {
+    std::mt19937 random(7);
+    const Grid whole =
+        make_grid({.shape = cut.shape, .side = cut.side, .fields = {"gyroid", "integer", "plane"}}).value();
+    auto lists = cells_of(whole, cut, random);
+    std::string index = "<VTKFile type=\"PUnstructuredGrid\"><PUnstructuredGrid GhostLevel=\"0\">\n";
+    for (std::size_t p = 0; p < lists.size(); ++p) {
+        const std::size_t own = lists[p].size();
+        for (std::uint64_t cell = p; cut.more > 0 && cell < whole.cells.count(); cell += cut.more)
+            if (std::ranges::find(lists[p], cell) == lists[p].end()) lists[p].push_back(cell);
+        const PointField gyroid{"gyroid", whole.point_fields[0].values, false, {}};
+        test::GridPiece piece = test::piece_of(whole, gyroid, lists[p], random);
+        Grid grid = std::move(piece.grid);
+        for (const Field& field : whole.point_fields)
+            grid.point_fields.push_back({field.name, test::taken(field.values, piece.points)});
+        if (cut.ids) grid.point_fields.push_back({"GlobalNodeId", grid.point_numbers});
+        grid.point_numbers = {};
+        if (cut.rounded) grid.points = rounded(grid.points, random);
+        if (cut.wide) {
+            grid.points = widened(grid.points);
+            grid.point_fields[0].values = widened(grid.point_fields[0].values);
+        }
+        std::vector<std::uint8_t> marks(own, 0);
+        marks.resize(lists[p].size(), 1);
+        if (cut.marked) grid.cell_fields = {{"vtkGhostType", Array::own(std::move(marks))}};
+        if (change) change(p, grid);
+        const std::string name = "piece" + std::to_string(p) + ".vtu";
+        EXPECT_TRUE(write_grid(grid, folder.file(name), {.compression = compression}));
+        index += "<Piece Source=\"" + name + "\"/>\n";
+    }
+    return folder.write("all.pvtu", index + "</PUnstructuredGrid></VTKFile>\n");
+}
+
+ReadOptions reading(std::vector<double> isovalues, const std::string& field = "gyroid") {
+    ReadOptions options;
+    options.cell_fields = std::vector<std::string>{};
+    if (!isovalues.empty()) options.active_cells = ReadActiveCells{field, std::move(isovalues), {}};
+    return options;
+}
+
+bool same_bytes(const Array& a, const Array& b) {
+    return a.type() == b.type() && a.bytes() == b.bytes() &&
+           (a.bytes() == 0 || std::memcmp(a.data(), b.data(), a.bytes()) == 0);
+}
+
+/// Active cells of the file, with the points and notes of the whole grid.
+void expect_streamed(const std::string& file) {
+    const auto some = read(file, reading({0.1})), all = read(file, reading({}));
+    ASSERT_TRUE(some) << some.error().message;
+    ASSERT_TRUE(all) << all.error().message;
+    EXPECT_EQ(some->cells_in_file, all->grid.cells.count());
+    EXPECT_LT(some->grid.cells.count(), all->grid.cells.count() * 4 / 5);
+    EXPECT_EQ(some->notes, all->notes);
+    EXPECT_TRUE(same_bytes(some->grid.points, all->grid.points));
+    ASSERT_EQ(some->grid.point_fields.size(), all->grid.point_fields.size());
+    for (std::size_t i = 0; i < some->grid.point_fields.size(); ++i) {
+        EXPECT_EQ(some->grid.point_fields[i].name, all->grid.point_fields[i].name);
+        EXPECT_TRUE(same_bytes(some->grid.point_fields[i].values, all->grid.point_fields[i].values));
+    }
+}
+
+bool read_all_cells(const Listener& listener) {
+    return std::ranges::find(listener.details, "reading all cells of step 0") != listener.details.end();
+}
+
+struct Asked {
+    std::string field = "gyroid";
+    std::vector<double> isovalues = {0.1, -0.7, 0};
+    bool edge_ends = false, source_cells = false, degenerate = false;
+    int threads = 0;
+};
+
+/// The job's file: the bytes are those of the engine that always reads all cells.
+void expect_same_surface(const test::TemporaryFolder& folder, const std::string& file, const Asked& asked,
+                         bool may_read_all = false) {
+    ExtractJob job;
+    job.grid.file = file;
+    job.out = folder.file("surface.vtp");
+    job.field.name = asked.field;
+    job.isovalues = asked.isovalues;
+    job.edge_ends = asked.edge_ends;
+    job.source_cells = asked.source_cells;
+    job.keep_degenerate = asked.degenerate;
+    Listener listener(asked.threads), other;
+    const auto numbers = extract_files(job, listener);
+    ASSERT_TRUE(numbers) << numbers.error().message;
+    const std::string written = test::content_of(job.out);
+    job.engine = EngineChoice::reference;
+    const auto expected = extract_files(job, other);
+    ASSERT_TRUE(expected) << expected.error().message;
+    EXPECT_TRUE(written == test::content_of(job.out));
+    EXPECT_EQ(numbers->cells, expected->cells);
+    EXPECT_TRUE(may_read_all || !read_all_cells(listener));
+}
+
+TEST(ActiveCellsOfPieces, GiveTheGridAndTheFileOfAllCells) {
+    const test::TemporaryFolder folder;
+    for (const char* shape : {"kuhn", "shuffled", "hex", "wedge", "pyramid"})
+        for (const bool ids : {false, true})
+            for (const bool blocks : {false, true}) {
+                SCOPED_TRACE(testing::Message() << shape << (ids ? ", ids" : "") << (blocks ? ", blocks" : ""));
+                const std::string file = write_pieces(folder, {.shape = shape, .ids = ids, .blocks = blocks});
+                expect_streamed(file);
+                expect_same_surface(folder, file, {});
+            }
+}
+
+/// The pieces of an index as those of one file, its arrays appended raw.
+std::string in_one_file(const test::TemporaryFolder& folder, std::size_t pieces) {
+    std::string elements, data;
+    for (std::size_t p = 0; p < pieces; ++p) {
+        const std::string text = test::content_of(folder.file("piece" + std::to_string(p) + ".vtu"));
+        const std::size_t appended = text.find("<AppendedData"), first = text.find("<Piece");
+        std::string element = text.substr(first, text.find("</Piece>") + 8 - first);
+        constexpr std::string_view offset = "offset=\"";
+        for (std::size_t at = element.find(offset); at != std::string::npos; at = element.find(offset, at + 1)) {
+            const std::size_t begin = at + offset.size(), size = element.find('"', begin) - begin;
+            element.replace(begin, size, std::to_string(std::stoull(element.substr(begin, size)) + data.size()));
+        }
+        elements += element;
+        const std::size_t begin = text.find('_', appended) + 1;
+        data += text.substr(begin, text.rfind("</AppendedData>") - begin);
+    }
+    return folder.write("one.vtu", "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
+                                   "header_type=\"UInt64\"><UnstructuredGrid>" +
+                                       elements + "</UnstructuredGrid><AppendedData encoding=\"raw\">_" + data +
+                                       "</AppendedData></VTKFile>");
+}
+
+TEST(ActiveCellsOfPieces, AreFoundInOneFileWithSeveralPieces) {
+    const test::TemporaryFolder folder;
+    for (const bool marked : {false, true})
+        for (const char* shape : {"shuffled", "mixed"}) {
+            SCOPED_TRACE(testing::Message() << shape << (marked ? ", marked" : ""));
+            const Cut cut{.shape = shape, .ids = marked, .more = 11, .marked = marked};
+            write_pieces(folder, cut);
+            const std::string file = in_one_file(folder, cut.pieces);
+            expect_streamed(file);
+            expect_same_surface(folder, file, {.edge_ends = true});
+        }
+}
+
+TEST(ActiveCellsOfPieces, AreFoundInBlocks) {
+    const test::TemporaryFolder folder;
+    write_pieces(folder, {.shape = "shuffled", .more = 20});
+    std::string blocks;
+    for (std::size_t p = 0; p < 5; ++p) {
+        const std::string number = std::to_string(p);
+        blocks += "<DataSet index=\"" + number + "\" file=\"piece" + number + ".vtu\"/>";
+    }
+    const std::string file = folder.write("all.vtm", "<VTKFile type=\"vtkMultiBlockDataSet\"><vtkMultiBlockDataSet>" +
+                                                         blocks + "</vtkMultiBlockDataSet></VTKFile>");
+    expect_streamed(file);
+    expect_same_surface(folder, file, {.edge_ends = true});
+}
+
+TEST(ActiveCellsOfPieces, MayBeOfSeveralTypes) {
+    const test::TemporaryFolder folder;
+    for (const bool marked : {false, true}) {
+        const std::string file =
+            write_pieces(folder, {.shape = "mixed", .more = 7, .marked = marked, .blocks = marked});
+        expect_streamed(file);
+        expect_same_surface(folder, file, {.edge_ends = true});
+        expect_same_surface(folder, file, {.field = "integer", .isovalues = {2}});
+    }
+    // Each piece of one type, which is another one in the next piece.
+    write_pieces(folder, {.shape = "hex", .pieces = 2});
+    write_pieces(folder, {.shape = "wedge", .pieces = 1}); // piece 0 again
+    const std::string file = folder.write(
+        "two.pvtu", "<VTKFile type=\"PUnstructuredGrid\"><PUnstructuredGrid><Piece Source=\"piece1.vtu\"/>"
+                    "<Piece Source=\"piece0.vtu\"/></PUnstructuredGrid></VTKFile>");
+    expect_same_surface(folder, file, {.edge_ends = true}, true);
+}
+
+TEST(ActiveCellsOfPieces, AreFoundInCompressedBlocks) {
+    const test::TemporaryFolder folder;
+    for (const char* shape : {"kuhn", "pyramid", "mixed"})
+        for (const Compression compression : {Compression::zlib, Compression::lz4})
+            expect_streamed(write_pieces(folder, {.shape = shape}, {}, compression));
+}
+
+TEST(ActiveCellsOfPieces, KeepEdgeEndsDegenerateTrianglesAndTies) {
+    const test::TemporaryFolder folder;
+    const std::string file = write_pieces(folder, {.shape = "shuffled", .side = 9});
+    expect_same_surface(folder, file, {.edge_ends = true});
+    expect_same_surface(folder, file, {.field = "integer", .isovalues = {2, 3}});
+    expect_same_surface(folder, file, {.field = "integer", .isovalues = {2}, .edge_ends = true, .degenerate = true});
+    expect_same_surface(folder, file, {.source_cells = true}, true);
+}
+
+TEST(ActiveCellsOfPieces, LeaveGhostCellsOut) {
+    const test::TemporaryFolder folder;
+    for (const std::uint64_t more : {3, 40})
+        for (const bool ids : {false, true}) {
+            SCOPED_TRACE(testing::Message() << more << (ids ? ", ids" : ""));
+            const std::string file = write_pieces(folder, {.ids = ids, .more = more, .marked = true});
+            expect_streamed(file);
+            expect_same_surface(folder, file, {.edge_ends = true});
+        }
+}
+
+TEST(ActiveCellsOfPieces, CountOnceThoughPiecesOverlap) {
+    const test::TemporaryFolder folder;
+    for (const bool ids : {false, true}) {
+        const std::string file = write_pieces(folder, {.shape = "shuffled", .ids = ids, .more = 9});
+        const auto some = read(file, reading({0.1})).value();
+        EXPECT_TRUE(std::ranges::any_of(some.notes, [](const std::string& note) {
+            return note.find("pieces overlap") != std::string::npos;
+        }));
+        expect_streamed(file);
+        expect_same_surface(folder, file, {.edge_ends = true});
+    }
+}
+
+TEST(ActiveCellsOfPieces, SharePointsThatDifferByRounding) {
+    const test::TemporaryFolder folder;
+    for (const bool ids : {false, true}) {
+        const std::string file = write_pieces(folder, {.ids = ids, .rounded = true});
+        expect_streamed(file);
+        expect_same_surface(folder, file, {});
+    }
+    const std::string wide = write_pieces(folder, {.shape = "shuffled", .wide = true});
+    expect_streamed(wide);
+    expect_same_surface(folder, wide, {.isovalues = {1000.1, 1000}});
+}
+
+TEST(ActiveCellsOfPieces, TakeFieldsThatSomePiecesLackOrHaveOtherwise) {
+    const test::TemporaryFolder folder;
+    const std::string file = write_pieces(folder, {}, [](std::size_t piece, Grid& grid) {
+        if (piece == 1) grid.point_fields.pop_back();
+        if (piece == 2) grid.point_fields[1].values = widened(grid.point_fields[1].values); // jumps by 1000
+    });
+    expect_streamed(file);
+    expect_same_surface(folder, file, {.isovalues = {0.1}});
+    expect_same_surface(folder, file, {.field = "integer", .isovalues = {500}});
+}
+
+TEST(ActiveCellsOfPieces, DoNotShareThePointsThatNoCellHas) {
+    const test::TemporaryFolder folder;
+    // The last piece has each point of the first, and no cell with it.
+    std::vector<float> places;
+    const std::string file = write_pieces(folder, {}, [&](std::size_t piece, Grid& grid) {
+        const auto own = grid.points.as<float>();
+        std::vector<float> all(own.begin(), own.end());
+        if (piece == 0) places = all;
+        if (piece != 4) return;
+        all.insert(all.end(), places.begin(), places.end());
+        grid.points = Array::own(std::move(all), 3);
+        for (Field& field : grid.point_fields) {
+            std::vector<double> values(grid.points.tuples(), 0.5);
+            for (std::size_t i = 0; i < field.values.tuples(); ++i) values[i] = field.values.at(i);
+            field.values = Array::own(std::move(values));
+        }
+    });
+    const auto some = read(file, reading({0.1})).value(), all = read(file, reading({})).value();
+    EXPECT_TRUE(same_bytes(some.grid.points, all.grid.points));
+    EXPECT_EQ(some.notes, all.notes);
+    expect_same_surface(folder, file, {}, true);
+}
+
+TEST(ActiveCellsOfPieces, AreReadWithEmptyPiecesAndPiecesWithoutCells) {
+    const test::TemporaryFolder folder;
+    const std::string file = write_pieces(folder, {}, [](std::size_t piece, Grid& grid) {
+        if (piece == 3) grid.cells = no_cells();
+        if (piece != 0) return;
+        grid.points = Array::own(std::vector<float>{}, 3);
+        for (Field& field : grid.point_fields) field.values = Array::own(std::vector<float>{});
+        grid.cells = no_cells();
+    });
+    const auto some = read(file, reading({0.1})).value(), all = read(file, reading({})).value();
+    EXPECT_TRUE(same_bytes(some.grid.points, all.grid.points));
+    EXPECT_EQ(some.notes, all.notes);
+    expect_same_surface(folder, file, {}, true);
+}
+
+TEST(ActiveCellsOfPieces, AreReadThoughNoCellIsCut) {
+    const test::TemporaryFolder folder;
+    for (const bool marked : {false, true}) {
+        const std::string file = write_pieces(folder, {.more = 5, .marked = marked});
+        expect_same_surface(folder, file, {.isovalues = {17}});
+    }
+}
+
+TEST(ActiveCellsOfPieces, AreAllReadWhereAPieceComesTwice) {
+    const test::TemporaryFolder folder;
+    write_pieces(folder, {});
+    const std::string file = folder.write(
+        "twice.pvtu", "<VTKFile type=\"PUnstructuredGrid\"><PUnstructuredGrid><Piece Source=\"piece1.vtu\"/>"
+                      "<Piece Source=\"piece0.vtu\"/><Piece Source=\"piece1.vtu\"/></PUnstructuredGrid></VTKFile>");
+    expect_same_surface(folder, file, {.edge_ends = true}, true);
+}
+
+TEST(ActiveCellsOfPieces, AreTheSameForAnyNumberOfThreads) {
+    const test::TemporaryFolder folder;
+    const std::string file = write_pieces(folder, {.shape = "shuffled", .side = 20, .pieces = 9, .more = 15});
+    for (const int threads : {1, 2, 7}) expect_same_surface(folder, file, {.edge_ends = true, .threads = threads});
+}
+
+TEST(ActiveCellsOfPieces, TellWhichPieceIsBroken) {
+    const test::TemporaryFolder folder;
+    const std::string file = write_pieces(folder, {});
+    const std::string path = folder.file("piece2.vtu");
+    const Grid piece = read(path).value().grid;
+    std::string text = test::content_of(path);
+    const auto corners = std::as_bytes(piece.cells.connectivity.as<std::int32_t>().first(8));
+    const std::size_t at = text.find(std::string_view(reinterpret_cast<const char*>(corners.data()), corners.size()));
+    ASSERT_NE(at, std::string::npos);
+    const std::int32_t wrong = 98765;
+    text.replace(at + 5 * sizeof wrong, sizeof wrong, reinterpret_cast<const char*>(&wrong), sizeof wrong);
+    folder.write("piece2.vtu", text);
+    const auto some = read(file, reading({0.1})), all = read(file, reading({}));
+    ASSERT_FALSE(some);
+    ASSERT_FALSE(all);
+    EXPECT_EQ(some.error().message, all.error().message);
+    EXPECT_NE(some.error().message.find("cell 1 has point 98765"), std::string::npos) << some.error().message;
+}
+
+} // namespace
+} // namespace isotet::jobs
