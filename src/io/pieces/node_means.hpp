@@ -25,8 +25,8 @@ public:
     /// The value that all cells give, else their mean; NaN where no cell gave one.
     std::vector<double> means() const;
 
-    /// A note on values that differ by more than rounding; empty where none does. `source` says what has them: "each cell
-    /// (ELNO)".
+    /// A note on values that differ by more than rounding; empty where none does. `source` says what has them:
+    /// "each cell (ELNO)".
     std::string note(std::string_view field, std::string_view source) const;
 
 private:

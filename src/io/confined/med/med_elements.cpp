@@ -7,8 +7,8 @@
 namespace isotet::io::vtk {
 namespace {
 
-/// MED goes around the base of a cell the other way than VTK: corners, and with them the middles of edges and faces, are
-/// mirrored. Upright edges stand behind those of base and top in both.
+/// MED goes around the base of a cell the other way than VTK: corners, and with them the middles of edges and faces,
+/// are mirrored. Upright edges stand behind those of base and top in both.
 constexpr std::array<std::uint8_t, 10> med_tetrahedron{0, 2, 1, 3, 6, 5, 4, 7, 9, 8};
 constexpr std::array<std::uint8_t, 13> med_pyramid{0, 3, 2, 1, 4, 8, 7, 6, 5, 9, 12, 11, 10};
 constexpr std::array<std::uint8_t, 6> med_linear_wedge{0, 2, 1, 3, 5, 4};

@@ -121,7 +121,8 @@ MedStep MedFields::step_of_mesh(const std::string& mesh, std::size_t step) const
 Result<std::vector<std::uint64_t>> MedFields::read_profile(const std::string& name, std::uint64_t count) const {
     const std::string data_set = "/PROFILS/" + name + "/PFL";
     const auto shape = file_.shape(data_set);
-    if (!shape || is_floating(shape->type)) return file_.wrong(fmt::format("profile \"{}\" is not there", escaped(name)));
+    if (!shape || is_floating(shape->type))
+        return file_.wrong(fmt::format("profile \"{}\" is not there", escaped(name)));
     const auto numbers = file_.numbers(data_set, shape->rows);
     if (!numbers) return numbers.error();
     std::vector<std::uint64_t> places(numbers->size());
@@ -132,7 +133,8 @@ Result<std::vector<std::uint64_t>> MedFields::read_profile(const std::string& na
             inside = inside && places[i] < count;
         }
     });
-    if (!inside) return file_.wrong(fmt::format("profile \"{}\" has numbers that are not 1 to {}", escaped(name), count));
+    if (!inside)
+        return file_.wrong(fmt::format("profile \"{}\" has numbers that are not 1 to {}", escaped(name), count));
     return places;
 }
 
@@ -149,13 +151,12 @@ Result<std::vector<MedFields::MedPart>> MedFields::parts_of(const MedField& fiel
             if (!chosen) return chosen.error();
             part.chosen = *std::move(chosen);
         }
-        const std::uint64_t entities = part.chosen ? part.chosen->size() : count;
         const auto points = file_.integer(inside, "NGA").value_or(1);
         constexpr std::int64_t max_points = 100'000;
         if (points < 1 || points > max_points)
             return file_.wrong(fmt::format("\"{}\" has {} values for each of its cells", escaped(inside), points));
         part.per_entity = static_cast<std::uint64_t>(points);
-        auto values = file_.numbers(inside + "/CO", entities * part.per_entity * field.components);
+        auto values = file_.numbers(inside + "/CO", part.entities() * part.per_entity * field.components);
         if (!values) return values.error();
         part.values = *std::move(values);
         parts.push_back(std::move(part));
@@ -178,7 +179,28 @@ Result<std::vector<MedFields::MedPart>> MedFields::parts_in_cells(const MedField
     return all;
 }
 
-/// Where every entity has a value, and one, in the type of the file.
+/// Of several values of an entity the mean.
+template <class T>
+void MedFields::put(const MedField& field, const MedPart& part, std::vector<T>& values) {
+    const std::size_t width = field.components;
+    const std::uint64_t entities = part.entities(), points = part.per_entity;
+    part.values.visit([&](auto from) {
+        const auto put_range = [&](std::size_t begin, std::size_t end) {
+            for (std::size_t c = 0; c < width; ++c)
+                for (std::size_t i = begin; i < end; ++i) {
+                    T& to = values[(part.first + part.entity(i)) * width + field.place_of(c)];
+                    const auto own = from.subspan((c * entities + i) * points, points);
+                    double sum = 0;
+                    for (std::uint64_t g = 0; points > 1 && g < points; ++g) sum += static_cast<double>(own[g]);
+                    to = points > 1 ? static_cast<T>(sum / static_cast<double>(points)) : static_cast<T>(own[0]);
+                }
+        };
+        if (part.chosen) put_range(0, entities); // a broken profile may name an entity twice
+        else core::parallel_ranges(entities, entities_at_once, put_range);
+    });
+}
+
+/// Where every entity has one value, in the type of the file.
 Array MedFields::joined(const MedField& field, const std::vector<MedPart>& parts, std::uint64_t count) {
     std::uint64_t given = 0;
     bool means = false;
@@ -192,32 +214,10 @@ Array MedFields::joined(const MedField& field, const std::vector<MedPart>& parts
     if (given != count) type = with_missing(type);
     return Array(type, nullptr, 0, 1, nullptr).visit([&](auto none) {
         using T = std::remove_const_t<typename decltype(none)::value_type>;
-        const std::size_t width = field.components;
-        std::vector<T> values(count * width, std::is_floating_point_v<T> ? std::numeric_limits<T>::quiet_NaN() : T{});
-        for (const MedPart& part : parts) {
-            const std::uint64_t entities = part.chosen ? part.chosen->size() : part.count;
-            part.values.visit([&](auto from) {
-                // A broken profile may name an entity twice.
-                const std::size_t grain = part.chosen ? entities + 1 : entities_at_once;
-                core::parallel_ranges(entities, grain, [&](std::size_t begin, std::size_t end) {
-                    for (std::size_t c = 0; c < width; ++c) {
-                        const std::size_t to = field.swaps_last && c > 3 ? 9 - c : c;
-                        for (std::size_t i = begin; i < end; ++i) {
-                            const std::uint64_t entity = part.first + (part.chosen ? (*part.chosen)[i] : i);
-                            const auto* const own = &from[(c * entities + i) * part.per_entity];
-                            if (part.per_entity == 1) {
-                                values[entity * width + to] = static_cast<T>(*own);
-                                continue;
-                            }
-                            double sum = 0;
-                            for (std::uint64_t g = 0; g < part.per_entity; ++g) sum += static_cast<double>(own[g]);
-                            values[entity * width + to] = static_cast<T>(sum / static_cast<double>(part.per_entity));
-                        }
-                    }
-                });
-            });
-        }
-        return Array::own(std::move(values), width);
+        std::vector<T> values(count * field.components,
+                              std::is_floating_point_v<T> ? std::numeric_limits<T>::quiet_NaN() : T{});
+        for (const MedPart& part : parts) put(field, part, values);
+        return Array::own(std::move(values), field.components);
     });
 }
 
@@ -231,15 +231,14 @@ Result<Array> MedFields::at_cell_nodes(const MedField& field, const std::vector<
                                            escaped(field.name), part.per_entity, part.run->element->name, width));
         const auto nodes = mesh.nodes_of(*part.run, place.points);
         if (!nodes) return nodes.error();
-        const std::uint64_t entities = part.chosen ? part.chosen->size() : part.count;
+        const std::uint64_t entities = part.entities();
         part.values.visit([&](auto from) {
             for (std::uint64_t i = 0; i < entities; ++i)
                 for (std::size_t node = 0; node < width; ++node) {
-                    const std::uint64_t cell = part.chosen ? (*part.chosen)[i] : i;
-                    const auto point = static_cast<std::uint64_t>((*nodes)[cell * width + node]);
+                    const auto point = static_cast<std::uint64_t>((*nodes)[part.entity(i) * width + node]);
                     means.count(point);
                     for (std::size_t c = 0; c < field.components; ++c)
-                        means.add(point, field.swaps_last && c > 3 ? 9 - c : c,
+                        means.add(point, field.place_of(c),
                                   static_cast<double>(from[(c * entities + i) * width + node]));
                 }
         });
@@ -267,8 +266,8 @@ Result<Array> MedFields::in_cells(const MedField& field, const MedStep& step, co
     std::uint64_t most = 1;
     for (const MedPart& part : *parts) most = std::max(most, part.per_entity);
     if (most > 1)
-        notes.push_back(fmt::format("cell field \"{}\" has up to {} values in a cell, at integration points: their mean "
-                                    "was taken",
+        notes.push_back(fmt::format("cell field \"{}\" has up to {} values in a cell, at integration points: their "
+                                    "mean was taken",
                                     escaped(field.name), most));
     return joined(field, *parts, place.cells);
 }

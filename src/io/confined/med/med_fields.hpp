@@ -43,6 +43,11 @@ private:
         bool swaps_last = false; ///< of a symmetric tensor that ends in XY XZ YZ: VTK has XY YZ XZ
         std::vector<MedStep> steps;
         bool at_nodes = false, in_cells = false, at_cell_nodes = false, on_flat = false; ///< at any step
+
+        /// Of a component of the file in the grid.
+        std::size_t place_of(std::size_t component) const {
+            return swaps_last && component > 3 ? 9 - component : component;
+        }
     };
     /// The values of one kind of cells, or of nodes, that one profile chooses.
     struct MedPart {
@@ -51,6 +56,9 @@ private:
         std::optional<std::vector<std::uint64_t>> chosen; ///< nothing: all
         std::uint64_t first = 0, count = 0;               ///< entities of this kind in the grid
         const MedCellRun* run = nullptr;
+
+        std::uint64_t entities() const { return chosen ? chosen->size() : count; } ///< that have values
+        std::uint64_t entity(std::uint64_t i) const { return chosen ? (*chosen)[i] : i; }
     };
 
     MedField describe(const std::string& name) const;
@@ -66,6 +74,8 @@ private:
                                 const MedMeshPlace& place, std::vector<std::string>& notes) const;
     Result<Array> in_cells(const MedField& field, const MedStep& step, const MedMeshPlace& place,
                            std::vector<std::string>& notes) const;
+    template <class T>
+    static void put(const MedField& field, const MedPart& part, std::vector<T>& values);
     static Array joined(const MedField& field, const std::vector<MedPart>& parts, std::uint64_t count);
 
     const MedFile& file_;

@@ -44,8 +44,9 @@ Result<MedFile> MedFile::open(const std::string& path) {
     const auto version = opened.integer("/INFOS_GENERALES", "MAJ");
     if (!version) return opened.wrong("not a MED file: it states no version");
     if (*version < 3)
-        return opened.wrong(fmt::format("a MED file of version {}.{}, but 3.0 and later are read: medimport converts it",
-                                        *version, opened.integer("/INFOS_GENERALES", "MIN").value_or(0)));
+        return opened.wrong(
+            fmt::format("a MED file of version {}.{}, but 3.0 and later are read: medimport converts it", *version,
+                        opened.integer("/INFOS_GENERALES", "MIN").value_or(0)));
     return opened;
 }
 
