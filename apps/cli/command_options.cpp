@@ -139,16 +139,6 @@ Examples:
   isotet view grid.vtu --no-browser --port 8123
 )";
 
-void add_common(const Command& command, CommonOptions& common) {
-    command.add_file("--json", common.json, "FILE",
-                     "Write the numbers as JSON too; - is standard output, which then has no table");
-    command.add_count(
-        "-j,--threads", {0, 4096}, [&](std::uint64_t n) { common.threads = static_cast<int>(n); }, "N",
-        "Threads; 0 or not given: all");
-    const Option quiet = command.add_flag("-q,--quiet", common.quiet, "No table, no notes, no progress: only errors");
-    command.add_flag("-v,--verbose", common.verbose, "Say more").excludes(quiet);
-}
-
 void add_time(const Command& command, GridOptions& grid) {
     const Option time =
         command.add_number("--time", [&](double t) { grid.time = t; }, "T", "The time step with this time");
@@ -218,7 +208,7 @@ void add_levels(const Command& command, ExtractCommand& extract) {
                      "Take the nearest value that the field's type can hold: 0.7 becomes 0.699999988 on float32");
 }
 
-void add_surface_arrays(const Command& command, ExtractCommand& extract) {
+void add_surface_arrays(const Command& command, ExtractJob& extract) {
     command.add_choice<Normals>("--normals", extract.normals,
                                 {{"none", Normals::none},
                                  {"gradient", Normals::gradient},
@@ -301,56 +291,13 @@ void add_compression(const Command& command, Compression& compression, const cha
 
 void add_extract(const Command& program, ExtractCommand& extract) {
     const Command command = program.add_command("extract", "Extract isosurfaces and write them into files");
-    command.add_file("FILE", extract.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]").required();
-    const Option out = command.add_file("OUT", extract.out, "OUT_FILE", "The surface, as -o");
-    command.add_file("-o,--output", extract.out, "OUT_FILE", "The surface; the ending says the format").excludes(out);
+    add_grid_and_surface(command, extract);
     add_field(command, extract.field, "The field to contour; may be left out where there is only one");
     add_centre(command, extract.field);
     add_levels(command, extract);
-    add_time(command, extract.grid);
-    command.add_flag("--all-steps", extract.all_steps, "Every time step; OUT then needs {step} or {time}")
-        .excludes(command.option("--time"))
-        .excludes(command.option("--step"));
-    add_surface_arrays(command, extract);
-    add_refinement(command, extract.refine, &extract.refine_averaged);
-    command.add_value(
-        "--piece", [&](const std::string& text) { extract.piece = parse_piece(text); }, "K/N",
-        "Only piece K, from 1, of N: the surfaces of all N together are that of the whole grid, bit for bit");
-    command.add_value(
-        "--solid", [&](const std::string& text) { extract.solid = parse_solid(text); }, "above|below|A:B",
-        "Closed solids: the part of the grid where the field is at least the isovalue, below it, or from A to B, with the "
-        "grid's boundary there; cell field boundary: 1 there, 0 on isosurfaces");
-    command.add_value(
-        "--keep", [&](const std::string& text) { extract.keep = parse_parts(text); }, "largest|N|area>A|volume>V",
-        "Only these connected parts of each surface or solid: the largest by area, the N largest, or those of more area or "
-        "enclosed volume; cell field part: their numbers");
-    command.add_file("--parts", extract.parts_table, "FILE.csv",
-                     "Write a table of the connected parts: triangles, area, volume, place, means of the fields");
-    command.add_flag("--keep-degenerate", extract.keep_degenerate,
-                     "One vertex for every active edge and one or two triangles for every active tet, ties or not");
-    command.add_flag("--fail-if-empty", extract.fail_if_empty,
-                     "An empty surface is an error, exit status 3, and is not written");
-    add_compression(command, extract.compression, ".vtp");
-    command.add_choice<Precision>("--precision", extract.precision,
-                                  {{"float", Precision::float32}, {"double", Precision::float64}},
-                                  "Precision of the packed grid");
-    command.add_choice<std::optional<Method>>(
-        "--method", extract.method,
-        {{"auto", std::nullopt}, {"clusters", Method::clusters}, {"direct", Method::direct}},
-        "How: clusters packs the grid once, which pays for many surfaces; direct goes through all cells for each "
-        "surface; auto chooses by their number");
-    command.add_choice<EngineChoice>(
-        "--engine", extract.engine,
-        {{"auto", EngineChoice::automatic},
-         {"cpu", EngineChoice::cpu},
-         {"vulkan", EngineChoice::vulkan},
-         {"reference", EngineChoice::reference}},
-        "What extracts: auto is the device that --device names, with the CPU where that fails, or "
-        "without --device the CPU; vulkan is a device or an error; "
-        "reference is slow and obvious");
-    add_device(command, extract.device);
-    add_device_memory(command, extract.device);
-    add_reading(command, extract.grid, "--format");
+    add_surface_options(command, extract,
+                        "Closed solids: the part of the grid where the field is at least the isovalue, below it, or from "
+                        "A to B, with the grid's boundary there; cell field boundary: 1 there, 0 on isosurfaces");
     add_common(command, extract.common);
     command.set_details(extract_details);
 }
@@ -571,6 +518,67 @@ void add_refinement(const Command& command, RefineChoice& refine, bool* asked) {
         "hundredth of each edge's length");
 }
 
+void add_common(const Command& command, CommonOptions& common) {
+    command.add_file("--json", common.json, "FILE",
+                     "Write the numbers as JSON too; - is standard output, which then has no table");
+    command.add_count(
+        "-j,--threads", {0, 4096}, [&](std::uint64_t n) { common.threads = static_cast<int>(n); }, "N",
+        "Threads; 0 or not given: all");
+    const Option quiet = command.add_flag("-q,--quiet", common.quiet, "No table, no notes, no progress: only errors");
+    command.add_flag("-v,--verbose", common.verbose, "Say more").excludes(quiet);
+}
+
+void add_grid_and_surface(const Command& command, ExtractJob& job) {
+    command.add_file("FILE", job.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]").required();
+    const Option out = command.add_file("OUT", job.out, "OUT_FILE", "The surface, as -o");
+    command.add_file("-o,--output", job.out, "OUT_FILE", "The surface; the ending says the format").excludes(out);
+}
+
+void add_surface_options(const Command& command, ExtractJob& job, const std::string& solids) {
+    add_time(command, job.grid);
+    command.add_flag("--all-steps", job.all_steps, "Every time step; OUT then needs {step} or {time}")
+        .excludes(command.option("--time"))
+        .excludes(command.option("--step"));
+    add_surface_arrays(command, job);
+    add_refinement(command, job.refine, &job.refine_averaged);
+    command.add_value(
+        "--piece", [&job](const std::string& text) { job.piece = parse_piece(text); }, "K/N",
+        "Only piece K, from 1, of N: the surfaces of all N together are that of the whole grid, bit for bit");
+    command.add_value(
+        "--solid", [&job](const std::string& text) { job.solid = parse_solid(text); }, "above|below|A:B", solids);
+    command.add_value(
+        "--keep", [&job](const std::string& text) { job.keep = parse_parts(text); }, "largest|N|area>A|volume>V",
+        "Only these connected parts of each surface or solid: the largest by area, the N largest, or those of more area or "
+        "enclosed volume; cell field part: their numbers");
+    command.add_file("--parts", job.parts_table, "FILE.csv",
+                     "Write a table of the connected parts: triangles, area, volume, place, means of the fields");
+    command.add_flag("--keep-degenerate", job.keep_degenerate,
+                     "One vertex for every active edge and one or two triangles for every active tet, ties or not");
+    command.add_flag("--fail-if-empty", job.fail_if_empty,
+                     "An empty surface is an error, exit status 3, and is not written");
+    add_compression(command, job.compression, ".vtp");
+    command.add_choice<Precision>("--precision", job.precision,
+                                  {{"float", Precision::float32}, {"double", Precision::float64}},
+                                  "Precision of the packed grid");
+    command.add_choice<std::optional<Method>>(
+        "--method", job.method,
+        {{"auto", std::nullopt}, {"clusters", Method::clusters}, {"direct", Method::direct}},
+        "How: clusters packs the grid once, which pays for many surfaces; direct goes through all cells for each "
+        "surface; auto chooses by their number");
+    command.add_choice<EngineChoice>(
+        "--engine", job.engine,
+        {{"auto", EngineChoice::automatic},
+         {"cpu", EngineChoice::cpu},
+         {"vulkan", EngineChoice::vulkan},
+         {"reference", EngineChoice::reference}},
+        "What extracts: auto is the device that --device names, with the CPU where that fails, or "
+        "without --device the CPU; vulkan is a device or an error; "
+        "reference is slow and obvious");
+    add_device(command, job.device);
+    add_device_memory(command, job.device);
+    add_reading(command, job.grid, "--format");
+}
+
 void add_device_memory(const Command& command, DeviceChoice& choice) {
     command.add_value(
         "--device-memory",
@@ -586,6 +594,7 @@ void add_commands(const Command& program, CommandLine& line) {
     program.add_flag("--version", line.version, "Print the version and the facts of the build");
     add_info(program, line.info);
     add_extract(program, line.extract);
+    add_slice_command(program, line.slice);
     add_render(program, line.render);
     add_view(program, line.view);
     add_bench(program, line.bench);

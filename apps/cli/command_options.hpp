@@ -11,6 +11,12 @@ namespace isotet::cli {
 
 void add_commands(const Command& program, CommandLine& line);
 
+/// FILE, OUT and --output.
+void add_grid_and_surface(const Command& command, ExtractJob& job);
+/// What surfaces are like, and how they are made. `solids` is the help of --solid.
+void add_surface_options(const Command& command, ExtractJob& job, const std::string& solids);
+void add_common(const Command& command, CommonOptions& common);
+void add_slice_command(const Command& program, SliceCommand& slice);
 Command add_render_command(const Command& program, RenderCommand& render);
 Command add_bench_command(const Command& program, BenchCommand& bench);
 

@@ -153,8 +153,8 @@ std::string extract_table(const ExtractNumbers& numbers, bool verbose) {
     return table.text() + "\n" + facts_table(numbers, verbose);
 }
 
-Json extract_json(const ExtractNumbers& numbers) {
-    Json report = json_report("extract");
+Json extract_json(const char* command, const ExtractNumbers& numbers) {
+    Json report = json_report(command);
     report["grid"] = json_text(numbers.grid);
     report["format"] = numbers.format;
     report["cells"] = numbers.cells;

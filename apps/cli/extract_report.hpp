@@ -12,6 +12,6 @@ namespace isotet::cli {
 
 /// The surfaces, then the grid and the field; `verbose`: also how they were made.
 std::string extract_table(const ExtractNumbers& numbers, bool verbose);
-Json extract_json(const ExtractNumbers& numbers);
+Json extract_json(const char* command, const ExtractNumbers& numbers);
 
 } // namespace isotet::cli

@@ -12,6 +12,7 @@
 #include <isotet/jobs/extract_files.hpp>
 #include <isotet/jobs/look_into.hpp>
 #include <isotet/jobs/measure_methods.hpp>
+#include <isotet/jobs/slice_files.hpp>
 #include <isotet/make.hpp>
 
 namespace isotet::cli {
@@ -34,6 +35,10 @@ struct InfoCommand : InfoJob {
 using RefineChoice = std::optional<RefineOptions>;
 
 struct ExtractCommand : ExtractJob {
+    CommonOptions common;
+};
+
+struct SliceCommand : SliceJob {
     CommonOptions common;
 };
 
@@ -97,6 +102,7 @@ struct CommandLine {
     bool version = false;
     InfoCommand info;
     ExtractCommand extract;
+    SliceCommand slice;
     RenderCommand render;
     ViewCommand view;
     BenchCommand bench;

@@ -5,6 +5,7 @@
 #include <isotet/jobs/number_text.hpp>
 
 #include "command_options.hpp"
+#include "shape_text.hpp"
 
 namespace isotet::cli {
 
@@ -75,36 +76,6 @@ std::optional<UpAxis> parse_up_axis(std::string_view text) {
     if (minus || text.starts_with('+')) text.remove_prefix(1);
     if (text.size() != 1 || text[0] < 'x' || text[0] > 'z') return {};
     return static_cast<UpAxis>(2 * (text[0] - 'x') + (minus ? 1 : 0));
-}
-
-std::vector<double> parse_numbers(const std::string& text) {
-    std::vector<double> numbers;
-    std::size_t at = 0;
-    while (true) {
-        const std::size_t end = text.find(',', at);
-        const auto number = parse_number(text.substr(at, end - at));
-        if (!number) return {};
-        numbers.push_back(*number);
-        if (end == std::string::npos) return numbers;
-        at = end + 1;
-    }
-}
-
-/// "x=0.5", "-x=0.5" and "NX,NY,NZ,OFFSET".
-std::optional<Plane> parse_plane(const std::string& text) {
-    const std::size_t equals = text.find('=');
-    if (equals == std::string::npos) {
-        const std::vector<double> numbers = parse_numbers(text);
-        if (numbers.size() != 4 || (numbers[0] == 0 && numbers[1] == 0 && numbers[2] == 0)) return {};
-        return Plane{{numbers[0], numbers[1], numbers[2]}, numbers[3]};
-    }
-    const auto axis = parse_up_axis(text.substr(0, equals));
-    const auto value = parse_number(text.substr(equals + 1));
-    if (!axis || !value) return {};
-    const bool minus = static_cast<int>(*axis) % 2 == 1;
-    Plane plane{{0, 0, 0}, minus ? -*value : *value};
-    plane.normal[static_cast<std::size_t>(*axis) / 2] = minus ? -1 : 1;
-    return plane;
 }
 
 void add_camera(const Command& command, RenderCommand& render) {

@@ -22,15 +22,10 @@
 #include <isotet/render.hpp>
 #include <isotet/result.hpp>
 #include <isotet/search.hpp>
+#include <isotet/slice.hpp>
 #include <isotet/surface.hpp>
 
 namespace isotet {
-
-/// A plane: normal . p = offset.
-struct Plane {
-    std::array<double, 3> normal{0, 0, 1}; ///< of any length but 0
-    double offset = 0;
-};
 
 /// Where the normals come from that smooth surfaces are shaded by.
 enum class ShadeBy : std::uint8_t {
@@ -71,14 +66,11 @@ struct SurfaceLook {
 ISOTET_API std::vector<SurfaceLook> looks_of(std::span<const double> isovalues, std::span<const Box> boxes,
                                              const SceneLook& look);
 
-/// normal . p of each point: one float64 a point.
-ISOTET_API Array heights_over(const Array& points, const Plane& plane);
-
 /// The cut through a grid along a plane, as IsosurfaceScene draws it; with `field`, if it is not null, as its first field of
 /// points or cells.
 ///
 /// Cost     a direct extraction
-/// Errors   as linearize() and extract_direct()
+/// Errors   as slice_field(), linearize() and extract_direct()
 ISOTET_API Result<Surface> slice_of(const Grid& grid, const Plane& plane, const ColorField* field, const Run& run = {});
 
 /// Where surfaces of a grid are extracted.

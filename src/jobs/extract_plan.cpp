@@ -22,12 +22,12 @@ namespace {
 
 /// What the format of OUT can hold.
 struct Holds {
-    bool fields = true;
+    bool fields = true, cell_fields = true;
     bool edge_ends = true; ///< and source cells
 };
 
 Result<Holds> holds(const ExtractJob& job) {
-    if (job.out.empty()) return Holds{false, true};
+    if (job.out.empty()) return Holds{false, false, true};
     const Result<Format> format = format_for_writing(job.out, Writes::surface, job.compression);
     if (!format) return format.error();
     const bool vtk = format->name == "vtp" || format->name == "vtk";
@@ -37,7 +37,8 @@ Result<Holds> holds(const ExtractJob& job) {
             return refusal("{} was asked for, but {} holds no such array: .vtp and .vtk do", option, format->name);
         }
     }
-    return Holds{format->name != "stl" && format->name != "obj", vtk};
+    const bool fields = format->name != "stl" && format->name != "obj";
+    return Holds{fields, fields && format->name != "ts", vtk};
 }
 
 Result<void> check_names(const ExtractJob& job, const ExtractPlan& plan, const FileInfo& info) {
@@ -115,7 +116,7 @@ constexpr std::size_t most_isovalues_of_active_cells = 8;
 
 std::optional<ReadActiveCells> plan_active_cells(const ExtractJob& job, const ExtractPlan& plan) {
     const bool has_components = plan.carried && !plan.carried->components.empty();
-    if (job.piece || job.solid || job.grid.merge_points || has_components || !plan.read.cell || !plan.read.cell->empty() ||
+    if (job.field.shape || job.piece || job.solid || job.grid.merge_points || has_components || !plan.read.cell || !plan.read.cell->empty() ||
         plan.contour.expected_isovalues.size() > most_isovalues_of_active_cells ||
         !Contour::can_do_with_active_cells(plan.contour))
         return std::nullopt;
@@ -159,6 +160,8 @@ Result<void> choose_fields(const ExtractJob& job, const GridSource& source, Extr
     plan.field = *std::move(field);
     plan.carried = *std::move(carried);
     plan.read = fields_to_read(plan);
+    const bool all_cell_fields = job.field.shape && !plan.carried && plan.out_holds_cell_fields;
+    if (all_cell_fields && !source.names(Association::cell).empty()) plan.read.cell.reset();
     return {};
 }
 
@@ -180,6 +183,7 @@ Result<ExtractPlan> plan_extract(const ExtractJob& job, GridSource& source, Call
 
     if (job.piece && job.field.own_centres) return refusal("`piece` takes `centre` mean only");
     plan.out_holds_fields = format->fields;
+    plan.out_holds_cell_fields = format->cell_fields;
     if (auto chosen = choose_fields_of_steps(job, source, plan, caller); !chosen) return chosen.error();
 
     plan.contour.method = job.method;
@@ -234,6 +238,7 @@ Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid, con
     StepFields fields;
     if (!plan.carried) {
         fields.point = grid.point_fields;
+        if (!plan.read.cell) fields.cell = grid.cell_fields;
         return fields;
     }
     const auto has = [](const std::vector<std::string>& names, const Field& field) {

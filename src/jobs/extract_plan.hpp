@@ -21,9 +21,9 @@ struct ExtractPlan {
     std::string collection;   ///< a .pvd file for the series; empty: none
     std::vector<std::size_t> steps;
     FoundField field;
-    std::optional<CarriedFields> carried; ///< nothing: all point fields
+    std::optional<CarriedFields> carried; ///< nothing: all point fields, and all cell fields where all are read
     FieldsToRead read;
-    bool out_holds_fields = true;
+    bool out_holds_fields = true, out_holds_cell_fields = true;
     ContourOptions contour;                      ///< but for the device
     std::optional<ReadActiveCells> active_cells; ///< where others need not be read
 };

@@ -53,6 +53,7 @@ void add_names(std::vector<std::string>& names, const std::vector<std::string>& 
 
 Result<FoundField> choose_field(const GridSource& source, const FieldChoice& choice) {
     FoundField found{choice.name, {}, {}};
+    if (choice.shape) return found;
     if (found.name.empty()) {
         const std::vector<std::string> names = all_names(source);
         if (names.size() != 1) {
@@ -81,6 +82,7 @@ Result<CarriedFields> choose_carried(const GridSource& source, const std::vector
 }
 
 Result<PointField> find_chosen(const Grid& grid, const std::string& name, const FieldChoice& choice, Caller& caller) {
+    if (choice.shape) return slice_field(grid.points, *choice.shape, caller.run());
     const auto prefer = choice.cell_field || choice.own_centres ? Association::cell : Association::point;
     Result<PointField> field = find_field(grid, name, {prefer, false, choice.own_centres}, caller.run());
     if (!field) return field;

@@ -102,19 +102,10 @@ SurfaceColors carried_colors(const Surface& surface, const ColorField& field) {
 
 namespace isotet {
 
-Array heights_over(const Array& points, const Plane& plane) {
-    std::vector<double> heights(points.tuples());
-    points.visit([&](auto scalars) {
-        for (std::size_t i = 0; i < heights.size(); ++i)
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                heights[i] += plane.normal[axis] * static_cast<double>(scalars[3 * i + axis]);
-    });
-    return Array::own(std::move(heights));
-}
-
 Result<Surface> slice_of(const Grid& grid, const Plane& plane, const ColorField* field, const Run& run) {
-    ContourInput input{
-        {grid.points, grid.cells, {}, {}}, {"height", heights_over(grid.points, plane), false, {}}, {}, {}};
+    Result<PointField> heights = slice_field(grid.points, plane, run);
+    if (!heights) return heights.error();
+    ContourInput input{{grid.points, grid.cells, {}, {}}, *std::move(heights), {}, {}};
     if (field)
         (field->association == Association::point ? input.point_fields
                                                   : input.cell_fields) = {{field->name, field->values}};

@@ -16,19 +16,17 @@ Result<Surface> GridView::surface_of_pick(const PickMessage& message, const Run&
     with_all.cell_fields = grid_.cell_fields;
     const Plane* plane = message.slice ? &message.state.slices[*message.slice] : nullptr;
     if (packed && plane) return lean_->slice(grid_.points, *plane, with_all, run);
-    PointField field;
-    if (plane) field = {"height", heights_over(grid_.points, *plane), false, {}};
-    else if (Result<PointField> found = field_of(message.state.field, run); found) field = *std::move(found);
-    else return found.error();
+    Result<PointField> field = plane ? slice_field(grid_.points, *plane, run) : field_of(message.state.field, run);
+    if (!field) return field.error();
     const double isovalue = plane ? plane->offset : message.state.isovalues.front();
-    if (packed) return lean_->isosurface(field, isovalue, with_all, run);
+    if (packed) return lean_->isosurface(*field, isovalue, with_all, run);
     ContourOptions options;
     options.method = Method::direct;
     options.source_cells = true;
     options.expected_isovalues = {isovalue};
     options.surfaces = 1;
     Result<Contour> contour =
-        Contour::create({grid_, std::move(field), grid_.point_fields, grid_.cell_fields}, options);
+        Contour::create({grid_, *std::move(field), grid_.point_fields, grid_.cell_fields}, options);
     if (!contour) return contour.error();
     Result<ContourResult> extracted = contour->extract(isovalue, run);
     if (!extracted) return extracted.error();

@@ -23,7 +23,9 @@ Result<Surface> PackedSource::isosurface(const PointField& field, double isovalu
 
 Result<Surface> PackedSource::slice(const Array& points, const Plane& plane, const ExtractOptions& options,
                                     const Run& run) const {
-    const Result<PackedGrid> heights = packed_.with_field({"height", heights_over(points, plane), false, {}}, run);
+    const Result<PointField> field = slice_field(points, plane, run);
+    if (!field) return field.error();
+    const Result<PackedGrid> heights = packed_.with_field(*field, run);
     if (!heights) return heights.error();
     Result<Extraction> extracted = extract(*heights, plane.offset, options, run);
     if (!extracted) return extracted.error();

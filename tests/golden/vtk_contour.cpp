@@ -11,13 +11,17 @@
 #include <vtkCellArray.h>
 #include <vtkCellType.h>
 #include <vtkContour3DLinearGrid.h>
+#include <vtkCutter.h>
 #include <vtkDoubleArray.h>
 #include <vtkFloatArray.h>
 #include <vtkIdList.h>
 #include <vtkNew.h>
+#include <vtkPlane.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+#include <vtkTriangleFilter.h>
 #include <vtkUnstructuredGrid.h>
 
 #include "grid/cells.hpp"
@@ -94,33 +98,65 @@ void add_cells(const Grid& grid, VtkCells& out) {
 
 } // namespace
 
-VtkSurface vtk_contour(const Grid& grid, const Array& field, double isovalue, bool split_cells) {
-    vtkNew<vtkUnstructuredGrid> input;
+namespace {
+
+/// Nothing where no cell is left.
+vtkSmartPointer<vtkUnstructuredGrid> vtk_grid_of(const Grid& grid, const Array& field, bool split_cells) {
+    auto out = vtkSmartPointer<vtkUnstructuredGrid>::New();
     vtkNew<vtkPoints> points;
     points->SetDataTypeToDouble();
     points->SetNumberOfPoints(static_cast<vtkIdType>(grid.points.tuples()));
     for (std::size_t p = 0; p < grid.points.tuples(); ++p)
         points->SetPoint(static_cast<vtkIdType>(p), grid.points.at(p, 0), grid.points.at(p, 1), grid.points.at(p, 2));
-    input->SetPoints(points);
-    if (field.type() == ScalarType::float32) set_scalars<vtkFloatArray>(input, field);
-    else set_scalars<vtkDoubleArray>(input, field);
+    out->SetPoints(points);
+    if (field.type() == ScalarType::float32) set_scalars<vtkFloatArray>(out, field);
+    else set_scalars<vtkDoubleArray>(out, field);
 
     VtkCells cells(field);
     if (split_cells)
         for (const auto& tet : split(grid).value().tets) cells.add(VTK_TETRA, tet);
     else add_cells(grid, cells);
-    if (cells.empty()) return {};
-    cells.give_to(input);
+    if (cells.empty()) return nullptr;
+    cells.give_to(out);
+    return out;
+}
 
+VtkSurface measured(vtkPolyData* output) {
+    return {static_cast<std::uint64_t>(output->GetNumberOfPoints()),
+            static_cast<std::uint64_t>(output->GetNumberOfCells()), area_of(output)};
+}
+
+} // namespace
+
+VtkSurface vtk_contour(const Grid& grid, const Array& field, double isovalue, bool split_cells) {
+    const auto input = vtk_grid_of(grid, field, split_cells);
+    if (!input) return {};
     vtkNew<vtkContour3DLinearGrid> contour;
     contour->SetInputData(input);
     contour->SetMergePoints(true);
     contour->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
     contour->SetValue(0, isovalue);
     contour->Update();
-    vtkPolyData* output = vtkPolyData::SafeDownCast(contour->GetOutputDataObject(0));
-    return {static_cast<std::uint64_t>(output->GetNumberOfPoints()),
-            static_cast<std::uint64_t>(output->GetNumberOfCells()), area_of(output)};
+    return measured(vtkPolyData::SafeDownCast(contour->GetOutputDataObject(0)));
+}
+
+VtkSurface vtk_cut(const Grid& grid, const Array& field, const Plane& plane) {
+    const auto input = vtk_grid_of(grid, field, true);
+    if (!input) return {};
+    const auto& n = plane.normal;
+    const double squares = n[0] * n[0] + n[1] * n[1] + n[2] * n[2], along = plane.offset / squares;
+    vtkNew<vtkPlane> function;
+    function->SetNormal(n[0], n[1], n[2]);
+    function->SetOrigin(along * n[0], along * n[1], along * n[2]);
+    vtkNew<vtkCutter> cutter;
+    cutter->SetInputData(input);
+    cutter->SetCutFunction(function);
+    cutter->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+    cutter->Update();
+    vtkNew<vtkTriangleFilter> triangles;
+    triangles->SetInputData(cutter->GetOutput());
+    triangles->Update();
+    return measured(triangles->GetOutput());
 }
 
 } // namespace isotet::test

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include <isotet/grid.hpp>
+#include <isotet/slice.hpp>
 
 namespace isotet::test {
 
@@ -16,5 +17,8 @@ struct VtkSurface {
 /// Gives VTK the cells that isotet contours, or the tets into which it splits them, and only they: repeated ones once,
 /// none with a corner of NaN.
 VtkSurface vtk_contour(const Grid& grid, const Array& field, double isovalue, bool split_cells);
+
+/// What VTK's vtkCutter makes of the tets of a grid, as triangles.
+VtkSurface vtk_cut(const Grid& grid, const Array& field, const Plane& plane);
 
 } // namespace isotet::test

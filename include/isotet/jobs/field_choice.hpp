@@ -2,6 +2,7 @@
 // Which fields a command needs: decided by name before anything is read, where a name was given.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include <isotet/jobs/grid_source.hpp>
 #include <isotet/read.hpp>
 #include <isotet/result.hpp>
+#include <isotet/slice.hpp>
 
 namespace isotet::jobs {
 
@@ -17,6 +19,7 @@ struct FieldChoice {
     std::string name; ///< empty: the only one there is
     bool cell_field = false;
     bool own_centres = false; ///< of a cell field: points inside polyhedra have the values of their cells
+    std::optional<SliceShape> shape = {}; ///< slice_field() in place of a field of the grid
 };
 
 /// A field as find_field() will look for it, and the arrays that it is made of.
