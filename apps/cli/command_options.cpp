@@ -197,7 +197,7 @@ void add_info(const Command& program, InfoCommand& info) {
 }
 
 void add_levels(const Command& command, ExtractCommand& extract) {
-    const Option isovalues = add_isovalues(command, extract.isovalues);
+    const Option isovalues = add_isovalues(command, extract.isovalues, extract.shares);
     command
         .add_count(
             "--levels", {1, 1'000'000}, [&](std::uint64_t n) { extract.levels = n; }, "N",
@@ -451,6 +451,37 @@ Option add_isovalues(const Command& command, std::vector<double>& isovalues) {
                                "or line ends, # begins a comment; may be repeated");
 }
 
+/// "90%v" and "p95"; nothing for other words.
+std::optional<IsovalueShare> parse_share(std::string_view word) {
+    IsovalueShare share;
+    if (word.ends_with("%v")) {
+        word.remove_suffix(2);
+    } else if (word.starts_with('p')) {
+        word.remove_prefix(1);
+        share.of = IsovalueShare::Of::points;
+    } else {
+        return {};
+    }
+    const std::optional<double> percent = parse_number(word);
+    if (!percent || !(*percent >= 0 && *percent <= 100)) return {};
+    share.percent = *percent;
+    return share;
+}
+
+Option add_isovalues(const Command& command, std::vector<double>& isovalues, std::vector<IsovalueShare>& shares) {
+    return command.add_numbers(
+        "-i,--isovalue", isovalues, "V[,W...]",
+        "Isovalues, separated by commas: numbers, 90%v for the one with 90 % of the grid's volume below, p95 for the 95th "
+        "percentile of the point values; or @NAME: from that file, separated by blanks, commas or line ends, # begins a "
+        "comment; may be repeated",
+        {[&shares](std::string_view word) {
+             const std::optional<IsovalueShare> share = parse_share(word);
+             if (share) shares.push_back(*share);
+             return share.has_value();
+         },
+         "finite numbers, or shares such as 90%v or p95"});
+}
+
 void add_device(const Command& command, DeviceChoice& choice) {
     command.add_value(
         "--device",
@@ -554,6 +585,8 @@ void add_surface_options(const Command& command, ExtractJob& job, const std::str
                      "Write a table of the connected parts: triangles, area, volume, place, means of the fields");
     command.add_flag("--keep-degenerate", job.keep_degenerate,
                      "One vertex for every active edge and one or two triangles for every active tet, ties or not");
+    command.add_flag("--volumes", job.volumes,
+                     "Tell the volume of the grid where the field is below each isovalue, and where it is above");
     command.add_flag("--fail-if-empty", job.fail_if_empty,
                      "An empty surface is an error, exit status 3, and is not written");
     add_compression(command, job.compression, ".vtp");

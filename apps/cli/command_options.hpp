@@ -24,6 +24,8 @@ Command add_bench_command(const Command& program, BenchCommand& bench);
 Option add_field(const Command& command, FieldChoice& field, const std::string& description);
 void add_centre(const Command& command, FieldChoice& field);
 Option add_isovalues(const Command& command, std::vector<double>& isovalues);
+/// Takes shares, too.
+Option add_isovalues(const Command& command, std::vector<double>& isovalues, std::vector<IsovalueShare>& shares);
 /// `asked`   becomes true with any of the options; may be null
 void add_refinement(const Command& command, RefineChoice& refine, bool* asked = nullptr);
 void add_device(const Command& command, DeviceChoice& device);

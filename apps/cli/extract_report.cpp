@@ -130,10 +130,11 @@ std::string extract_table(const ExtractNumbers& numbers, bool verbose) {
     const bool times = any([](const SurfaceNumbers& surface) { return surface.time.has_value(); });
     const bool files = any([](const SurfaceNumbers& surface) { return !surface.file.empty(); });
     const bool solids = any([](const SurfaceNumbers& surface) { return surface.solid.has_value(); });
+    const bool volumes = any([](const SurfaceNumbers& surface) { return surface.volumes.has_value(); });
     using enum Table::Align;
-    Table table({right, right, right, right, right, right, left, right, right, right});
+    Table table({right, right, right, right, right, right, right, right, left, right, right, right});
     table.row({solids ? "solid" : "isovalue", times ? "time" : "", "triangles", "vertices", "area",
-               solids ? "volume" : "", files ? "file" : "",
+               solids ? "volume" : "", volumes ? "volume below" : "", volumes ? "volume above" : "", files ? "file" : "",
                verbose ? "tied points" : "", verbose ? "extract" : "", verbose && files ? "write" : ""});
     for (const SurfaceNumbers& surface : numbers.surfaces) {
         std::vector<std::string> row{surface.solid ? solid_text(surface.solid->range) : shortest(surface.isovalue),
@@ -142,6 +143,8 @@ std::string extract_table(const ExtractNumbers& numbers, bool verbose) {
                                      grouped(surface.vertices),
                                      rounded(surface.area),
                                      surface.solid ? rounded(surface.solid->volume) : "",
+                                     surface.volumes ? rounded(surface.volumes->below) : "",
+                                     surface.volumes ? rounded(surface.volumes->above) : "",
                                      surface.file};
         if (verbose) {
             row.push_back(grouped(surface.report.tied_points));
@@ -212,6 +215,10 @@ Json extract_json(const char* command, const ExtractNumbers& numbers) {
         if (surface.parts)
             list.back()["parts"] = {{"found", surface.parts->parts.size()}, {"kept", surface.parts_kept}};
         if (surface.solid) list.back()["solid"] = solid_json(*surface.solid);
+        if (surface.volumes) {
+            list.back()["volume_below"] = surface.volumes->below;
+            list.back()["volume_above"] = surface.volumes->above;
+        }
         if (surface.device)
             list.back()["device"] = {{"seconds", surface.device->device_seconds},
                                      {"bytes_up", surface.device->uploaded_bytes},

@@ -22,9 +22,9 @@ namespace {
 
 constexpr int first_error_code = 1000; ///< above CLI11's own exit codes
 
-double finite_number(const std::string& names, std::string_view text) {
+double finite_number(const std::string& names, std::string_view text, std::string_view rule = "a finite number") {
     const std::optional<double> value = parse_number(text);
-    if (!value || !std::isfinite(*value)) refuse_value(names, text, "a finite number");
+    if (!value || !std::isfinite(*value)) refuse_value(names, text, rule);
     return *value;
 }
 
@@ -33,10 +33,11 @@ double finite_number(const std::string& names, std::string_view text) {
     throw CLI::ValidationError(std::move(sentence), first_error_code + static_cast<int>(code));
 }
 
-void append_numbers_of_file(const std::string& path, std::vector<double>& numbers) {
+void append_numbers_of_file(const std::string& path, std::vector<double>& numbers,
+                            const Command::OtherWords& other) {
     std::ifstream file(path);
     if (!file) refuse_file(ErrorCode::file, fmt::format("the file of numbers '{}' cannot be read", path));
-    const std::size_t before = numbers.size();
+    bool any = false;
     std::string line;
     for (std::size_t number = 1; std::getline(file, line); ++number) {
         line.resize(std::min(line.find('#'), line.size()));
@@ -44,15 +45,18 @@ void append_numbers_of_file(const std::string& path, std::vector<double>& number
         for (std::size_t begin = 0; (begin = line.find_first_not_of(separators, begin)) != std::string::npos;) {
             const std::size_t end = std::min(line.find_first_of(separators, begin), line.size());
             const std::string word = line.substr(begin, end - begin);
+            any = true;
+            begin = end;
+            if (other.take && other.take(word)) continue;
             const std::optional<double> value = parse_number(word);
             if (!value || !std::isfinite(*value))
                 refuse_file(ErrorCode::invalid_data,
-                            fmt::format("{}: line {} has '{}', but must have finite numbers", path, number, word));
+                            fmt::format("{}: line {} has '{}', but must have {}", path, number, word,
+                                        other.take ? other.rule : "finite numbers"));
             numbers.push_back(*value);
-            begin = end;
         }
     }
-    if (numbers.size() == before)
+    if (!any)
         refuse_file(ErrorCode::invalid_data, fmt::format("{} has no number, but must have at least one", path));
 }
 
@@ -248,19 +252,20 @@ Option Command::add_count(const std::string& names, CountLimits limits, std::fun
 }
 
 Option Command::add_numbers(const std::string& names, std::vector<double>& target, const std::string& type,
-                            const std::string& description) const {
+                            const std::string& description, OtherWords other) const {
     return add_texts(
         names,
-        [&target, &files = *number_files_, names](const std::vector<std::string>& lists) {
+        [&target, &files = *number_files_, names, other](const std::vector<std::string>& lists) {
             for (const std::string& list : lists) {
                 if (list.starts_with('@')) {
-                    append_numbers_of_file(list.substr(1), target);
+                    append_numbers_of_file(list.substr(1), target, other);
                     files.push_back(list.substr(1));
                     continue;
                 }
                 for (std::size_t begin = 0; begin <= list.size();) {
                     const std::size_t end = std::min(list.find(',', begin), list.size());
-                    target.push_back(finite_number(names, std::string_view(list).substr(begin, end - begin)));
+                    const std::string_view word = std::string_view(list).substr(begin, end - begin);
+                    if (!other.take || !other.take(word)) target.push_back(finite_number(names, word, other.rule));
                     begin = end + 1;
                 }
             }

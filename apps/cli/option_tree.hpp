@@ -94,8 +94,17 @@ public:
 
     /// Finite numbers separated by commas, or "@FILE": a file of numbers separated by blanks, commas or line ends; #
     /// begins a comment. The option may be repeated.
+    /// Words that may stand beside numbers.
+    struct OtherWords {
+        std::function<bool(std::string_view word)> take = {}; ///< false: the word is none
+        const char* rule = "a finite number";                 ///< what an item of the list may be
+    };
     Option add_numbers(const std::string& names, std::vector<double>& target, const std::string& type,
-                       const std::string& description) const;
+                       const std::string& description, OtherWords other) const;
+    Option add_numbers(const std::string& names, std::vector<double>& target, const std::string& type,
+                       const std::string& description) const {
+        return add_numbers(names, target, type, description, OtherWords());
+    }
 
     using SetTexts = std::function<void(const std::vector<std::string>&)>;
 

@@ -180,7 +180,7 @@ Command add_render_command(const Command& program, RenderCommand& render) {
         .excludes(out);
     add_field(command, render.field, "The field to contour; default: the one that varies most");
     add_centre(command, render.field);
-    const Option isovalues = add_isovalues(command, render.isovalues);
+    const Option isovalues = add_isovalues(command, render.isovalues, render.shares);
     command
         .add_count(
             "--levels", {1, 100}, [&](std::uint64_t n) { render.levels = n; }, "N",

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <isotet/contour_spectrum.hpp>
 #include <isotet/device_grid.hpp>
 #include <isotet/jobs/number_text.hpp>
 #include <isotet/process_memory.hpp>
@@ -47,6 +48,8 @@ private:
         return !plan_.names.none() && !plan_.names.by_value();
     } ///< of a step, all surfaces
     std::size_t isovalues_together(std::size_t isovalues) const;
+    Result<void> find_shares();
+    Result<void> measure_volumes(std::size_t first);
     Result<void> choose_values(std::size_t step);
     Result<void> extract_step(std::size_t step);
     std::vector<Field> field_data_of(const Surface& surface) const;
@@ -66,7 +69,8 @@ private:
     std::optional<Contour> contour_;
     std::optional<Solids> solids_; ///< in its place where solids are made
     Grid grid_;                                    ///< of the step at hand
-    Array field_;                                  ///< its values
+    PointField field_;                             ///< that is contoured there
+    std::vector<double> share_isovalues_;          ///< of ExtractJob::shares
     std::vector<double> isovalues_;                ///< of the step at hand: levels follow its range
     std::uint64_t first_cell_ = 0;                 ///< of the piece
     std::uint64_t coarse_tets_ = 0;                ///< of the step at hand, with direct extraction
@@ -161,7 +165,7 @@ Result<void> ExtractRun::take_piece_of(ContourInput& input) {
     first_cell_ = piece->first_cell;
     input = std::move(piece->input);
     grid_ = input.grid;
-    field_ = input.field.values;
+    field_ = input.field;
     numbers_.cells = grid_.cells.count();
     return {};
 }
@@ -263,7 +267,8 @@ Result<bool> ExtractRun::load(std::size_t step) {
                                      "which is what its accuracy is worth, unless a tolerance is given",
                                      field->name));
     }
-    field_ = field->values;
+    field_ = *field;
+    if (auto shares = find_shares(); !shares) return shares.error();
     coarse_tets_ = 0;
     ContourInput input{grid_, *std::move(field), std::move(fields->point), std::move(fields->cell)};
     if (*cells_in_file)
@@ -283,7 +288,7 @@ Result<bool> ExtractRun::load(std::size_t step) {
         caller_.detail("packing");
         if (Result<void> ready = contour_->prepare(caller_.run()); !ready) return ready.error();
     }
-    if (job_.isovalues.empty()) {
+    if (job_.isovalues.empty() && job_.shares.empty()) {
         const core::Stopwatch looking;
         caller_.detail("looking at the field");
         const Result<FieldReport> range = range_of_field();
@@ -301,11 +306,43 @@ Result<bool> ExtractRun::load(std::size_t step) {
     return true;
 }
 
+/// The isovalues of the shares, of the whole grid.
+Result<void> ExtractRun::find_shares() {
+    if (job_.shares.empty()) return {};
+    const core::Stopwatch looking;
+    caller_.detail("looking for the isovalues of shares");
+    Result<std::vector<double>> found = isovalues_at(grid_, field_, job_.shares, caller_.run());
+    if (!found) return found.error();
+    share_isovalues_ = *std::move(found);
+    numbers_.look_seconds += looking.seconds();
+    return {};
+}
+
+/// Of the surfaces from `first` on, which are those of one step.
+Result<void> ExtractRun::measure_volumes(std::size_t first) {
+    if (!job_.volumes || numbers_.surfaces.size() == first) return {};
+    const core::Stopwatch measuring;
+    caller_.detail("measuring volumes");
+    std::vector<double> isovalues;
+    for (std::size_t i = first; i < numbers_.surfaces.size(); ++i) isovalues.push_back(numbers_.surfaces[i].isovalue);
+    std::ranges::sort(isovalues);
+    const Result<ContourSpectrum> spectrum = contour_spectrum(grid_, field_, isovalues, caller_.run());
+    if (!spectrum) return spectrum.error();
+    for (std::size_t i = first; i < numbers_.surfaces.size(); ++i) {
+        const auto place = std::ranges::lower_bound(isovalues, numbers_.surfaces[i].isovalue) - isovalues.begin();
+        const double below = spectrum->volume_below[static_cast<std::size_t>(place)];
+        numbers_.surfaces[i].volumes = SideVolumes{below, spectrum->volume - below};
+    }
+    numbers_.measure_seconds += measuring.seconds();
+    return {};
+}
+
 Result<void> ExtractRun::choose_values(std::size_t step) {
     if (job_.solid && job_.solid->kind == SolidChoice::Kind::between) {
         isovalues_ = {job_.solid->range.lower};
     } else {
-        Result<std::vector<double>> isovalues = choose_isovalues(job_, field_, numbers_.field, caller_);
+        Result<std::vector<double>> isovalues =
+            choose_isovalues(job_, share_isovalues_, field_.values, numbers_.field, caller_);
         if (!isovalues) return isovalues.error();
         isovalues_ = *std::move(isovalues);
     }
@@ -456,6 +493,7 @@ Result<void> ExtractRun::write(const Surface& surface, SurfaceNumbers& numbers) 
 
 Result<void> ExtractRun::extract_step(std::size_t step) {
     const bool one_file = goes_into_one_file();
+    const std::size_t before = numbers_.surfaces.size();
     std::size_t at_once =
         solids_ || contour_->engine() == "vulkan" ? 1 : isovalues_together(isovalues_.size());
     std::vector<Surface> joined;
@@ -477,6 +515,7 @@ Result<void> ExtractRun::extract_step(std::size_t step) {
         }
     }
     note_what_the_step_holds(numbers_, grid_, coarse_tets_, caller_);
+    if (auto measured = measure_volumes(before); !measured) return measured;
     if (!one_file) return {};
     return write(joined.size() == 1 ? joined.front() : join(joined, isovalues_), numbers_.surfaces.back());
 }

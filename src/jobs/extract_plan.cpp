@@ -116,7 +116,8 @@ constexpr std::size_t most_isovalues_of_active_cells = 8;
 
 std::optional<ReadActiveCells> plan_active_cells(const ExtractJob& job, const ExtractPlan& plan) {
     const bool has_components = plan.carried && !plan.carried->components.empty();
-    if (job.field.shape || job.piece || job.solid || job.grid.merge_points || has_components || !plan.read.cell || !plan.read.cell->empty() ||
+    const bool needs_all = job.field.shape || job.piece || job.solid || job.volumes || job.grid.merge_points;
+    if (needs_all || has_components || !plan.read.cell || !plan.read.cell->empty() ||
         plan.contour.expected_isovalues.size() > most_isovalues_of_active_cells ||
         !Contour::can_do_with_active_cells(plan.contour))
         return std::nullopt;
@@ -124,6 +125,10 @@ std::optional<ReadActiveCells> plan_active_cells(const ExtractJob& job, const Ex
     active.options.precision = plan.contour.precision;
     active.options.extract.ties = plan.contour.ties;
     return active;
+}
+
+bool names_isovalues(const ExtractJob& job) {
+    return !job.isovalues.empty() || !job.shares.empty() || job.levels > 0;
 }
 
 /// What does not go together with solids.
@@ -136,7 +141,7 @@ Result<void> check_solid(const ExtractJob& job) {
                                         {job.normals == Normals::gradient, "`normals` gradient"},
                                         {device, "a device"}})
         if (asked) return refusal("`solid` was asked for, which does not go with {}", option);
-    if (job.solid->kind == SolidChoice::Kind::between && (!job.isovalues.empty() || job.levels > 0))
+    if (job.solid->kind == SolidChoice::Kind::between && names_isovalues(job))
         return refusal("`solid` has its own two isovalues, but others were given");
     return {};
 }
@@ -196,16 +201,18 @@ Result<ExtractPlan> plan_extract(const ExtractJob& job, GridSource& source, Call
     plan.contour.split_cells = job.split_cells;
     plan.contour.refine = job.refine;
     plan.contour.exact_vertices = job.exact_vertices;
-    const std::size_t isovalues = job.isovalues.empty() ? std::max<std::uint64_t>(job.levels, 1) : job.isovalues.size();
+    const std::size_t named = job.isovalues.size() + job.shares.size();
+    const std::size_t isovalues = named == 0 ? std::max<std::uint64_t>(job.levels, 1) : named;
     plan.contour.surfaces = isovalues * plan.steps.size();
-    if (!job.snap && !job.solid) plan.contour.expected_isovalues = job.isovalues;
+    if (!job.snap && !job.solid && job.shares.empty()) plan.contour.expected_isovalues = job.isovalues;
     plan.active_cells = plan_active_cells(job, plan);
     return plan;
 }
 
-Result<std::vector<double>> choose_isovalues(const ExtractJob& job, const Array& field, const FieldReport& packed,
-                                             Caller& caller) {
+Result<std::vector<double>> choose_isovalues(const ExtractJob& job, const std::vector<double>& shares,
+                                             const Array& field, const FieldReport& packed, Caller& caller) {
     std::vector<double> isovalues = job.isovalues;
+    isovalues.insert(isovalues.end(), shares.begin(), shares.end());
     if (isovalues.empty()) {
         if (!(packed.lower <= packed.upper)) {
             return Error{
@@ -264,8 +271,8 @@ Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid, con
 
 Estimate predict(const ExtractJob& job, const ExtractPlan& plan, const FieldSample& sample, double kept,
                  std::size_t together) {
-    const std::vector<double> levels =
-        evenly_spaced_levels(sample.lower(), sample.upper(), std::max<std::uint64_t>(job.levels, 1));
+    const std::uint64_t others = std::max<std::uint64_t>({job.levels, job.shares.size(), 1});
+    const std::vector<double> levels = evenly_spaced_levels(sample.lower(), sample.upper(), others);
     const std::vector<double>& isovalues = job.isovalues.empty() ? levels : job.isovalues;
     double all = 0;
     Workload work;
@@ -280,7 +287,7 @@ Estimate predict(const ExtractJob& job, const ExtractPlan& plan, const FieldSamp
     work.tets = static_cast<std::uint64_t>(static_cast<double>(sample.tets()) / (kept > 0 ? kept : 1));
     work.surfaces = static_cast<double>(isovalues.size() * plan.steps.size());
     work.gradients = job.normals == Normals::gradient;
-    work.find_range = job.isovalues.empty();
+    work.find_range = !names_isovalues(job) || job.levels > 0;
     work.triangles = all / static_cast<double>(isovalues.size());
     const Method method = job.method.value_or(method_for(isovalues.size() * plan.steps.size(), work.gradients));
     return estimate(method, work);

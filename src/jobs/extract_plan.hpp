@@ -35,10 +35,11 @@ Result<ExtractPlan> plan_extract(const ExtractJob& job, GridSource& source, Call
 /// Errors   invalid_argument: a field is not there
 Result<void> choose_fields(const ExtractJob& job, const GridSource& source, ExtractPlan& plan);
 
-/// The isovalues to extract: those given (snapped if asked to), --levels of the packed field's range, or its middle.
+/// The isovalues to extract: those given and `shares` (snapped if asked to), --levels of the packed field's range, or its
+/// middle.
 /// Errors   invalid_data: levels of a field without a finite value
-Result<std::vector<double>> choose_isovalues(const ExtractJob& job, const Array& field, const FieldReport& packed,
-                                             Caller& caller);
+Result<std::vector<double>> choose_isovalues(const ExtractJob& job, const std::vector<double>& shares,
+                                             const Array& field, const FieldReport& packed, Caller& caller);
 
 /// The fields of the plan, taken from the grid of one step.
 struct StepFields {

@@ -22,7 +22,7 @@ namespace {
 
 /// Whether isovalues were asked for.
 bool names_isovalues(const DrawJob& job) {
-    return !job.isovalues.empty() || job.levels > 0 || !job.sweep.empty() || job.method.draw;
+    return !job.isovalues.empty() || !job.shares.empty() || job.levels > 0 || !job.sweep.empty() || job.method.draw;
 }
 
 Result<std::vector<double>> choose_levels(const DrawJob& job, const PointField& field, const ValueRange& range) {
@@ -311,7 +311,7 @@ Result<DrawInput> PictureSource::read(std::size_t which, const std::optional<Dev
     IsosurfaceOptions options;
     if (contents->field) {
         input.field = contents->field->name;
-        if (job_.isovalues.empty()) {
+        if (job_.isovalues.empty() && job_.shares.empty()) {
             const Result<ValueRange> range = typical_range_of_steps(*contents->field, caller);
             if (!range) return range.error();
             Result<std::vector<double>> levels = choose_levels(job_, *contents->field, *range);
@@ -319,7 +319,10 @@ Result<DrawInput> PictureSource::read(std::size_t which, const std::optional<Dev
             input.isovalues = *std::move(levels);
             if (steps_.size() > 1) job_.isovalues = input.isovalues;
         } else {
+            const auto found = isovalues_at(contents->grid, *contents->field, job_.shares, caller.run());
+            if (!found) return found.error();
             input.isovalues = job_.isovalues;
+            input.isovalues.insert(input.isovalues.end(), found->begin(), found->end());
         }
         options.field = *contents->field;
     }

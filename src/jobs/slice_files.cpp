@@ -43,6 +43,7 @@ Result<ExtractNumbers> slice_files(const SliceJob& job, Caller& caller) {
     extract.field = {};
     extract.field.shape = job.shape;
     extract.snap = false;
+    extract.shares.clear();
     const bool between = job.solid && job.solid->kind == SolidChoice::Kind::between;
     extract.levels = between ? 0 : job.count;
     extract.isovalues = job.at;

@@ -109,6 +109,26 @@ TEST_F(Program, ExtractPredictsTimeAndMemory) {
     EXPECT_TRUE(reference["predicted"].is_null());
 }
 
+TEST_F(Program, ExtractTakesIsovaluesByTheirShare) {
+    const json report = json_of({"extract", "make:kuhn:8:gyroid", "-i", "p95,0.1,50%v", "--volumes"});
+    ASSERT_EQ(report["surfaces"].size(), 3u);
+    EXPECT_EQ(report["surfaces"][0]["isovalue"], 0.1);
+    EXPECT_NEAR(report["surfaces"][2]["volume_below"].get<double>(), 4, 1e-6);
+    EXPECT_NEAR(report["surfaces"][2]["volume_above"].get<double>(), 4, 1e-6);
+    put_content(path("shares.txt"), "p95 # the highest\n0.1 50%v\n");
+    const json listed = json_of({"extract", "make:kuhn:8:gyroid", "-i", "@" + path("shares.txt")});
+    for (std::size_t i = 0; i < 3; ++i)
+        EXPECT_EQ(listed["surfaces"][i]["isovalue"], report["surfaces"][i]["isovalue"]);
+    EXPECT_FALSE(listed["surfaces"][0].contains("volume_below"));
+    const RunResult table = isotet({"extract", "make:kuhn:8:gyroid", "-i", "50%v", "--volumes"});
+    EXPECT_NE(table.out.find("volume below  volume above"), std::string::npos) << table.out;
+    for (const char* wrong : {"101%v", "-1%v", "%v", "p", "p101", "50%", "pq"}) {
+        const RunResult run = isotet({"extract", "make:kuhn:2:gyroid", std::string("-i=") + wrong});
+        EXPECT_EQ(run.status, 2) << wrong;
+        EXPECT_NE(run.err.find(wrong), std::string::npos) << run.err;
+    }
+}
+
 TEST_F(Program, ExtractNotesTiesThatComeFromRoundingAndTheRemedy) {
     put_content(path("g.msh"), small_grid({{"p", {1, 1 + 0x1p-40, -50, 50, 1}}}));
     const auto run = [&](const std::vector<std::string>& more) {

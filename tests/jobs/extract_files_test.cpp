@@ -104,6 +104,31 @@ TEST(ExtractFiles, AnEmptySurfaceIsAnErrorWhereAsked) {
     EXPECT_FALSE(std::filesystem::exists(folder.file("a.vtp")));
 }
 
+TEST(ExtractFiles, TakesIsovaluesByTheirShareAndTellsVolumes) {
+    const test::TemporaryFolder folder;
+    ASSERT_TRUE(write_grid(make_grid({.shape = "kuhn", .side = 8, .fields = {"gyroid"}}).value(), folder.file("g.vtu")));
+    Listener listener;
+    ExtractJob job = job_of(folder.file("g.vtu"), "");
+    job.isovalues = {0.25};
+    job.shares = {{IsovalueShare::Of::volume, 90}, {IsovalueShare::Of::points, 100}};
+    job.volumes = true;
+    const ExtractNumbers numbers = extract_files(job, listener).value();
+    ASSERT_EQ(numbers.surfaces.size(), 3u);
+    EXPECT_EQ(numbers.surfaces[0].isovalue, 0.25);
+    EXPECT_NEAR(numbers.surfaces[1].volumes->below, 7.2, 1e-6);
+    EXPECT_NEAR(numbers.surfaces[1].volumes->above, 0.8, 1e-6);
+    EXPECT_EQ(numbers.surfaces[2].isovalue, numbers.field.upper);
+    for (const SurfaceNumbers& surface : numbers.surfaces)
+        EXPECT_NEAR(surface.volumes->below + surface.volumes->above, 8, 1e-6);
+    EXPECT_LT(numbers.surfaces[0].volumes->below, numbers.surfaces[1].volumes->below);
+
+    job.piece = PieceOf{0, 3}; // the share is that of the whole
+    job.isovalues.clear();
+    const ExtractNumbers piece = extract_files(job, listener).value();
+    EXPECT_EQ(piece.surfaces[0].isovalue, numbers.surfaces[1].isovalue);
+    EXPECT_NEAR(piece.surfaces[0].volumes->below + piece.surfaces[0].volumes->above, 8.0 / 3, 0.1);
+}
+
 TEST(ExtractFiles, StopsWhenTold) {
     const test::TemporaryFolder folder;
     Listener listener;

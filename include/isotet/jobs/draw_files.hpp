@@ -9,6 +9,7 @@
 
 #include <isotet/color_field.hpp>
 #include <isotet/isosurface_scene.hpp>
+#include <isotet/isovalue_shares.hpp>
 #include <isotet/jobs/device_choice.hpp>
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
@@ -38,7 +39,8 @@ struct DrawJob {
     std::vector<std::string> other_outputs; ///< of the caller: no picture may overwrite them
     FieldChoice field;
     std::vector<double> isovalues;
-    std::uint64_t levels = 0; ///< 0: `isovalues` say it, or three
+    std::vector<IsovalueShare> shares; ///< more isovalues, after the others: of each time step its own
+    std::uint64_t levels = 0;          ///< 0: `isovalues` and `shares` say it, or three
     PictureOptions picture;   ///< the camera aside
     View view = View::iso;
     std::vector<double> angles; ///< azimuth and elevation, instead of `view`; or none

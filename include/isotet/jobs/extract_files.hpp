@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <isotet/contour.hpp>
+#include <isotet/isovalue_shares.hpp>
 #include <isotet/jobs/device_choice.hpp>
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
@@ -49,7 +50,9 @@ struct ExtractJob {
     std::vector<std::string> other_outputs; ///< of the caller: no surface may overwrite them
     FieldChoice field;
     std::vector<double> isovalues;
-    std::uint64_t levels = 0; ///< 0: `isovalues` say it
+    std::vector<IsovalueShare> shares; ///< more isovalues, after the others: of each time step its own
+    std::uint64_t levels = 0;          ///< 0: `isovalues` and `shares` say it
+    bool volumes = false;              ///< the volume on both sides of each isovalue: SurfaceNumbers::volumes
     bool snap = false;
     Normals normals = Normals::none;
     std::optional<std::vector<std::string>> with; ///< nothing: all point fields that the format can hold
@@ -80,6 +83,11 @@ struct SolidNumbers {
     std::uint64_t open_edges = 0;
 };
 
+/// Where the field is below an isovalue, and where it is not, as contour_spectrum() measures it.
+struct SideVolumes {
+    double below = 0, above = 0;
+};
+
 /// One isosurface, or one solid.
 struct SurfaceNumbers {
     double isovalue = 0;
@@ -88,6 +96,7 @@ struct SurfaceNumbers {
     std::uint64_t vertices = 0, triangles = 0;
     double area = 0; ///< of a solid with its boundary
     std::optional<SolidNumbers> solid;
+    std::optional<SideVolumes> volumes;
     std::optional<SurfaceParts> parts; ///< of all parts that were found; without `numbers`
     std::uint64_t parts_kept = 0;
     double extract_seconds = 0;

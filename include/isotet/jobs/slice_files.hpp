@@ -11,7 +11,7 @@
 
 namespace isotet::jobs {
 
-/// The options of extract_files() for the surfaces, but for field, isovalues, levels and snap: `shape` is in place of
+/// The options of extract_files() for the surfaces, but for field, isovalues, shares, levels and snap: `shape` is in place of
 /// these.
 struct SliceJob : ExtractJob {
     std::optional<SliceShape> shape;

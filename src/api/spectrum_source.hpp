@@ -1,0 +1,48 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// A grid and a field, prepared to be measured at isovalues more than once.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <isotet/contour_spectrum.hpp>
+#include <isotet/field_statistics.hpp>
+
+#include "base/buffer.hpp"
+#include "grid/cells.hpp"
+#include "grid/orientation.hpp"
+
+namespace isotet::api {
+
+enum class SpectrumBy : std::uint8_t { cpu, reference };
+
+class SpectrumSource {
+public:
+    /// Makes cells linear and checks them.
+    /// `around`   isovalues that will be asked for are in this range or in that of the field
+    /// Errors     as contour_spectrum()
+    static Result<SpectrumSource> open(const Grid& grid, const PointField& field, const ValueRange& around,
+                                       const Progress& progress);
+
+    /// Of the field's finite values; lower > upper: there is none.
+    const ValueRange& range() const noexcept { return range_; }
+
+    /// `isovalues`   ascending
+    /// Errors        cancelled
+    Result<ContourSpectrum> at(std::span<const double> isovalues, SpectrumBy engine, const Progress& progress) const;
+
+private:
+    SpectrumSource(Grid grid, const core::CellReader& cells) : grid_(std::move(grid)), cells_(cells) {}
+
+    /// Values as the engines take them: multiplied by a power of two until none is above 1, so that no difference is
+    /// infinite. What is below 2^-500 then counts as 0, so that no difference is too small to divide by.
+    double in_units(double value) const;
+
+    Grid grid_; ///< keeps what the reader borrows
+    core::CellReader cells_;
+    core::Buffer<double> values_; ///< in units
+    ValueRange range_;
+    int exponent_ = 0;
+};
+
+} // namespace isotet::api
