@@ -1,16 +1,21 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include <isotet/contour_spectrum.hpp>
 #include <isotet/grid.hpp>
+#include <isotet/isovalue_shares.hpp>
 #include <isotet/make.hpp>
 #include <isotet/read.hpp>
+#include <isotet/slice.hpp>
 #include <isotet/write.hpp>
 
 #include "arrays.hpp"
@@ -154,6 +159,52 @@ void add_grids(nb::module_& module) {
             return call(options, [&](const Run& run) { return find_field(grid, name, how, run); });
         },
         "grid"_a, "name"_a, "for_pieces"_a, "own_centres"_a, "call"_a);
+
+    using Vector = std::array<double, 3>;
+    const auto add_slice_field = [&module]<class Shape>(const char* name, Shape shape_of) {
+        module.def(
+            name,
+            [shape_of](const ArrayIn& points, const Vector& place, const Vector& direction, double size,
+                       const CallOptions& options) {
+                const Array array = array_in(points);
+                const SliceShape shape = shape_of(place, direction, size);
+                return call(options, [&](const Run& run) { return slice_field(array, shape, run); });
+            },
+            "points"_a, "place"_a, "direction"_a, "size"_a, "call"_a);
+    };
+    add_slice_field("plane_field",
+                    [](const Vector&, const Vector& normal, double offset) { return Plane{normal, offset}; });
+    add_slice_field("sphere_field",
+                    [](const Vector& centre, const Vector&, double radius) { return Sphere{centre, radius}; });
+    add_slice_field("cylinder_field", [](const Vector& point, const Vector& axis, double radius) {
+        return Cylinder{axis, point, radius};
+    });
+
+    module.def(
+        "isovalues_at",
+        [](const Grid& grid, const PointField& field, const std::vector<double>& percents, bool of_volume,
+           const CallOptions& options) {
+            std::vector<IsovalueShare> shares;
+            for (const double percent : percents)
+                shares.push_back({of_volume ? IsovalueShare::Of::volume : IsovalueShare::Of::points, percent});
+            return call(options, [&](const Run& run) { return isovalues_at(grid, field, shares, run); });
+        },
+        "grid"_a, "field"_a, "percents"_a, "of_volume"_a, "call"_a);
+
+    module.def(
+        "contour_spectrum",
+        [](const Grid& grid, const PointField& field, const std::vector<double>& isovalues, const CallOptions& options) {
+            const ContourSpectrum measured =
+                call(options, [&](const Run& run) { return contour_spectrum(grid, field, isovalues, run); });
+            nb::dict out;
+            out["area"] = array_out(Array::own(measured.area));
+            out["volume_below"] = array_out(Array::own(measured.volume_below));
+            out["volume"] = measured.volume;
+            out["tets"] = measured.tets;
+            out["no_data_tets"] = measured.no_data_tets;
+            return out;
+        },
+        "grid"_a, "field"_a, "isovalues"_a, "call"_a);
 
     nb::class_<ReadOptions>(module, "ReadOptions")
         .def(

@@ -164,6 +164,32 @@ def isovalues_in(isovalues) -> list[float]:
     return array.astype(np.float64).tolist()
 
 
+def place_in(what: str, place) -> tuple[float, float, float]:
+    """Three numbers."""
+    array = np.asarray(place)
+    if array.shape != (3,) or array.dtype.kind not in "iuf":
+        raise TypeError(f"{what} is {_shortened(place)}, but must be three numbers")
+    x, y, z = array.astype(np.float64).tolist()
+    return x, y, z
+
+
+def direction_in(what: str, direction) -> tuple[float, float, float]:
+    """ "x", "-x" (y and z alike), or three numbers."""
+    if not isinstance(direction, str):
+        return place_in(what, direction)
+    sign, axis = (-1.0, direction[1:]) if direction.startswith("-") else (1.0, direction)
+    if axis not in ("x", "y", "z"):
+        raise ValueError(f"{what} is {direction!r}, but must be x, y or z, with a minus too, or three numbers")
+    return tuple(sign if axis == one else 0.0 for one in "xyz")
+
+
+def middle_of(points: np.ndarray) -> np.ndarray:
+    """That of the bounds; of no points the origin."""
+    if len(points) == 0:
+        return np.zeros(3)
+    return (points.min(axis=0).astype(np.float64) + points.max(axis=0)) / 2
+
+
 def _shortened(value) -> str:
     text = repr(value)
     return text if len(text) <= 60 else text[:57] + "..."

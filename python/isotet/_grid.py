@@ -11,7 +11,9 @@ from typing import Any
 import numpy as np
 
 from . import _isotet
-from ._arrays import cells_in, fields_in, isovalues_in, numbers_in, points_in, scalars_in, tolerances_in, words_in
+from ._arrays import (
+    cells_in, direction_in, fields_in, isovalues_in, middle_of, numbers_in, place_in, points_in, scalars_in, tolerances_in, words_in,
+)  # fmt: skip
 from ._call import Progress, call_options
 from ._pieces import Frame
 from ._surface import Surface
@@ -119,7 +121,9 @@ class Grid:
         own = centre == "own"
         if own and for_pieces:
             raise ValueError("centre is 'own', but pieces of a grid take 'mean' only")
-        if field is None or isinstance(field, str):
+        if isinstance(field, _isotet.PointField):
+            found = field
+        elif field is None or isinstance(field, str):
             found = _isotet.find_field(self._grid, field or "", for_pieces, own, call or call_options(0, None))
         else:
             found = _isotet.PointField("values", scalars_in("field", field))
@@ -205,6 +209,86 @@ class Grid:
                                   self._carried(fields, "fields"), self._carried(cell_fields, "cell_fields"), options,
                                   call)  # fmt: skip
         return Surface._of(*session.extract(values, call))
+
+    def slice(self, normal="x", origin=None, *, offsets: float | Sequence[float] | None = None, **options) -> Surface:
+        """The cut along a plane, or along several parallel ones, as a surface that carries all fields of points and cells.
+
+        normal
+            "x", "y", "z", with a minus for the other way, or three numbers of any length. Triangles face along it.
+        origin
+            A point of the plane; else the middle of the points' bounds.
+        offsets
+            In place of an origin: the products of normal and point in the plane (z of the normal "z"), one or several.
+        options
+            `fields`, `cell_fields` and all else that `contour` takes, but for isovalues and field.
+
+        Raises ValueError for a normal of 0, and as `contour`.
+
+        >>> import isotet
+        >>> round(isotet.make("hex", 8, ["sphere"]).slice("z", (0, 0, 0.25)).area, 6)
+        4.0
+        """
+        direction = direction_in("normal", normal)
+        if offsets is not None and origin is not None:
+            raise ValueError("origin and offsets were given, but one of them says where the plane is")
+        if offsets is not None:
+            places = isovalues_in(offsets)
+        else:
+            point = place_in("origin", middle_of(self.points) if origin is None else origin)
+            places = [direction[0] * point[0] + direction[1] * point[1] + direction[2] * point[2]]
+        return self._cut(_isotet.plane_field, (0, 0, 0), direction, places, options)
+
+    def slice_sphere(self, centre, radius: float | Sequence[float], **options) -> Surface:
+        """The cut along a sphere, or along several around one point; facing outwards. `options` as for `slice`.
+
+        Raises ValueError for a negative radius, and as `contour`.
+        """
+        return self._cut(_isotet.sphere_field, place_in("centre", centre), (0, 0, 1), isovalues_in(radius), options)
+
+    def slice_cylinder(self, point, axis, radius: float | Sequence[float], **options) -> Surface:
+        """The cut along a cylinder without ends, or along several around one axis through `point`. `axis` as the `normal` of
+        `slice`, `options` as there.
+
+        Raises ValueError for an axis of 0 and a negative radius, and as `contour`.
+        """
+        place, direction = place_in("point", point), direction_in("axis", axis)
+        return self._cut(_isotet.cylinder_field, place, direction, isovalues_in(radius), options)
+
+    def _cut(self, field_of, place, direction, sizes: list[float], options: dict[str, Any]) -> Surface:
+        call = call_options(options.get("threads", 0), None)
+        field = field_of(self.points, place, direction, min(sizes, default=0.0), call)
+        options.setdefault("cell_fields", list(self.cell_fields))
+        return self.contour(sizes, field, **options)
+
+    def isovalues_at(self, percents: float | Sequence[float], field=None, *, of: str = "volume", threads: int = 0,
+                     progress: Progress | None = None) -> list[float]:  # fmt: skip
+        """Isovalues by what lies below them, in percent.
+
+        of
+            "volume": of the grid, where the field is linear in each tet; "points": of the point values, that is percentiles, by
+            NumPy's method "inverted_cdf".
+
+        Raises ValueError for percents that are not from 0 to 100, and for a field without a finite value.
+        """
+        if of not in ("volume", "points"):
+            raise ValueError(f"of is {of!r}, but must be 'volume' or 'points'")
+        call = call_options(threads, progress)
+        return _isotet.isovalues_at(self._grid, self._field(field, call), isovalues_in(percents), of == "volume", call)
+
+    def volumes(self, isovalues: float | Sequence[float], field=None, *, threads: int = 0,
+                progress: Progress | None = None) -> dict[str, Any]:  # fmt: skip
+        """Area of the isosurfaces and volume below them, without making them: "area" and "volume_below", one an isovalue, and the
+        "volume" of the grid where the field has values. In any order of the isovalues.
+
+        Raises ValueError as `contour`.
+        """
+        call = call_options(threads, progress)
+        values = np.array(isovalues_in(isovalues))
+        order = np.argsort(values, kind="stable")
+        measured = _isotet.contour_spectrum(self._grid, self._field(field, call), values[order].tolist(), call)
+        places = np.empty_like(order)
+        places[order] = np.arange(len(order))
+        return {**measured, "area": measured["area"][places], "volume_below": measured["volume_below"][places]}
 
     def pack(self, field=None, *, gradients: bool = False, source_cells: bool = False, split_cells: bool = False,
              precision: str = "float32", frame: Frame | None = None, threads: int = 0,

@@ -11,9 +11,12 @@ from collections.abc import Sequence
 
 import numpy as np
 import pyvista
+from vtkmodules.util.numpy_support import numpy_to_vtk
 
-from ._arrays import isovalues_in, tolerances_in
-from .vtk import IsotetContour, _arrays_of, _finish, _levels, _says_nothing_to_contour, _Session
+from . import _isotet
+from ._arrays import direction_in, isovalues_in, place_in, tolerances_in
+from ._call import call_options
+from .vtk import IsotetContour, _arrays_of, _fill, _finish, _levels, _points_of, _says_nothing_to_contour, _Session
 
 _STRUCTURED = (pyvista.StructuredGrid, pyvista.ExplicitStructuredGrid, pyvista.RectilinearGrid, pyvista.ImageData)
 _MANY = 1 << 20  # surfaces that a slider may ask for
@@ -136,6 +139,49 @@ class GridAccessor:
         _finish(surface, values, array, compute_scalars, any(name == "isovalue" for name, _ in cell_fields), out)
         out.GetFieldData().PassData(grid.GetFieldData())
         return out
+
+    def slice(self, normal="x", origin=None, generate_triangles: bool = False, contour: bool = False,
+              progress_bar: bool = False) -> pyvista.PolyData:  # fmt: skip
+        """The cut along a plane, as of `pyvista.DataSet.slice`, whose parameters these are. Its triangles share vertices; all
+        arrays of points and cells are carried. What was packed for `contour` serves here, too.
+
+        normal
+            "x", "y", "z", with a minus too, or three numbers.
+        origin
+            A point of the plane; else the centre of the grid.
+        contour
+            The outlines of the active scalars on the cut, instead of it.
+        generate_triangles, progress_bar
+            Accepted, without effect.
+
+        Raises ValueError for a normal of 0 and for broken grids.
+        """
+        grid = self._grid
+        direction = direction_in("normal", normal)
+        point = place_in("origin", grid.center if origin is None else origin)
+        out = pyvista.PolyData()
+        if grid.n_cells == 0:
+            return out
+        cells = self._unstructured()
+        offset = direction[0] * point[0] + direction[1] * point[1] + direction[2] * point[2]
+        field = _isotet.plane_field(_points_of(cells), (0.0, 0.0, 0.0), direction, offset, call_options(0, None))
+        heights = numpy_to_vtk(field.values)
+        heights.SetName(field.name)
+        try:
+            surface = self._session.contour(
+                cells, heights, [offset], normals=False, surfaces=self._expected,
+                fields=_arrays_of(grid.GetPointData()), cell_fields=_arrays_of(grid.GetCellData()))  # fmt: skip
+        except ValueError as error:
+            if not _says_nothing_to_contour(error):
+                raise
+            self._warn_of_cells(grid.n_cells - self._blank)
+            return out
+        self._warn_of_cells(surface._how["cells_left_out"] - self._blank)
+        _fill(out, surface, copy=False)
+        out.GetFieldData().PassData(grid.GetFieldData())
+        if contour and grid.active_scalars_name in out.point_data:
+            out.set_active_scalars(grid.active_scalars_name, preference="point")
+        return out.contour() if contour else out
 
     def _warn_of_cells(self, left_out: int) -> None:
         if left_out:
