@@ -2,6 +2,7 @@
 #include "io/pieces/active_pass.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <iterator>
 #include <set>
 #include <tuple>
@@ -19,10 +20,12 @@ constexpr std::size_t cells_per_send = std::size_t{1} << 10;
 constexpr std::uint32_t shared_bit = std::uint32_t{1} << 31, used_bit = std::uint32_t{1} << 30;
 constexpr std::uint32_t number_bits = used_bit - 1;
 
+/// Up to the next power of two, so that a masked number that is no point has an entry, too.
 core::Buffer<std::uint32_t> numbers_of_points(const PieceNumbers& numbers, std::uint64_t points) {
-    core::Buffer<std::uint32_t> result(points);
+    core::Buffer<std::uint32_t> result(std::bit_ceil(points));
     for (std::uint64_t i = 0; i < points; ++i)
         result[i] = (static_cast<std::uint32_t>(numbers(i)) & number_bits) | (numbers.is_shared(i) ? shared_bit : 0);
+    std::fill(result.begin() + points, result.end(), used_bit);
     return result;
 }
 
@@ -94,7 +97,7 @@ std::vector<PointUse> ActivePass::use() const {
 }
 
 bool ActivePass::uses_all_points() const {
-    return std::ranges::all_of(numbers_, [](std::uint32_t number) { return (number & used_bit) != 0; });
+    return std::all_of(numbers_.begin(), numbers_.begin() + points_, [](std::uint32_t number) { return (number & used_bit) != 0; });
 }
 
 template <class Index>
@@ -110,12 +113,11 @@ void ActivePass::pass_block(std::uint64_t first_cell, std::uint64_t cells, const
     }
 }
 
-/// The entry of a point that a cell has.
-std::uint32_t ActivePass::see(std::uint64_t point) {
-    const std::atomic_ref entry(numbers_[point]);
-    const std::uint32_t number = entry.load(std::memory_order_relaxed);
-    if ((number & used_bit) == 0) entry.store(number | used_bit, std::memory_order_relaxed);
-    return number;
+void ActivePass::see(std::span<const std::uint64_t> points) {
+    for (const std::uint64_t point : points) {
+        const std::atomic_ref entry(numbers_[point]);
+        entry.store(entry.load(std::memory_order_relaxed) | used_bit, std::memory_order_relaxed);
+    }
 }
 
 template <class Index>
@@ -125,9 +127,23 @@ void ActivePass::mark(std::uint64_t cell, std::span<const Index> corners) {
         std::atomic_ref(marks[static_cast<std::size_t>(corner)]).store(1, std::memory_order_relaxed);
 }
 
+/// Without a filter: only who uses which points.
+template <class Index, class CornersOf>
+void ActivePass::mark_all(std::uint64_t first_cell, std::uint64_t cells, const Index* corners,
+                          const CornersOf& corners_of) {
+    for (std::uint64_t cell = first_cell; cell < first_cell + cells; ++cell) {
+        const std::span<const Index> own(corners, corners_of(cell));
+        if (std::ranges::any_of(own, [&](Index corner) { return core::widened(corner) >= points_; })) broken_ = true;
+        if (broken_.load(std::memory_order_relaxed)) return;
+        mark(cell, own);
+        corners += own.size();
+    }
+}
+
 template <class Index, class CornersOf>
 void ActivePass::pass(std::uint64_t first_cell, std::uint64_t cells, const Index* corners,
                       const CornersOf& corners_of) {
+    if (!target_.filter) return mark_all(first_cell, cells, corners, corners_of);
     std::array<std::int32_t, 8 * cells_per_send> numbered;
     std::array<std::uint8_t, cells_per_send> types;
     std::vector<SharedCells::Cell> shared;
@@ -137,30 +153,39 @@ void ActivePass::pass(std::uint64_t first_cell, std::uint64_t cells, const Index
         if (count > 0) send(first, std::span(types).first(count), std::span(numbered).first(filled));
         filled = count = 0;
     };
+    const std::uint64_t mask = numbers_.size() - 1, points = points_;
+    std::uint32_t* const numbers = numbers_.data();
+    const bool typed = target_.typed, has_left_out = !piece_.left_out.empty();
+    bool broken = false;
     for (std::uint64_t cell = first_cell, n = 0; cell < first_cell + cells; ++cell, corners += n) {
         n = corners_of(cell);
-        const std::span<const Index> own(corners, n);
-        if (std::ranges::any_of(own, [&](Index corner) { return core::widened(corner) >= points_; })) broken_ = true;
-        if (broken_.load(std::memory_order_relaxed)) return;
-        if (!target_.filter) mark(cell, own);
-        if (!target_.filter || is_left_out(cell)) continue;
-        std::uint32_t all = shared_bit;
+        if (has_left_out && is_left_out(cell)) {
+            for (std::size_t k = 0; k < n; ++k) broken |= core::widened(corners[k]) >= points;
+            continue;
+        }
+        std::uint32_t all = shared_bit | used_bit;
+        std::array<std::uint64_t, 8> own;
         for (std::size_t k = 0; k < n; ++k) {
-            const std::uint32_t number = see(static_cast<std::uint64_t>(own[k]));
+            const std::uint64_t point = core::widened(corners[k]);
+            broken |= point >= points;
+            own[k] = point & mask;
+            const std::uint32_t number = std::atomic_ref(numbers[own[k]]).load(std::memory_order_relaxed);
             all &= number;
             numbered[filled + k] = static_cast<std::int32_t>(number & number_bits);
         }
-        if (all != 0) { // later ones are sent after it, so they are not sent together with earlier ones
+        if ((all & used_bit) == 0) see(std::span(own).first(n));
+        if ((all & shared_bit) != 0) { // later ones are sent after it, so they are not sent together with earlier ones
             shared.push_back(shared_cell(cell, std::span(numbered).subspan(filled, n)));
             send_them();
             continue;
         }
         if (count == 0) first = cell;
-        if (target_.typed) types[count] = places_.type(cell);
+        if (typed) types[count] = places_.type(cell);
         filled += n;
         if (++count == cells_per_send) send_them();
     }
     send_them();
+    if (broken) broken_ = true;
     if (!shared.empty()) target_.shared->add(shared);
 }
 

@@ -73,12 +73,14 @@ public:
 
 private:
     template <class Index, class CornersOf>
+    void mark_all(std::uint64_t first_cell, std::uint64_t cells, const Index* corners, const CornersOf& corners_of);
+    template <class Index, class CornersOf>
     void pass(std::uint64_t first_cell, std::uint64_t cells, const Index* corners, const CornersOf& corners_of);
     template <class Index>
     void pass_block(std::uint64_t first_cell, std::uint64_t cells, const Index* corners);
     template <class Index>
     void mark(std::uint64_t cell, std::span<const Index> corners);
-    std::uint32_t see(std::uint64_t point);
+    void see(std::span<const std::uint64_t> points);
     bool is_left_out(std::uint64_t cell) const { return !piece_.left_out.empty() && piece_.left_out[cell] != 0; }
     void send(std::uint64_t first_cell, std::span<const std::uint8_t> types,
               std::span<const std::int32_t> corners) const;

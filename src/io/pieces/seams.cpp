@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <utility>
 
@@ -95,6 +96,26 @@ private:
             [&](auto ids) { return static_cast<std::uint64_t>(ids[point - first_[piece]]); });
     }
 
+    /// Makes a box smaller on one side, so that it holds no place of the other one.
+    void cut_off(Box& inner, const Box& other) const {
+        double least = std::numeric_limits<double>::infinity();
+        Box cut = inner;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double above = other.upper[axis] + scale_.coarse, below = other.lower[axis] - scale_.coarse;
+            if (const double off = above - inner.lower[axis]; off < least) {
+                least = off;
+                cut = inner;
+                cut.lower[axis] = std::nextafter(above, std::numeric_limits<double>::infinity());
+            }
+            if (const double off = inner.upper[axis] - below; off < least) {
+                least = off;
+                cut = inner;
+                cut.upper[axis] = std::nextafter(below, -std::numeric_limits<double>::infinity());
+            }
+        }
+        if (least >= 0) inner = cut; // else it holds none
+    }
+
     /// The points in the boxes of other pieces.
     void find_candidates() {
         struct Chunk {
@@ -103,9 +124,12 @@ private:
         };
         std::vector<Chunk> chunks;
         std::vector<std::vector<Box>> others(pieces_.size());
+        std::vector<Box> inner(pieces_.size());
         core::parallel_each(pieces_.size(), 1, [&](std::size_t p) {
             for (std::size_t q = 0; q < pieces_.size(); ++q)
                 if (p != q && pieces_[p].box.meets(pieces_[q].box, scale_.coarse)) others[p].push_back(pieces_[q].box);
+            inner[p] = pieces_[p].box;
+            for (const Box& other : others[p]) cut_off(inner[p], other);
         });
         for (std::size_t p = 0; p < pieces_.size(); ++p)
             for (std::size_t i = 0; !others[p].empty() && i < pieces_[p].points.tuples(); i += seam_grain)
@@ -118,6 +142,7 @@ private:
             for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
                 if (!piece.use.empty() && piece.use[i] != PointUse::kept) continue;
                 const Point place = places[i];
+                if (inner[chunk.piece].holds(place, 0)) continue;
                 if (std::ranges::any_of(others[chunk.piece],
                                         [&](const Box& box) { return box.holds(place, scale_.coarse); }))
                     chunk.found.push_back(first_[chunk.piece] + i);
