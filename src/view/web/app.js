@@ -1,0 +1,21 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What all parts of the page share: the state, and what the server has said.
+import {Camera} from './camera.js';
+import {fromAddress} from './state.js';
+
+export const id = (name) => document.getElementById(name);
+export const css = (name) => getComputedStyle(document.documentElement).getPropertyValue('--' + name).trim();
+
+const [token, ...rest] = location.hash.slice(1).split('&');
+
+export const app = {
+  token, state: fromAddress(rest.join('&')), camera: new Camera(),
+  grid: null, maps: null, frame: null, // as the server sent them
+  scene: null,                         // null: the server draws
+  link: null, slider: null, cuts: null, time: null, save: null,
+  number: 0, sent: null, sentAt: new Map(), // wishes: the last number, what it asked for, and when each went
+  large: 0,                                 // triangles, where they are too many for the browser
+  picked: null,
+};
+
+export const aspect = () => id('scene').clientWidth / Math.max(1, id('scene').clientHeight);

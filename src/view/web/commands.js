@@ -1,0 +1,54 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Command lines: copied, and pasted.
+import {app, id} from './app.js';
+import {say} from './notes.js';
+import {fromMessage, toMessage} from './state.js';
+import {commit} from './undo.js';
+
+/** `show` puts a new state on the screen. */
+export const commands = {show() {}};
+
+let copying = null;
+for (const kind of ['render', 'extract'])
+  id('copy-' + kind).addEventListener('click', () => {
+    copying = kind;
+    app.link.send({do: 'command', state: wholeState()});
+  });
+
+export async function takeCommand(message) {
+  const text = message[copying] || '';
+  let copied = true;
+  try { await navigator.clipboard.writeText(text); } catch { copied = false; }
+  const own = copying === 'render' && [app.state, ...app.state.pins].some((one) => one.color || (one.opacity !== null && one.opacity !== app.state.opacity));
+  id('copied').textContent = text;
+  id('copied').title = copied ? 'Copied' : 'The browser did not copy: select it';
+  id('copy-' + copying).textContent = copied ? 'Copied' : 'See below';
+  if (own) say('Colours and opacities of single surfaces are not part of isotet render.');
+  setTimeout(() => { id('copy-render').textContent = 'Copy render'; id('copy-extract').textContent = 'Copy extract'; }, 1500);
+}
+
+id('command').addEventListener('keydown', (event) => {
+  if (event.key !== 'Enter' || id('command').value.trim() === '') return;
+  app.link.send({do: 'paste', text: id('command').value});
+});
+
+export function takeState(message) {
+  const next = fromMessage(message);
+  if (!next.field) next.field = app.state.field;
+  if (next.value === null && next.field === app.state.field) next.value = app.state.value;
+  if (next.step === null) next.step = app.state.step;
+  app.state = {...next, drawn: app.state.drawn};
+  if (!app.state.camera) app.state.camera = app.camera.text();
+  id('command').value = '';
+  say('');
+  commit();
+  commands.show();
+}
+
+/** As a command line has it: each isovalue once. */
+export function wholeState() {
+  app.state.camera = app.camera.text();
+  const message = toMessage(app.state);
+  message.isovalues = [...new Set(message.isovalues)];
+  return message;
+}

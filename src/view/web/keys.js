@@ -1,0 +1,23 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Keys that work anywhere but in texts.
+import {app, id} from './app.js';
+import {lookFrom} from './looking.js';
+import {closePicked, pickAt} from './picked.js';
+import {pin} from './surfaces.js';
+
+id('help-open').addEventListener('click', () => id('help').showModal());
+id('help-close').addEventListener('click', () => id('help').close());
+
+const keys = {
+  f: () => lookFrom('fit'), Home: () => lookFrom('fit'), 1: () => lookFrom('front'), 3: () => lookFrom('right'), 7: () => lookFrom('top'),
+  s: () => app.save.open(), v: () => pickAt(0, 0), ' ': () => app.time.toggle(), ',': () => { app.time.stop(); app.time.on.go((app.state.step ?? 0) - 1); }, '.': () => { app.time.stop(); app.time.on.go((app.state.step ?? 0) + 1); },
+  Escape: closePicked, 9: () => lookFrom('oblique'), 5: () => id('parallel').click(), e: () => id('edges').click(), b: () => id('outline').click(), p: pin,
+  '[': () => app.slider.step(-1), ']': () => app.slider.step(1), '{': () => app.slider.step(-0.1), '}': () => app.slider.step(0.1), '?': () => id('help').showModal(),
+};
+addEventListener('keydown', (event) => {
+  const typing = event.target.matches('input[type=text], select') || id('help').open || id('save').open || (event.key === ' ' && event.target.matches('button, input'));
+  const action = keys[event.key] || keys[event.key.toLowerCase()];
+  if (typing || event.ctrlKey || event.altKey || event.metaKey || !action) return;
+  event.preventDefault();
+  action();
+});

@@ -1,0 +1,62 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Values at a point of a surface or slice.
+import {app, aspect, id} from './app.js';
+import * as format from './format.js';
+import {toMessage} from './state.js';
+import {serverDraws} from './wishes.js';
+
+export function pickAt(x, y) {
+  if (serverDraws()) {
+    if (!app.grid?.lower) return;
+    const [point, ray] = app.camera.ray(x, y, aspect(), app.grid.lower, app.grid.upper);
+    app.picked = {point: null, isovalue: null};
+    app.link.send({do: 'pick', state: {...toMessage(app.state), camera: undefined}, point, ray});
+    return;
+  }
+  const found = app.scene?.pickSurface(x, y);
+  if (!found) return closePicked();
+  const {surface, point} = found, message = {do: 'pick', state: toMessage(app.state), point};
+  delete message.state.camera;
+  if (surface.kind === 'slice') message.slice = app.frame.surfaces.filter(({kind}) => kind === 'slice').findIndex(({key}) => key === surface.key);
+  else message.state.isovalues = [surface.isovalue];
+  if (message.slice >= message.state.slices.length) return;
+  app.picked = {point, isovalue: surface.kind === 'slice' ? null : surface.isovalue};
+  app.link.send(message);
+}
+
+export function takePicked(message) {
+  if (!app.picked) return;
+  if (app.picked.point === null) app.picked.isovalue = message.isovalue ?? null; // of a ray
+  app.picked.point = message.point;
+  const numbers = (values) => values.map(format.short).join(', ');
+  const rows = [['x, y, z', numbers(message.point)], ...message.values.map(({name, cell, values}) => [name + (cell ? ' (cell)' : ''), numbers(values.map((v) => v ?? NaN))])];
+  if (message.cell !== undefined) rows.push(['Cell', String(message.cell)]);
+  id('picked-title').textContent = app.picked.isovalue === null ? 'On the slice' : `${app.state.field} = ${format.short(app.picked.isovalue)}`;
+  id('picked-rows').replaceChildren(...rows.map(([name, value]) => {
+    const row = document.createElement('tr'), head = document.createElement('th'), cell = document.createElement('td');
+    head.scope = 'row';
+    head.textContent = name;
+    cell.textContent = value;
+    row.append(head, cell);
+    return row;
+  }));
+  id('picked').hidden = false;
+  document.body.dataset.picked = JSON.stringify(message);
+  placeMark();
+}
+
+export function closePicked() {
+  app.picked = null;
+  id('picked').hidden = true;
+  delete document.body.dataset.picked;
+  placeMark();
+}
+id('picked-close').addEventListener('click', () => { closePicked(); id('scene').focus(); });
+
+export function placeMark() {
+  const at = app.picked && !id('picked').hidden && !serverDraws() && app.scene?.project(app.picked.point);
+  id('mark').toggleAttribute('hidden', !at);
+  if (!at) return;
+  id('mark').style.left = `${50 + 50 * at[0]}%`;
+  id('mark').style.top = `${50 - 50 * at[1]}%`;
+}

@@ -1,0 +1,173 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Frames of the server on the screen.
+import {app, aspect, css, id} from './app.js';
+import {showRange} from './colors.js';
+import * as format from './format.js';
+import {askSpectrum, measureServer} from './level.js';
+import {readFrame} from './link.js';
+import {showNotes} from './notes.js';
+import {placeMark} from './picked.js';
+import {planesOf} from './state.js';
+import {showSurfaces} from './surfaces.js';
+import {measureLine, measureSpeed, noteSize, pictureSize, refineSoon, restSoon, serverDraws, stopWaiting, wishSoon} from './wishes.js';
+
+/** Colour and opacity of what the frame has: the slider's surface, pinned ones, slices, the boundary. */
+export function dressed() {
+  if (!app.frame) return [];
+  // A surface that was pinned just now lies where the slider's still is: it is drawn once.
+  const twice = isosurfaces().slice(1).some((one) => one.isovalue === app.frame.surfaces[0].isovalue);
+  return app.frame.surfaces.map((surface, i) => {
+    const {key, kind} = surface;
+    if (kind === 'slice') return {key, kind, color: surface.color, opacity: 1};
+    if (kind === 'boundary') return {key, kind, color: surface.color, opacity: app.state.boundary};
+    const own = i === 0 ? app.state : app.state.pins[i - 1] || {};
+    return {key, kind, isovalue: surface.isovalue, color: own.color || surface.color, opacity: own.opacity ?? surface.opacity, hidden: twice && i === 0};
+  });
+}
+
+const isosurfaces = () => (app.frame?.surfaces || []).filter(({kind}) => kind === 'surface');
+
+/** While something moves, a picture that takes long has half the pixels each way; in full when all rests. */
+let slow = false, resting = false, sharpTimer = 0, drawPlanned = false;
+function chooseScale() {
+  clearTimeout(sharpTimer);
+  if (slow && !resting) {
+    app.scene.scale = 0.5;
+    sharpTimer = setTimeout(() => { resting = true; drawSoon(); }, 250);
+  } else app.scene.scale = 1;
+  resting = false;
+}
+
+function draw() {
+  drawPlanned = false;
+  if (!app.grid?.lower) return;
+  if (serverDraws()) {
+    drawAxes();
+    placeMark();
+    document.body.dataset.camera = app.camera.text();
+    if (app.frame && !app.frame.picture) {
+      acknowledge(app.frame);
+      wishSoon();
+    }
+    return;
+  }
+  if (app.frame?.picture) return wishSoon();
+  chooseScale();
+  const pad = app.grid.upper.map((u, i) => (u - app.grid.lower[i]) * 0.001);
+  const start = performance.now();
+  app.scene.draw(app.camera, dressed().filter((one) => !one.hidden), {background: css('scene'), lower: app.grid.lower.map((v, i) => v - pad[i]),
+    upper: app.grid.upper.map((v, i) => v + pad[i]), boxLower: app.grid.lower, boxUpper: app.grid.upper, outline: app.state.outline,
+    edges: app.state.edges, mapped: !!app.state.colorBy, noData: app.frame?.scale?.no_data, line: css('soft'),
+    cuts: planesOf(app.state, 'clip')});
+  placeMark();
+  drawAxes();
+  app.scene.finish();
+  const took = performance.now() - start;
+  if (app.scene.scale === 1) slow = took > 50;
+  measureSpeed(took);
+  if (app.frame && !app.frame.acknowledged) {
+    app.frame.draw_ms = took;
+    app.frame.age_ms = performance.now() - (app.sentAt.get(app.frame.number) ?? start);
+    for (const old of app.sentAt.keys()) if (old <= app.frame.number) app.sentAt.delete(old);
+    acknowledge(app.frame);
+    tellFacts();
+    app.time.shown(app.frame.step);
+    measureServer(app.frame);
+    askSpectrum();
+    refineSoon();
+  }
+  document.body.dataset.camera = app.camera.text();
+}
+
+export function drawSoon() {
+  if (drawPlanned) return;
+  drawPlanned = true;
+  requestAnimationFrame(draw);
+}
+
+function drawAxes() {
+  const right = app.camera.right(), ends = [0, 1, 2].map((i) => [right[i], -app.camera.up[i], app.camera.direction[i]]);
+  const colors = ['#d1495b', '#3a9d5d', '#3f7cc4'];
+  id('axes').innerHTML = ends.map(([x, y, z], i) => ({x, y, z, i})).sort((a, b) => a.z - b.z).map(({x, y, i}) =>
+    `<line x2="${22 * x}" y2="${22 * y}" stroke="${colors[i]}" stroke-width="2.5" stroke-linecap="round"/>` +
+    `<text x="${30 * x}" y="${30 * y}">${'xyz'[i]}</text>`).join('');
+}
+
+function tellFacts() {
+  const [first] = isosurfaces();
+  const triangles = [...new Map(isosurfaces().map((one) => [one.isovalue, one.triangles])).values()].reduce((a, b) => a + b, 0);
+  const drawn = isosurfaces().reduce((sum, one) => sum + (app.scene?.meshes.get(one.key)?.count || 0) / 3, 0);
+  id('shown').textContent = first ? `${format.short(first.isovalue)} shown` : 'No surface';
+  const parts = [`${format.grouped(triangles)} triangles` + (app.frame.preview && !app.frame.picture ? `, preview of ${format.rough(drawn)}` : '')];
+  if (triangles === 0 && first) parts[0] = 'no triangles at this value';
+  const {picture} = app.frame;
+  if (picture) parts.push(`drawn by the server (${serverDraws() || 'until now'}): ${picture.type === 'image/png' ? 'exact' : 'while it moves'}, ${picture.width} × ${picture.height}`);
+  parts.push(`extract ${format.duration(app.frame.extract_ms)}`, `${picture ? 'draw and encode' : 'encode'} ${format.duration(app.frame.mesh_ms)}`, format.bytes(app.frame.bytes),
+    `${picture ? 'show' : 'draw'} ${format.duration(app.frame.draw_ms)}`, `${format.duration(app.frame.age_ms)} in all`);
+  if (app.frame.field_bound != null) parts.push(`curved cells refined: within ${format.short(app.frame.field_bound)} of the field`);
+  else if (app.grid.refines && !picture) parts.push('curved cells split at their nodes');
+  if (app.frame.method === 'direct' && !picture && app.frame.field_bound == null) parts.push('direct, while the grid is packed');
+  id('facts').textContent = parts.join(' · ');
+  id('facts').title = parts.join('\n');
+  Object.assign(document.body.dataset, {shown: first?.isovalue ?? '', triangles, drawn, preview: app.frame.preview, method: app.frame.method,
+    bound: app.frame.field_bound ?? '', frame: app.frame.number, field: app.frame.field, step_shown: app.frame.step,
+    picture: app.frame.picture?.type ?? '', kinds: app.frame.surfaces.map(({kind}) => kind).join(' ')});
+  id('scene').setAttribute('aria-label', `Isosurface of ${app.state.field} at ${first ? format.short(first.isovalue) : 'no value'}, ` +
+    `${format.grouped(triangles)} triangles. Arrow keys turn, with Shift they move, plus and minus zoom.`);
+}
+
+/** A picture of the server: newer ones only. */
+async function takePicture(next) {
+  const start = performance.now(), canvas = id('picture');
+  const bitmap = await createImageBitmap(new Blob([next.picture.coded], {type: next.picture.type}));
+  if (app.frame?.picture && app.frame.number > next.number) return acknowledge(next);
+  [canvas.width, canvas.height] = [bitmap.width, bitmap.height];
+  canvas.getContext('2d').drawImage(bitmap, 0, 0);
+  // A pixel of the picture is one of the screen, also where the stage has a part of a pixel more.
+  ['width', 'height'].forEach((side, i) => { canvas.style[side] = `${pictureSize()[i] / (window.devicePixelRatio || 1)}px`; });
+  canvas.hidden = !serverDraws();
+  next.field = app.state.field;
+  next.draw_ms = performance.now() - start;
+  next.age_ms = performance.now() - (app.sentAt.get(next.number) ?? start);
+  for (const old of app.sentAt.keys()) if (old <= next.number) app.sentAt.delete(old);
+  acknowledge(app.frame);
+  app.frame = next;
+  acknowledge(app.frame);
+  if (next.number >= app.number) stopWaiting();
+  showNotes(next);
+  showSurfaces();
+  showRange();
+  tellFacts();
+  drawSoon();
+  if (next.preview && next.number >= app.number) restSoon();
+  app.time.shown(next.step);
+  askSpectrum();
+}
+
+/** The server sends no more than two frames ahead: each is acknowledged once, also one that is replaced before it is drawn. */
+function acknowledge(one) {
+  if (!one || one.acknowledged) return;
+  one.acknowledged = true;
+  app.link.send({do: 'shown', number: one.number});
+}
+
+export function takeFrame(buffer) {
+  const next = readFrame(buffer);
+  measureLine(next);
+  noteSize(next);
+  if (next.picture) return takePicture(next);
+  acknowledge(app.frame);
+  if (!app.scene) return acknowledge(next);
+  id('picture').hidden = true;
+  const keep = new Set(next.surfaces.map(({key}) => key));
+  for (const key of [...app.scene.meshes.keys()]) if (!keep.has(key)) app.scene.remove(key);
+  for (const {key, mesh} of next.surfaces) if (mesh) app.scene.add(key, mesh);
+  next.field = app.state.field;
+  app.frame = next;
+  if (next.number >= app.number) stopWaiting();
+  showNotes(next);
+  showSurfaces();
+  showRange();
+  drawSoon();
+  if (next.preview && next.number >= app.number) restSoon();
+}

@@ -1,0 +1,31 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Undo: the address holds the state.
+import {app} from './app.js';
+import {fromAddress, toAddress} from './state.js';
+
+let commitTimer = 0;
+export const address = () => `#${app.token}&${toAddress(app.state)}`;
+
+export function commit() {
+  clearTimeout(commitTimer);
+  commitTimer = 0;
+  app.state.camera = app.grid ? app.camera.text() : app.state.camera;
+  if (location.hash !== address()) history.pushState(null, '', address());
+}
+
+export function commitSoon() {
+  clearTimeout(commitTimer);
+  commitTimer = setTimeout(commit, 500);
+}
+
+/** The browser's back and forward; `show` puts the state on the screen. */
+export function onReturn(show) {
+  addEventListener('popstate', () => {
+    clearTimeout(commitTimer);
+    const [sameToken, ...parts] = location.hash.slice(1).split('&');
+    if (sameToken !== app.token) return location.reload();
+    app.state = fromAddress(parts.join('&'));
+    if (!app.grid?.fields.some(({name}) => name === app.state.field)) app.state.field = app.grid?.state.field || app.state.field;
+    show();
+  });
+}
