@@ -140,28 +140,46 @@ Result<std::optional<ColorScale>> GridView::scale_of(const ViewState& state, con
 }
 
 /// Another step takes the place of the grid; the sessions find out what is the same.
-Result<void> GridView::go_to_step(const ShowMessage& message, const Run& run) {
-    const auto& wanted = message.state.step;
-    if (wanted && *wanted != step_) {
-        if (!steps_ || *wanted >= options_.steps)
-            return Error{
-                ErrorCode::invalid_argument,
-                fmt::format("step {} is asked for, but the file has steps 0 to {}", *wanted, options_.steps - 1)};
-        Result<Grid> grid = steps_->take(*wanted, run);
-        if (!grid) return grid.error();
-        const bool same = same_cells(*grid, grid_);
-        {
-            const std::lock_guard lock(grid_mutex_);
-            grid_ = *std::move(grid);
-            step_ = *wanted;
-            if (!same) ++grid_number_;
-        }
-        found_.clear();
-        if (!same)
-            if (Result<void> found = find_boundary(run); !found) return found;
+Result<void> GridView::go_to_step(std::optional<std::uint64_t> wanted, const Run& run) {
+    if (!wanted || *wanted == step_) return {};
+    if (!steps_ || *wanted >= options_.steps)
+        return Error{ErrorCode::invalid_argument,
+                     fmt::format("step {} is asked for, but the file has steps 0 to {}", *wanted, options_.steps - 1)};
+    Result<Grid> grid = steps_->take(*wanted, run);
+    if (!grid) return grid.error();
+    const bool same = same_cells(*grid, grid_);
+    {
+        const std::lock_guard lock(grid_mutex_);
+        grid_ = *std::move(grid);
+        step_ = *wanted;
+        if (!same) ++grid_number_;
     }
+    found_.clear();
+    if (!same) return find_boundary(run);
+    return {};
+}
+
+void GridView::read_ahead(const ShowMessage& message) {
     if (steps_ && message.next && *message.next < options_.steps && *message.next != step_)
         steps_->read_ahead(*message.next);
+}
+
+/// The step and its field; the range of its values where the file has several steps.
+Result<void> GridView::tell_field(const std::string& field, FrameFacts& facts, const Run& run) {
+    facts.step = step_;
+    facts.field = field;
+    std::string key = fmt::format("{}|{}", step_, field);
+    if (key == range_key_) facts.range = range_;
+    if (!steps_ || key == range_key_) return {};
+    const Result<PointField> found = field_of(field, run);
+    if (!found) return found.error();
+    const auto statistics = statistics_of(found->values, run);
+    if (!statistics) return statistics.error();
+    range_.reset();
+    if (!statistics->empty() && statistics->front().lower <= statistics->front().upper)
+        range_ = ValueRange{statistics->front().lower, statistics->front().upper};
+    range_key_ = std::move(key);
+    facts.range = range_;
     return {};
 }
 
@@ -283,7 +301,8 @@ Result<GridView::Source*> GridView::source_for(const ViewState& state, const Run
     return &source;
 }
 
-Result<Chart> GridView::chart(const std::string& field, const Run& run) {
+Result<Chart> GridView::chart(const std::string& field, std::optional<std::uint64_t> step, const Run& run) {
+    if (Result<void> there = go_to_step(step, run); !there) return there.error();
     const Result<PointField> found = field_of(field, run);
     if (!found) return found.error();
     if (is_packed_.load(std::memory_order_acquire) &&
@@ -306,8 +325,10 @@ Result<Chart> GridView::chart(const std::string& field, const Run& run) {
     return chart;
 }
 
-Result<ContourSpectrum> GridView::spectrum(const std::string& field, const Run& run) {
+Result<ContourSpectrum> GridView::spectrum(const std::string& field, std::optional<std::uint64_t> step,
+                                           const Run& run) {
     constexpr std::uint64_t steps = 256;
+    if (Result<void> there = go_to_step(step, run); !there) return there.error();
     const std::string key = fmt::format("{}|{}", step_, field);
     if (spectrum_ && spectrum_key_ == key) return *spectrum_;
     const Result<PointField> found = field_of(field, run);

@@ -80,12 +80,15 @@ public:
     void rest();
     bool has_cells() const noexcept { return has_cells_; }
 
-    Result<Chart> chart(const std::string& field, const Run& run);
+    /// Of a step, which is read where it is not the one at hand; nothing: that one.
+    /// Errors   as find_field(), statistics_of() and of reading
+    Result<Chart> chart(const std::string& field, std::optional<std::uint64_t> step, const Run& run = {});
 
-    /// Area and volume over the range of a field at the step that was shown last. The last answer is kept.
-    /// Errors   as find_field() and contour_spectrum()
-    Result<ContourSpectrum> spectrum(const std::string& field, const Run& run);
-    std::size_t step() const noexcept { return step_; } ///< that was shown last
+    /// Area and volume over the range of a field. The last answer is kept.
+    /// `step`   as above
+    /// Errors   as find_field(), contour_spectrum() and of reading
+    Result<ContourSpectrum> spectrum(const std::string& field, std::optional<std::uint64_t> step, const Run& run = {});
+    std::size_t step() const noexcept { return step_; } ///< that was asked for last
 
     /// All fields, and the cell, at the point of the isosurface or slice that is nearest.
     /// Errors   as Contour::extract(); invalid_data where there is no triangle
@@ -137,7 +140,9 @@ private:
                                 const Run& run);
     Result<void> make_scene(const ShowMessage& message, const std::optional<ColorScale>& scale, const Run& run);
     std::optional<ColorField> color_field(const ViewState& state, const ColorScale& scale, const Run& run);
-    Result<void> go_to_step(const ShowMessage& message, const Run& run);
+    Result<void> go_to_step(std::optional<std::uint64_t> wanted, const Run& run);
+    void read_ahead(const ShowMessage& message);
+    Result<void> tell_field(const std::string& field, FrameFacts& facts, const Run& run);
     Result<Shown> refined_at(const ViewState& state, double isovalue, const std::string& key, Making& making,
                              const Run& run);
     Result<Shown> surface_at(const ShowMessage& message, double isovalue, Source* source, Making& making,
@@ -180,6 +185,8 @@ private:
     std::string scene_key_;
     std::optional<ContourSpectrum> spectrum_; ///< of spectrum_key_
     std::string spectrum_key_;
+    std::optional<ValueRange> range_; ///< of range_key_
+    std::string range_key_;
     std::vector<double> scene_isovalues_;
     std::mutex boundary_mutex_;
     std::shared_ptr<const Mesh> boundary_; ///< of the cells and points of grid_; null: not there yet

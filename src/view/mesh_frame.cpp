@@ -263,7 +263,8 @@ void GridView::add_boundary(const ViewState& state, const std::vector<std::strin
 Result<Frame> GridView::frame(const ShowMessage& message, double wait_seconds, std::vector<std::string>& known,
                               const Run& run) {
     const ViewState& state = message.state;
-    if (Result<void> there = go_to_step(message, run); !there) return there.error();
+    if (Result<void> there = go_to_step(state.step, run); !there) return there.error();
+    read_ahead(message);
     if (message.picture) return picture_frame(message, wait_seconds, known, run);
     scene_.reset();
     Result<std::optional<ColorScale>> scale = scale_of(state, run);
@@ -274,7 +275,7 @@ Result<Frame> GridView::frame(const ShowMessage& message, double wait_seconds, s
     making.facts.number = message.number;
     making.facts.wait_seconds = wait_seconds;
     making.facts.scale = *scale;
-    making.facts.step = step_;
+    if (Result<void> told = tell_field(state.field, making.facts, run); !told) return told.error();
     if (Result<void> added = add_isosurfaces(message, known, making, run); !added) return added.error();
     if (Result<void> added = add_slices(state, known, making, run); !added) return added.error();
     add_boundary(state, known, making);

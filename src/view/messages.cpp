@@ -132,9 +132,12 @@ Result<PageMessage> parse_known(const std::string& action, const Json& json) {
     }
     if (action == "chart" || action == "spectrum") {
         auto field = message_text(json, "field", max_name_bytes);
-        if (field && action == "chart") return PageMessage(ChartMessage{*std::move(field)});
-        if (field) return PageMessage(SpectrumMessage{*std::move(field)});
-        return wrong_message("\"field\" takes a name");
+        if (!field) return wrong_message("\"field\" takes a name");
+        const Json* number = find(json, "step");
+        const auto step = number ? whole_number(*number) : std::nullopt;
+        if (number && !step) return wrong_message("\"step\" takes a whole number");
+        if (action == "chart") return PageMessage(ChartMessage{*std::move(field), step});
+        return PageMessage(SpectrumMessage{*std::move(field), step});
     }
     if (action == "command") {
         Result<ViewState> state = message_state(json);
@@ -206,7 +209,9 @@ std::string frame_bytes(const FrameFacts& facts, const std::vector<FrameSurface>
                  {"mesh_ms", milliseconds(facts.mesh_seconds)},
                  {"wait_ms", milliseconds(facts.wait_seconds)},
                  {"step", facts.step},
+                 {"field", facts.field},
                  {"notes", facts.notes}};
+    if (facts.range) head["range"] = {facts.range->lower, facts.range->upper};
     if (facts.field_bound) head["field_bound"] = *facts.field_bound;
     if (facts.scale)
         head["scale"] = {{"lower", facts.scale->lower},
@@ -253,9 +258,10 @@ std::string picked_text(const Picked& picked) {
     return text_of(json);
 }
 
-std::string chart_text(const std::string& field, const Chart& chart) {
+std::string chart_text(const std::string& field, std::size_t step, const Chart& chart) {
     return text_of({{"say", "chart"},
                     {"field", field},
+                    {"step", step},
                     {"lower", chart.lower},
                     {"upper", chart.upper},
                     {"points", chart.points},

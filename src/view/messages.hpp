@@ -46,14 +46,16 @@ struct ShownMessage {
     std::uint64_t number = 0;
 };
 
-/// {"do": "chart", "field": name}
+/// {"do": "chart", "field": name, "step": n}
 struct ChartMessage {
     std::string field;
+    std::optional<std::uint64_t> step = {}; ///< nothing: the one that was read last
 };
 
-/// {"do": "spectrum", "field": name}: area and volume against the isovalue, when nothing else is to be done.
+/// {"do": "spectrum", "field": name, "step": n}: area and volume against the isovalue, when nothing else is to be done.
 struct SpectrumMessage {
     std::string field;
+    std::optional<std::uint64_t> step = {}; ///< as ChartMessage::step
 };
 
 /// {"do": "command", "state": ...}: the state as command lines.
@@ -106,6 +108,8 @@ struct FrameFacts {
     std::optional<ColorScale> scale; ///< of values on the surfaces
     std::vector<std::string> notes;
     std::uint64_t step = 0;
+    std::string field = {};                 ///< that is contoured
+    std::optional<ValueRange> range = {};   ///< of its values in this step, where the file has several
     std::optional<double> field_bound = {};     ///< of the refined cells; nothing: none was refined
     std::optional<EncodedPicture> picture = {}; ///< instead of meshes
 };
@@ -118,7 +122,7 @@ std::string progress_text(std::string_view step, double fraction);
 std::string refusal_text(std::uint64_t number, std::string_view sentence);
 std::string error_text(std::string_view about, std::string_view sentence);
 std::string picked_text(const Picked& picked);
-std::string chart_text(const std::string& field, const Chart& chart);
+std::string chart_text(const std::string& field, std::size_t step, const Chart& chart);
 std::string spectrum_text(const std::string& field, std::size_t step, const ContourSpectrum& spectrum);
 
 /// "#rrggbb"

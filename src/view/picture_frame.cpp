@@ -85,7 +85,7 @@ Result<Frame> GridView::picture_frame(const ShowMessage& message, double wait_se
     facts.preview = message.moving;
     facts.wait_seconds = wait_seconds;
     facts.scale = *scale;
-    facts.step = step_;
+    if (Result<void> told = tell_field(message.state.field, facts, run); !told) return told.error();
     facts.method = name_of(scene_->report().method);
     facts.notes = scene_->take_notes();
     facts.extract_seconds = picture_seconds(start);

@@ -47,16 +47,17 @@ public:
         if (!frame) return frame.error();
         return std::move(frame->bytes);
     }
-    Result<std::string> chart(const std::string& field, const Run& run) override {
-        const Result<Chart> chart = view_.chart(field, {threads_, run.progress});
+    Result<std::string> chart(const ChartMessage& message, const Run& run) override {
+        const Result<Chart> chart = view_.chart(message.field, message.step, {threads_, run.progress});
         if (!chart) return chart.error();
-        return chart_text(field, *chart);
+        return chart_text(message.field, view_.step(), *chart);
     }
 
-    Result<std::string> spectrum(const std::string& field, const Run& run) override {
-        const Result<ContourSpectrum> spectrum = view_.spectrum(field, {threads_, run.progress});
+    Result<std::string> spectrum(const SpectrumMessage& message, const Run& run) override {
+        const Result<ContourSpectrum> spectrum =
+            view_.spectrum(message.field, message.step, {threads_, run.progress});
         if (!spectrum) return spectrum.error();
-        return spectrum_text(field, view_.step(), *spectrum);
+        return spectrum_text(message.field, view_.step(), *spectrum);
     }
 
     void rest() override { view_.rest(); }
@@ -255,9 +256,9 @@ void Viewer::Data::answer(ConnectionNumber from, PageMessage message) {
         if (show->refined) worker->ask_refined(from, std::move(*show));
         else worker->wish(from, std::move(*show));
     } else if (std::holds_alternative<ShownMessage>(message)) worker->acknowledge(from);
-    else if (auto* chart = std::get_if<ChartMessage>(&message)) worker->ask_chart(from, std::move(chart->field));
+    else if (auto* chart = std::get_if<ChartMessage>(&message)) worker->ask_chart(from, std::move(*chart));
     else if (auto* spectrum = std::get_if<SpectrumMessage>(&message))
-        worker->ask_spectrum(from, std::move(spectrum->field));
+        worker->ask_spectrum(from, std::move(*spectrum));
     else if (auto* pick = std::get_if<PickMessage>(&message)) worker->ask_pick(from, std::move(*pick));
     else if (const auto* wanted = std::get_if<SaveMessage>(&message)) save(from, wanted->request);
     else if (const auto* command = std::get_if<CommandMessage>(&message)) {

@@ -52,12 +52,12 @@ void Worker::wish(PageNumber page, ShowMessage message) {
     changed_.notify_all();
 }
 
-void Worker::ask_chart(PageNumber page, std::string field) {
+void Worker::ask_chart(PageNumber page, ChartMessage message) {
     {
         const std::lock_guard lock(mutex_);
         const auto found = pages_.find(page);
         if (found == pages_.end()) return;
-        found->second.chart = std::move(field);
+        found->second.chart = std::move(message);
         interrupt_background();
     }
     changed_.notify_all();
@@ -74,12 +74,12 @@ void Worker::ask_pick(PageNumber page, PickMessage message) {
     changed_.notify_all();
 }
 
-void Worker::ask_spectrum(PageNumber page, std::string field) {
+void Worker::ask_spectrum(PageNumber page, SpectrumMessage message) {
     {
         const std::lock_guard lock(mutex_);
         const auto found = pages_.find(page);
         if (found == pages_.end()) return;
-        found->second.spectrum = std::move(field);
+        found->second.spectrum = std::move(message);
         interrupt_background();
     }
     changed_.notify_all();
@@ -211,12 +211,12 @@ void Worker::send_frame(PageNumber number, std::uint64_t wish, Result<std::strin
 }
 
 void Worker::make_spectrum(std::unique_lock<std::mutex>& lock, PageNumber number) {
-    const std::string field = *std::exchange(pages_.at(number).spectrum, std::nullopt);
+    const SpectrumMessage message = *std::exchange(pages_.at(number).spectrum, std::nullopt);
     const std::shared_ptr<FrameMaker> maker = maker_;
     is_in_background_ = true;
     cancel_ = stop_;
     lock.unlock();
-    Result<std::string> answer = maker->spectrum(field, {0, {{}, &cancel_}});
+    Result<std::string> answer = maker->spectrum(message, {0, {{}, &cancel_}});
     const bool cancelled = !answer && answer.error().code == ErrorCode::cancelled;
     if (!cancelled) tell(number, "spectrum", std::move(answer));
     lock.lock();
@@ -224,15 +224,15 @@ void Worker::make_spectrum(std::unique_lock<std::mutex>& lock, PageNumber number
     rested_ = false;
     busy_ = clock_();
     const auto page = pages_.find(number);
-    if (cancelled && page != pages_.end() && !page->second.spectrum) page->second.spectrum = field;
+    if (cancelled && page != pages_.end() && !page->second.spectrum) page->second.spectrum = message;
 }
 
 void Worker::make_chart(std::unique_lock<std::mutex>& lock, PageNumber number) {
-    const std::string field = *std::exchange(pages_.at(number).chart, std::nullopt);
+    const ChartMessage message = *std::exchange(pages_.at(number).chart, std::nullopt);
     const std::shared_ptr<FrameMaker> maker = maker_;
     cancel_ = stop_;
     lock.unlock();
-    tell(number, "chart", maker->chart(field, {0, {{}, &cancel_}}));
+    tell(number, "chart", maker->chart(message, {0, {{}, &cancel_}}));
     lock.lock();
 }
 
@@ -255,7 +255,7 @@ Result<std::string> FrameMaker::pick(const PickMessage&, const Run&) {
     return Error{ErrorCode::invalid_argument, "nothing can be picked here"};
 }
 
-Result<std::string> FrameMaker::spectrum(const std::string&, const Run&) {
+Result<std::string> FrameMaker::spectrum(const SpectrumMessage&, const Run&) {
     return Error{ErrorCode::invalid_argument, "nothing can be measured here"};
 }
 

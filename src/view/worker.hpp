@@ -29,11 +29,11 @@ public:
     virtual Result<std::string> frame(const ShowMessage& message, double wait_seconds, std::vector<std::string>& known,
                                       const Run& run) = 0;
     /// Text of the answer.
-    virtual Result<std::string> chart(const std::string& field, const Run& run) = 0;
+    virtual Result<std::string> chart(const ChartMessage& message, const Run& run) = 0;
     virtual Result<std::string> pick(const PickMessage& message, const Run& run);
     /// Nothing is to be done for a while: memory may be given back.
     virtual void rest() {}
-    virtual Result<std::string> spectrum(const std::string& field, const Run& run);
+    virtual Result<std::string> spectrum(const SpectrumMessage& message, const Run& run);
 };
 
 /// How the worker answers. Called by the worker's thread.
@@ -58,11 +58,11 @@ public:
     void add_page(PageNumber page);
     void remove_page(PageNumber page);
     void wish(PageNumber page, ShowMessage message);
-    void ask_chart(PageNumber page, std::string field);  ///< the newest counts
-    void ask_pick(PageNumber page, PickMessage message); ///< the newest counts
+    void ask_chart(PageNumber page, ChartMessage message); ///< the newest counts
+    void ask_pick(PageNumber page, PickMessage message);   ///< the newest counts
     /// The newest counts. Begun after start_background(), when `pause` seconds nothing else was done, and begun anew when
     /// it was cancelled for something else.
-    void ask_spectrum(PageNumber page, std::string field);
+    void ask_spectrum(PageNumber page, SpectrumMessage message);
     /// A frame with curved cells refined. The same; forgotten at the page's next wish.
     void ask_refined(PageNumber page, ShowMessage message);
     void start_background();
@@ -78,10 +78,10 @@ private:
     };
     struct Page {
         Slot<Wish> slot;
-        std::optional<std::string> chart;
+        std::optional<ChartMessage> chart;
         std::optional<PickMessage> pick;
         std::optional<ShowMessage> refined;
-        std::optional<std::string> spectrum;
+        std::optional<SpectrumMessage> spectrum;
         std::vector<std::string> known;
     };
 

@@ -510,6 +510,29 @@ TEST_F(StepsTest, AStepThatIsNotThereIsRefusedAndTheLastOneStays) {
     EXPECT_EQ(frame(at_step(1, 0.7))["step"], 1);
 }
 
+TEST_F(StepsTest, AChartAndASpectrumAreOfTheStepThatIsAskedFor) {
+    const Chart first = view_->chart("sphere", 1).value();
+    frame(at_step(3, 0.7)); // of another page
+    const Chart again = view_->chart("sphere", 1).value(), third = view_->chart("sphere", 3).value();
+    EXPECT_EQ(again.upper, first.upper);
+    EXPECT_EQ(again.first, first.first);
+    EXPECT_EQ(again.triangles, first.triangles);
+    EXPECT_NEAR(third.upper, 3 * first.upper, 1e-6);
+    EXPECT_EQ(view_->spectrum("sphere", 1).value().isovalues.back(), first.upper);
+    EXPECT_EQ(view_->step(), 1U);
+    EXPECT_FALSE(view_->chart("sphere", 4));
+}
+
+TEST_F(StepsTest, AFrameTellsTheRangeOfItsFieldInItsStep) {
+    const Json first = frame(at_step(1, 0.7)), third = frame(at_step(3, 0.7));
+    EXPECT_EQ(first["field"], "sphere");
+    EXPECT_EQ(first["range"][0], 0);
+    EXPECT_NEAR(third["range"][1].get<double>(), 3 * first["range"][1].get<double>(), 1e-6);
+    ShowMessage other = at_step(3, 0.7);
+    other.state.field = "gyroid";
+    EXPECT_LT(frame(other)["range"][0], 0);
+}
+
 /// A grid whose cells were released, beside one whose cells stay.
 class LeanGridView : public testing::Test {
 protected:

@@ -26,6 +26,8 @@ TEST(ParsePageMessage, TakesEveryKind) {
     EXPECT_EQ(std::get<ShownMessage>(*parse_page_message(R"({"do":"shown","number":7})")).number, 7U);
     EXPECT_EQ(std::get<SpectrumMessage>(*parse_page_message(R"({"do":"spectrum","field":"p"})")).field, "p");
     EXPECT_EQ(std::get<ChartMessage>(*parse_page_message(R"({"do":"chart","field":"p"})")).field, "p");
+    EXPECT_EQ(std::get<ChartMessage>(*parse_page_message(R"({"do":"chart","field":"p","step":3})")).step, 3U);
+    EXPECT_EQ(std::get<SpectrumMessage>(*parse_page_message(R"({"do":"spectrum","field":"p","step":3})")).step, 3U);
     EXPECT_EQ(std::get<CommandMessage>(*parse_page_message(R"({"do":"command","state":{"field":"q"}})")).state.field,
               "q");
     EXPECT_EQ(std::get<PasteMessage>(*parse_page_message(R"({"do":"paste","text":"-i 1"})")).text, "-i 1");
@@ -50,6 +52,8 @@ TEST(ParsePageMessage, RefusesEverythingElse) {
                              R"({"do":"refine","number":1})",
                              R"({"do":"shown","number":"1"})",
                              R"({"do":"chart"})",
+                             R"({"do":"chart","field":"p","step":-1})",
+                             R"({"do":"spectrum","field":"p","step":"1"})",
                              R"({"do":"paste","text":null})",
                              "{\"do\":\"hello\",\"token\":\"\xff\"}"}) {
         const auto message = parse_page_message(text);

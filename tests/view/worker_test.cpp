@@ -31,16 +31,16 @@ public:
         known = {std::to_string(message.number)};
         return std::to_string(message.number);
     }
-    Result<std::string> chart(const std::string& field, const Run&) override { return "chart of " + field; }
+    Result<std::string> chart(const ChartMessage& message, const Run&) override { return "chart of " + message.field; }
 
     /// Works until it is cancelled the first time; then at once.
-    Result<std::string> spectrum(const std::string& field, const Run& run) override {
+    Result<std::string> spectrum(const SpectrumMessage& message, const Run& run) override {
         std::unique_lock lock(mutex_);
         ++spectra_;
         changed_.notify_all();
         while (spectra_ == 1 && !run.progress.cancelled()) changed_.wait_for(lock, std::chrono::milliseconds(1));
         if (run.progress.cancelled()) return Error{ErrorCode::cancelled, "cancelled"};
-        return "spectrum of " + field;
+        return "spectrum of " + message.field;
     }
     /// Lets time pass until a spectrum was begun so many times.
     void spectra(int count, std::atomic<double>& now) {
@@ -229,8 +229,8 @@ TEST_F(WorkerTest, APageThatGoesIsWorkedForNoMore) {
 TEST_F(WorkerTest, ChartsComeBeforeFrames) {
     worker_.add_page(1);
     wish(1, 1);
-    worker_.ask_chart(1, "p");
-    worker_.ask_chart(1, "q");
+    worker_.ask_chart(1, {"p"});
+    worker_.ask_chart(1, {"q"});
     engine_->set_free();
     worker_.start(engine_);
     EXPECT_EQ(sent_.to(1, 2), (std::vector<std::string>{"chart of q", "frame 1"}));
@@ -241,7 +241,7 @@ TEST_F(WorkerTest, ASpectrumIsCancelledForAWishAndBegunAgain) {
     engine_->set_free();
     worker_.start(engine_);
     worker_.start_background();
-    worker_.ask_spectrum(1, "p");
+    worker_.ask_spectrum(1, {"p"});
     engine_->spectra(1, now_);
     wish(1, 1);
     EXPECT_EQ(sent_.to(1, 1).back(), "frame 1");
@@ -255,7 +255,7 @@ TEST_F(WorkerTest, ASpectrumWaitsForThePauseAfterAFrame) {
     worker_.start(engine_);
     worker_.start_background();
     now_ = 10;
-    worker_.ask_spectrum(1, "p");
+    worker_.ask_spectrum(1, {"p"});
     for (std::uint64_t number = 1; number <= 20; ++number) { // a hand that moves: none is begun
         wish(1, number);
         sent_.to(1, number);
@@ -282,7 +282,7 @@ TEST_F(WorkerTest, ARefinedFrameIsMadeWhenNothingElseIs) {
     };
     ask(1);
     until_begun(1);
-    worker_.ask_chart(1, "p"); // not what the frame is of: it is begun again
+    worker_.ask_chart(1, {"p"}); // not what the frame is of: it is begun again
     EXPECT_EQ(sent_.to(1, 1).back(), "chart of p");
     until_begun(2);
     engine_->let_go();
@@ -294,7 +294,7 @@ TEST_F(WorkerTest, ARefinedFrameIsMadeWhenNothingElseIs) {
     engine_->set_free();
     EXPECT_EQ(sent_.to(1, 3).back(), "frame 3");
     now_ = now_ + 10;
-    worker_.ask_spectrum(1, "p");
+    worker_.ask_spectrum(1, {"p"});
     engine_->spectra(1, now_);
     EXPECT_EQ(engine_->begun(4), (std::vector<std::uint64_t>{1, 1, 2, 3}));
 }
