@@ -39,8 +39,9 @@ double first_isovalue(const Chart& chart) {
         part = (static_cast<double>(i) + 0.5) / Chart::bins;
         break;
     }
-    const double value = place_in_chart(part, chart), bin = (chart.upper - chart.lower) / Chart::bins;
-    const auto levels = evenly_spaced_levels(value - bin, value + bin, 1, LevelRounding::short_decimals);
+    constexpr double share = 0.2; // of the range: a tenth of that is what the value is rounded to
+    const double value = place_in_chart(part, chart), room = share * (chart.upper - chart.lower);
+    const auto levels = evenly_spaced_levels(value - room, value + room, 1, LevelRounding::short_decimals);
     return levels.empty() ? value : std::clamp(levels.front(), chart.lower, chart.upper);
 }
 
