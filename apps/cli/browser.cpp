@@ -10,7 +10,9 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <spawn.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -67,6 +69,19 @@ std::string in_address(std::string_view path) {
 } // namespace
 
 bool is_over_ssh() { return !environment("SSH_CONNECTION").empty(); }
+
+bool is_left_by_ssh() {
+    if (!is_over_ssh()) return false;
+    const auto is_line = [](int stream) {
+        struct stat status{};
+        return ::fstat(stream, &status) == 0 && (S_ISFIFO(status.st_mode) || S_ISSOCK(status.st_mode));
+    };
+    const auto has_ended = [](int stream) {
+        pollfd waiting{stream, 0, 0};
+        return ::poll(&waiting, 1, 0) == 1 && (waiting.revents & (POLLHUP | POLLERR)) != 0;
+    };
+    return is_line(1) && has_ended(1) && (!is_line(0) || has_ended(0));
+}
 
 std::string ssh_line(std::uint16_t port) {
     // SSH_CONNECTION: address and port of the client, address and port of this machine.

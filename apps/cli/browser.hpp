@@ -13,6 +13,10 @@ bool is_over_ssh();
 /// "ssh -N -L 8123:127.0.0.1:8123 user@host": to be typed on the machine where the browser is.
 std::string ssh_line(std::uint16_t port);
 
+/// Whether ssh, which started the program without a terminal, has ended: nothing reads what it writes any more, and
+/// nothing writes what it reads.
+bool is_left_by_ssh();
+
 /// A browser of this machine. It is given the name of a file that leads to the address: the address holds a token, and
 /// other users see the words of every process.
 class Browser {

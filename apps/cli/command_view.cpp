@@ -134,11 +134,16 @@ Result<ExitCode> run_view(const ViewCommand& command) {
         const std::lock_guard lock(reading);
         return source->read({}, step, console, run);
     };
+    options.is_left = is_left_by_ssh;
+    options.failed = [](const Error& error) { say_error(error.message); };
     auto viewer = view::Viewer::open(std::move(options));
     if (!viewer) return viewer.error();
     Browser browser;
     if (Result<void> told = tell_address(command, **viewer, browser, console); !told) return told.error();
-    if (Result<void> served = (*viewer)->run(stop_requested); !served) return served.error();
+    const Result<void> served = (*viewer)->run(stop_requested);
+    if (!served && !stop_requested) return exit_code_of(served.error().code); // told already
+    if (!served) return served.error();
+    if (!(*viewer)->reason().empty()) console.note((*viewer)->reason());
     return ExitCode::done;
 }
 

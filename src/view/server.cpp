@@ -177,6 +177,7 @@ private:
     http::response<http::string_body> response_;
     std::deque<Outgoing> waiting_;            ///< the first one is being written
     std::shared_ptr<const std::string> news_; ///< the newest, once nothing waits
+    Parting parting_ = Parting::lost;
     bool reading_ = false, opened_ = false, closing_ = false, finished_ = false;
 };
 
@@ -265,6 +266,7 @@ void Connection::read_next() {
     reading_ = true;
     socket_->async_read(buffer_, [self = shared_from_this()](beast::error_code error, std::size_t) {
         self->reading_ = false;
+        if (error == websocket::error::closed) self->parting_ = Parting::closed;
         if (error) return self->finish();
         const auto bytes = self->buffer_.data();
         const std::string message(static_cast<const char*>(bytes.data()), bytes.size());
@@ -290,6 +292,7 @@ void Connection::write_next() {
     socket_->text(next.text);
     socket_->async_write(asio::buffer(*next.message),
                          [self = shared_from_this()](beast::error_code error, std::size_t) {
+                             if (error && self->reading_) return; // the reader ends, too, and knows why
                              if (error) return self->finish();
                              self->waiting_.pop_front();
                              if (!self->waiting_.empty()) return self->write_next();
@@ -315,7 +318,7 @@ void Connection::drop() {
 void Connection::finish() {
     if (std::exchange(finished_, true)) return;
     drop();
-    if (opened_) owner_.events.closed(number_);
+    if (opened_) owner_.events.closed(number_, parting_);
     owner_.forget(number_);
 }
 

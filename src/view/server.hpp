@@ -36,11 +36,17 @@ struct ServerOptions {
     double idle_seconds = 40;         ///< a page that answers no ping for so long is gone; pings after half of it
 };
 
+/// How a page went.
+enum class Parting : std::uint8_t {
+    closed, ///< it said so
+    lost    ///< its connection ended, or nothing came for ServerOptions::idle_seconds
+};
+
 /// What the server tells. Called by the thread of run().
 struct ServerEvents {
     std::function<void(ConnectionNumber)> opened = {};
     std::function<void(ConnectionNumber, std::string_view)> message = {};
-    std::function<void(ConnectionNumber)> closed = {};
+    std::function<void(ConnectionNumber, Parting)> closed = {};
     std::function<bool()> tick = {}; ///< ten times a second; false ends run()
 };
 

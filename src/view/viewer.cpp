@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -25,9 +26,15 @@ namespace {
 
 constexpr int forwarded_port = 8123; ///< in what is told of a Unix socket
 constexpr double hello_seconds = 5;  ///< within which a page says its token
+constexpr double alive_seconds = 4;  ///< between two messages that tell a page that the line is there
 
 double now_seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// "60 s", "30 minutes"
+std::string duration_text(double seconds) {
+    return seconds < 120 ? fmt::format("{:g} s", seconds) : fmt::format("{:g} minutes", std::round(seconds / 60));
 }
 
 /// Takes the same time wherever they differ.
@@ -109,7 +116,12 @@ struct Viewer::Data {
         double since = 0;
     };
     std::map<ConnectionNumber, Page> pages; ///< of the server's thread
-    std::optional<double> alone_since;      ///< when the last admitted page went; nothing before the first came
+    std::optional<double> alone_until;      ///< once the last admitted page went: when it all ends
+    Parting last_parting = Parting::closed; ///< of the page that may come back longest
+    std::optional<double> longest_wait;     ///< for a page that went since one was admitted
+    bool failure_told = false;              ///< to a page
+    double said_alive = 0;
+    std::string reason;                     ///< why it ended
 
     std::mutex news_mutex; ///< of what the reading thread tells
     std::string progress;
@@ -117,7 +129,7 @@ struct Viewer::Data {
     std::string grid_text; ///< once it is read
     bool grid_is_new = false;
     std::optional<Error> failure;
-    double failed_at = 0;
+    double failed_at = 0; ///< or when a page was told first
 
     std::unique_ptr<GridView> view;
     std::optional<Worker> worker;
@@ -135,7 +147,11 @@ struct Viewer::Data {
     void take_hello(ConnectionNumber from, const HelloMessage& message);
     void answer(ConnectionNumber from, PageMessage message);
     void save(ConnectionNumber from, const SaveRequest& request);
-    void page_closed(ConnectionNumber which);
+    void page_closed(ConnectionNumber which, Parting parting);
+    void tell_pages();
+    bool has_failed(double now);
+    bool was_left(double now);
+    void say_alive(double now);
     bool tick();
     std::size_t admitted() const;
 };
@@ -164,6 +180,7 @@ void Viewer::Data::set_grid(const ViewerInput& input) {
 }
 
 void Viewer::Data::set_failure(const Error& error) {
+    if (options.failed && error.code != ErrorCode::cancelled) options.failed(error);
     const std::lock_guard lock(news_mutex);
     failure = error;
     failed_at = now_seconds();
@@ -225,7 +242,8 @@ void Viewer::Data::take_hello(ConnectionNumber from, const HelloMessage& message
     if (admitted() >= options.max_pages)
         return refuse("pages", fmt::format("{} pages are open already, which is the limit.", options.max_pages));
     pages[from].admitted = true;
-    alone_since.reset();
+    alone_until.reset();
+    longest_wait.reset();
     worker->add_page(from);
     server->send_text(from, text_of({{"say", "welcome"},
                                      {"version", options.version},
@@ -233,6 +251,7 @@ void Viewer::Data::take_hello(ConnectionNumber from, const HelloMessage& message
                                      {"maps", maps_json()},
                                      {"out", options.out}}));
     const std::lock_guard lock(news_mutex);
+    if (failure && !std::exchange(failure_told, true)) failed_at = now_seconds();
     if (!grid_text.empty()) server->send_text(from, grid_text);
     if (!progress.empty()) server->send_text(from, progress);
 }
@@ -289,7 +308,7 @@ void Viewer::Data::take_message(ConnectionNumber from, std::string_view text) {
     else server->close(from);
 }
 
-void Viewer::Data::page_closed(ConnectionNumber which) {
+void Viewer::Data::page_closed(ConnectionNumber which, Parting parting) {
     const auto page = pages.find(which);
     if (page == pages.end()) return;
     const bool was_admitted = page->second.admitted;
@@ -297,27 +316,59 @@ void Viewer::Data::page_closed(ConnectionNumber which) {
     if (!was_admitted) return;
     worker->remove_page(which);
     if (saver && saving_for == which) saver->stop();
-    if (admitted() == 0) alone_since = now_seconds();
+    const double until = now_seconds() + (parting == Parting::lost ? options.lost_seconds : options.linger_seconds);
+    if (!longest_wait || *longest_wait < until) {
+        longest_wait = until;
+        last_parting = parting;
+    }
+    if (admitted() == 0) alone_until = longest_wait;
+}
+
+void Viewer::Data::tell_pages() {
+    const std::lock_guard lock(news_mutex);
+    const bool tell_grid = std::exchange(grid_is_new, false), tell_news = std::exchange(news, false);
+    for (const auto& [number, page] : pages) {
+        if (!page.admitted) continue;
+        if (tell_grid) server->send_text(number, grid_text);
+        if (tell_news) server->send_news(number, progress);
+        if (tell_grid && failure && !std::exchange(failure_told, true)) failed_at = now_seconds();
+    }
+}
+
+/// Whether an error of reading was told to a page, or there is none to tell it to.
+bool Viewer::Data::has_failed(double now) {
+    constexpr double last_words = 1; // seconds for a page to take what it is told
+    const std::lock_guard lock(news_mutex);
+    return failure && now - failed_at > (failure_told ? last_words : options.failure_seconds);
+}
+
+/// Pages that hear nothing take the connection for lost.
+void Viewer::Data::say_alive(double now) {
+    if (now - said_alive < alive_seconds) return;
+    said_alive = now;
+    for (const auto& [number, page] : pages)
+        if (page.admitted) server->send_text(number, text_of({{"say", "alive"}}));
+}
+
+bool Viewer::Data::was_left(double now) {
+    if (!alone_until || now < *alone_until || options.keep) return false;
+    reason = last_parting == Parting::lost
+                 ? fmt::format("no page came back in the {} after its connection was lost",
+                               duration_text(options.lost_seconds))
+                 : fmt::format("the last page was closed {} ago; with --keep isotet view goes on",
+                               duration_text(options.linger_seconds));
+    return true;
 }
 
 bool Viewer::Data::tick() {
     worker->look_for_stale_work();
-    constexpr double last_words = 1; // seconds after a failure, for pages to be told
     const double now = now_seconds();
-    bool failed = false;
     for (const auto& [number, page] : pages)
         if (!page.admitted && now - page.since > hello_seconds) server->close(number);
-    {
-        const std::lock_guard lock(news_mutex);
-        failed = failure && now - failed_at > last_words;
-        const bool tell_grid = std::exchange(grid_is_new, false), tell_news = std::exchange(news, false);
-        for (const auto& [number, page] : pages) {
-            if (page.admitted && tell_grid) server->send_text(number, grid_text);
-            if (page.admitted && tell_news) server->send_news(number, progress);
-        }
-    }
-    const bool lingered = alone_since && now - *alone_since > options.linger_seconds && !options.keep;
-    return !*asked_to_stop && !lingered && !failed;
+    tell_pages();
+    say_alive(now);
+    if (options.is_left && options.is_left()) return false;
+    return !*asked_to_stop && !was_left(now) && !has_failed(now);
 }
 
 Viewer::Viewer(std::unique_ptr<Data> data) : data_(std::move(data)) {}
@@ -340,7 +391,7 @@ Result<std::unique_ptr<Viewer>> Viewer::open(ViewerOptions options) {
     ServerEvents events;
     events.opened = [all](ConnectionNumber which) { all->pages[which] = {false, now_seconds()}; };
     events.message = [all](ConnectionNumber from, std::string_view text) { all->take_message(from, text); };
-    events.closed = [all](ConnectionNumber which) { all->page_closed(which); };
+    events.closed = [all](ConnectionNumber which, Parting parting) { all->page_closed(which, parting); };
     events.tick = [all] { return all->tick(); };
     Result<Server> server = Server::open(std::move(server_options), std::move(events));
     if (!server) return server.error();
@@ -359,6 +410,8 @@ std::string Viewer::address() const {
     return fmt::format("http://{}{}{}:{}/#{}", brackets ? "[" : "", anywhere ? "127.0.0.1" : listen,
                        brackets ? "]" : "", port(), token);
 }
+
+const std::string& Viewer::reason() const noexcept { return data_->reason; }
 
 Result<void> Viewer::run(const std::atomic<bool>& stop) {
     data_->asked_to_stop = &stop;

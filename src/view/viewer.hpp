@@ -38,6 +38,10 @@ struct ViewerOptions {
     std::string token;                                   ///< empty: 128 bits of the system's random numbers
     bool keep = false;                                   ///< goes on when the last page was closed
     double linger_seconds = 60;                          ///< after the last page was closed, without `keep`
+    double lost_seconds = 1800; ///< after the last page lost its connection, from which it may come back
+    double failure_seconds = 30; ///< that an error of reading waits for a page to tell
+    std::function<bool()> is_left = {}; ///< asked now and then: whether what started it has gone; then run() ends
+    std::function<void(const Error&)> failed = {}; ///< told an error of reading at once, by a thread of its own
     std::size_t max_pages = 4;                           ///< at once
     int threads = 0;                                     ///< at most; 0: all
     std::function<Result<ViewerInput>(const Run&)> read; ///< called by a thread of its own
@@ -63,8 +67,11 @@ public:
 
     /// Serves pages, reads the file and packs it meanwhile, until `stop`, or until the last page is gone for long.
     ///
-    /// Errors   of reading, which pages were told
+    /// Errors   of reading, which a page was told, if one came
     Result<void> run(const std::atomic<bool>& stop);
+
+    /// Why run() ended: a sentence, or empty where it was told to.
+    const std::string& reason() const noexcept;
 
 private:
     struct Data;

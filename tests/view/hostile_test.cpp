@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <future>
 #include <memory>
 #include <thread>
 
@@ -276,14 +277,48 @@ TEST(Server, APageThatReadsNothingIsNotReadEither) {
     EXPECT_TRUE(is_served(viewer));
 }
 
-TEST(Viewer, EndsSomeTimeAfterTheLastPageIsGone) {
+TEST(Viewer, EndsSomeTimeAfterTheLastPageWasClosed) {
     RunningViewer viewer(0.2);
     {
         RawPage page(viewer.port());
         ASSERT_TRUE(say_hello(page));
         ASSERT_TRUE(message_with(page, "welcome"));
+        EXPECT_TRUE(page.send(RawPage::frame_head(0x88, 0))); // says goodbye
+        while (page.read_message()) {}
     }
     viewer.join(); // hangs, and is killed, where it does not
+    EXPECT_EQ(viewer.viewer().reason(), "the last page was closed 0.2 s ago; with --keep isotet view goes on");
+}
+
+TEST(Viewer, WaitsInAnotherWayForAPageThatLostItsConnection) {
+    ViewerOptions options;
+    options.lost_seconds = 0.2;
+    RunningViewer viewer(3600, std::move(options));
+    {
+        RawPage page(viewer.port());
+        ASSERT_TRUE(say_hello(page));
+        ASSERT_TRUE(message_with(page, "welcome"));
+    }
+    viewer.join();
+    EXPECT_EQ(viewer.viewer().reason(), "no page came back in the 0.2 s after its connection was lost");
+}
+
+TEST(Viewer, EndsWithWhatStartedIt) {
+    std::atomic<bool> left{false};
+    ViewerOptions options;
+    options.is_left = [&] { return left.load(); };
+    RunningViewer viewer(60, std::move(options));
+    EXPECT_TRUE(is_served(viewer));
+    left = true;
+    viewer.join();
+    EXPECT_EQ(viewer.viewer().reason(), "");
+}
+
+TEST(Viewer, TellsAPageThatTheLineIsThere) {
+    const RunningViewer viewer;
+    RawPage page(viewer.port());
+    ASSERT_TRUE(say_hello(page));
+    EXPECT_TRUE(message_with(page, R"("say":"alive")"));
 }
 
 TEST(Viewer, WhatAPageSavesEndsWithThePage) {
@@ -332,6 +367,33 @@ TEST(Viewer, AFileThatCannotBeReadIsToldToThePageAndToTheCaller) {
     runs.join();
     ASSERT_FALSE(result);
     EXPECT_EQ(result.error().message, "it is not there");
+}
+
+TEST(Viewer, AFileThatCannotBeReadIsToldAtOnceAndWaitsForAPage) {
+    std::promise<std::string> told;
+    ViewerOptions options;
+    options.token = right_token;
+    options.read = [](const isotet::Run&) -> Result<ViewerInput> { return Error{ErrorCode::file, "it is not there"}; };
+    options.failed = [&](const Error& error) { told.set_value(error.message); };
+    const auto viewer = Viewer::open(std::move(options)).value();
+    std::atomic<bool> stop{false};
+    Result<void> result;
+    std::thread runs([&] { result = viewer->run(stop); });
+    EXPECT_EQ(told.get_future().get(), "it is not there");
+    RawPage page(viewer->port());
+    EXPECT_TRUE(say_hello(page));
+    EXPECT_TRUE(message_with(page, "it is not there"));
+    runs.join();
+    EXPECT_FALSE(result);
+}
+
+TEST(Viewer, DoesNotWaitForeverToTellThatAFileCannotBeRead) {
+    ViewerOptions options;
+    options.read = [](const isotet::Run&) -> Result<ViewerInput> { return Error{ErrorCode::file, "it is not there"}; };
+    options.failure_seconds = 0.1;
+    const auto viewer = Viewer::open(std::move(options)).value();
+    const std::atomic<bool> stop{false};
+    EXPECT_FALSE(viewer->run(stop));
 }
 
 } // namespace

@@ -46,7 +46,8 @@ public:
             ++ticks_;
             return !stop_ && (!tick || tick());
         };
-        for (auto* missing : {&events.opened, &events.closed})
+        if (!events.closed) events.closed = [](ConnectionNumber, Parting) {};
+        for (auto* missing : {&events.opened})
             if (!*missing) *missing = [](ConnectionNumber) {};
         if (!events.message) events.message = [](ConnectionNumber, std::string_view) {};
         server_.emplace(Server::open(std::move(options), std::move(events)).value());
