@@ -125,8 +125,8 @@ Result<ExitCode> run_view(const ViewCommand& command) {
         if (!std::filesystem::is_directory(command.out, ignored))
             return usage_error("--out is '{}', which is no folder", command.out);
         options.out = command.out;
-        options.program = "/proc/self/exe";
     }
+    options.program = "/proc/self/exe";
     options.listen = command.listen;
     options.read = [&](const Run& run) { return read_input(command, *source, steps->front(), console, run); };
     std::mutex reading; // steps are read by several threads

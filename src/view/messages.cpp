@@ -96,8 +96,11 @@ Result<PageMessage> parse_save(const Json& json) {
     if (!state) return state.error();
     const auto name = message_text(json, "name", 256), kind_name = message_text(json, "kind", 32);
     const auto kind = parse_save_kind(kind_name.value_or(""));
-    if (!name || !kind) return wrong_message("a file has a \"name\", and a \"kind\": picture, surface, sweep or turn");
+    if (!name || !kind) return wrong_message("a file has a \"name\", and a \"kind\": picture, surface, sweep, "
+                                               "turn, steps, above or below");
     SaveMessage message;
+    const Json* download = find(json, "download");
+    message.download = download && download->is_boolean() && download->get<bool>();
     SaveRequest& request = message.request;
     request.kind = *kind;
     request.name = *name;
@@ -151,7 +154,9 @@ Result<PageMessage> parse_known(const std::string& action, const Json& json) {
     }
     if (action == "pick") return parse_pick(json);
     if (action == "save") return parse_save(json);
-    return wrong_message("\"do\" is none of hello, show, refine, shown, chart, spectrum, command, paste, pick, save");
+    if (action == "part") return PageMessage(PartMessage{});
+    return wrong_message("\"do\" is none of hello, show, refine, shown, chart, spectrum, command, paste, pick, "
+                         "save, part");
 }
 
 double milliseconds(double seconds) { return std::round(seconds * 1e5) / 100; }
@@ -236,6 +241,8 @@ std::string frame_bytes(const FrameFacts& facts, const std::vector<FrameSurface>
     bytes += blocks.bytes();
     return bytes;
 }
+
+std::string part_bytes(std::string_view bytes) { return "isod" + std::string(bytes); }
 
 std::string progress_text(std::string_view step, double fraction) {
     return text_of({{"say", "progress"}, {"step", step}, {"fraction", fraction}});

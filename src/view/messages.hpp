@@ -77,13 +77,18 @@ struct PickMessage {
     std::optional<std::array<double, 3>> ray = {}; ///< from the point; of all surfaces and slices of the state
 };
 
-/// {"do": "save", "kind": ..., "name": ..., "state": ..., "width": w, "height": h, "from": a, "to": b, "pictures": n}
+/// {"do": "save", "kind": ..., "name": ..., "state": ..., "width": w, "height": h, "from": a, "to": b, "pictures": n,
+///  "download": true}
 struct SaveMessage {
     SaveRequest request;
+    bool download = false; ///< the page takes the file, by PartMessage; else it goes into the folder of --out
 };
 
+/// {"do": "part"}: the next part of the file that the page downloads.
+struct PartMessage {};
+
 using PageMessage = std::variant<HelloMessage, ShowMessage, ShownMessage, ChartMessage, CommandMessage, PasteMessage,
-                                 PickMessage, SaveMessage, SpectrumMessage>;
+                                 PickMessage, SaveMessage, SpectrumMessage, PartMessage>;
 
 /// Any bytes from a page. Errors   invalid_argument
 Result<PageMessage> parse_page_message(std::string_view text);
@@ -117,6 +122,9 @@ struct FrameFacts {
 /// A frame in bytes: "isof", the bytes of its head (uint32), the head (JSON), then from the next multiple of 8 on the blocks
 /// that the head tells of.
 std::string frame_bytes(const FrameFacts& facts, const std::vector<FrameSurface>& surfaces);
+
+/// "isod", then bytes of a file; nothing but that at its end.
+std::string part_bytes(std::string_view bytes);
 
 std::string progress_text(std::string_view step, double fraction);
 std::string refusal_text(std::uint64_t number, std::string_view sentence);

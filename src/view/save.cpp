@@ -30,9 +30,13 @@ constexpr std::array<std::string_view, 6> surface_endings{".vtp", ".vtk", ".ply"
 
 Error wrong_file(std::string sentence) { return {ErrorCode::invalid_argument, std::move(sentence)}; }
 
+bool is_surface(SaveKind kind) {
+    return kind == SaveKind::surface || kind == SaveKind::above || kind == SaveKind::below;
+}
+
 Result<void> check_ending(const SaveRequest& request) {
     const std::string ending = std::filesystem::path(request.name).extension().string();
-    if (request.kind == SaveKind::surface) {
+    if (is_surface(request.kind)) {
         if (std::ranges::find(surface_endings, ending) != surface_endings.end()) return {};
         return wrong_file(fmt::format("'{}' is no name of a surface, which ends in {}", request.name,
                                       fmt::join(surface_endings, ", ")));
@@ -51,7 +55,7 @@ Result<void> check_request(const SaveRequest& request) {
                         "100, and no dot first",
                         request.name));
     if (Result<void> fits = check_ending(request); !fits) return fits;
-    if (request.kind == SaveKind::surface) return {};
+    if (is_surface(request.kind)) return {};
     if (request.width < 1 || request.height < 1 || request.width > max_side || request.height > max_side)
         return wrong_file(fmt::format("a picture of {} x {} is asked for, but sides have 1 to {} pixels", request.width,
                                       request.height, max_side));
@@ -166,7 +170,8 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 } // namespace
 
 std::optional<SaveKind> parse_save_kind(std::string_view name) {
-    constexpr std::array<std::string_view, 4> names{"picture", "surface", "sweep", "turn"};
+    constexpr std::array<std::string_view, 7> names{"picture", "surface", "sweep", "turn",
+                                                      "steps",   "above",   "below"};
     const auto* const found = std::ranges::find(names, name);
     if (found == names.end()) return std::nullopt;
     return static_cast<SaveKind>(found - names.begin());
@@ -183,7 +188,7 @@ bool is_file_name(std::string_view name) {
 Result<std::vector<std::string>> save_words(const SaveRequest& request, const std::string& folder,
                                             const std::string& file, const std::vector<std::string>& reading) {
     if (Result<void> fits = check_request(request); !fits) return fits.error();
-    const bool surface = request.kind == SaveKind::surface;
+    const bool surface = is_surface(request.kind);
     std::vector<std::string> words =
         surface ? extract_words(request.state, file, reading) : render_words(request.state, file, reading);
     words.resize(words.size() - 2); // -o, and what it names
@@ -191,11 +196,17 @@ Result<std::vector<std::string>> save_words(const SaveRequest& request, const st
         words.push_back("--size");
         words.push_back(fmt::format("{}x{}", request.width, request.height));
     }
+    if (request.kind == SaveKind::above) words.insert(words.end(), {"--solid", "above"});
+    if (request.kind == SaveKind::below) words.insert(words.end(), {"--solid", "below"});
     if (request.kind == SaveKind::sweep) {
         drop_option(words, "--isovalue");
         words.push_back(fmt::format("--sweep={},{},{}", request.from, request.to, request.pictures));
     }
     if (request.kind == SaveKind::turn) words.push_back(fmt::format("--orbit={}", request.pictures));
+    if (request.kind == SaveKind::steps) {
+        drop_option(words, "--step");
+        words.emplace_back("--all-steps");
+    }
     words.emplace_back("-q");
     words.emplace_back("-o");
     words.push_back((std::filesystem::path(folder) / request.name).string());

@@ -21,7 +21,10 @@ enum class SaveKind : std::uint8_t {
     picture, ///< of the state, .png
     surface, ///< its isosurfaces, in a format that isotet extract writes
     sweep,   ///< pictures at isovalues from `from` to `to`, .webp
-    turn     ///< pictures once around, .webp
+    turn,    ///< pictures once around, .webp
+    steps,   ///< pictures of all time steps, .webp
+    above,   ///< the part of the grid where the field is at least the isovalue, as a closed surface
+    below    ///< the part where it is less
 };
 
 /// "picture", "surface" and so on.
@@ -68,6 +71,7 @@ public:
 
     /// Ends what is going on, soon: it is then an error.
     void stop() noexcept { stop_ = true; }
+    bool busy() const noexcept { return busy_; }
 
 private:
     Result<std::string> write(std::vector<std::string> words, const std::string& name) const;

@@ -15,6 +15,7 @@
 #include <sys/random.h>
 
 #include "view/command_line.hpp"
+#include "view/download.hpp"
 #include "view/grid_view.hpp"
 #include "view/page.hpp"
 #include "view/server.hpp"
@@ -133,6 +134,7 @@ struct Viewer::Data {
 
     std::unique_ptr<GridView> view;
     std::optional<Worker> worker;
+    std::unique_ptr<Downloads> downloads;
     std::unique_ptr<Saver> saver;    ///< with ViewerOptions::out
     ConnectionNumber saving_for = 0; ///< whose file is written, or was last
     std::thread reader;
@@ -147,6 +149,7 @@ struct Viewer::Data {
     void take_hello(ConnectionNumber from, const HelloMessage& message);
     void answer(ConnectionNumber from, PageMessage message);
     void save(ConnectionNumber from, const SaveRequest& request);
+    void download(ConnectionNumber from, const SaveRequest& request);
     void page_closed(ConnectionNumber which, Parting parting);
     void tell_pages();
     bool has_failed(double now);
@@ -222,6 +225,7 @@ void Viewer::Data::start() {
         WorkerOutput{[this](PageNumber page, std::string bytes) { server->send_bytes(page, std::move(bytes)); },
                      [this](PageNumber page, std::string text) { server->send_text(page, std::move(text)); }},
         now_seconds);
+    downloads = std::make_unique<Downloads>(options.program);
     if (!options.out.empty()) saver = std::make_unique<Saver>(options.program, options.out);
     reader = std::thread([this] { read_and_pack(); });
 }
@@ -258,7 +262,8 @@ void Viewer::Data::take_hello(ConnectionNumber from, const HelloMessage& message
 
 void Viewer::Data::save(ConnectionNumber from, const SaveRequest& request) {
     const auto refuse = [&](std::string_view sentence) { server->send_text(from, error_text("save", sentence)); };
-    if (!saver) return refuse("Nothing can be saved: isotet view --out FOLDER lets the page write there.");
+    if (!saver)
+        return refuse("Nothing can be saved on the server: isotet view --out FOLDER lets the page write there.");
     Result<std::vector<std::string>> words = save_words(request, saver->folder(), options.file, options.reading);
     if (!words) return refuse(words.error().message);
     const std::string name = request.name;
@@ -270,6 +275,15 @@ void Viewer::Data::save(ConnectionNumber from, const SaveRequest& request) {
     saving_for = from;
 }
 
+void Viewer::Data::download(ConnectionNumber from, const SaveRequest& request) {
+    const auto tell = [this, from](const Result<Download>& file) {
+        if (file) server->send_text(from, text_of({{"say", "download"}, {"name", file->name}, {"bytes", file->bytes}}));
+        else server->send_text(from, error_text("save", file.error().message));
+    };
+    const Result<void> started = downloads->start(from, request, options.file, options.reading, tell);
+    if (!started) tell(started.error());
+}
+
 void Viewer::Data::answer(ConnectionNumber from, PageMessage message) {
     if (auto* show = std::get_if<ShowMessage>(&message)) {
         if (show->refined) worker->ask_refined(from, std::move(*show));
@@ -279,7 +293,11 @@ void Viewer::Data::answer(ConnectionNumber from, PageMessage message) {
     else if (auto* spectrum = std::get_if<SpectrumMessage>(&message))
         worker->ask_spectrum(from, std::move(*spectrum));
     else if (auto* pick = std::get_if<PickMessage>(&message)) worker->ask_pick(from, std::move(*pick));
-    else if (const auto* wanted = std::get_if<SaveMessage>(&message)) save(from, wanted->request);
+    else if (const auto* wanted = std::get_if<SaveMessage>(&message)) {
+        if (wanted->download) download(from, wanted->request);
+        else save(from, wanted->request);
+    } else if (std::holds_alternative<PartMessage>(message))
+        server->send_bytes(from, part_bytes(downloads->next_part(from)));
     else if (const auto* command = std::get_if<CommandMessage>(&message)) {
         server->send_text(
             from, text_of({{"say", "command"},
@@ -316,6 +334,7 @@ void Viewer::Data::page_closed(ConnectionNumber which, Parting parting) {
     if (!was_admitted) return;
     worker->remove_page(which);
     if (saver && saving_for == which) saver->stop();
+    downloads->forget(which);
     const double until = now_seconds() + (parting == Parting::lost ? options.lost_seconds : options.linger_seconds);
     if (!longest_wait || *longest_wait < until) {
         longest_wait = until;
@@ -421,6 +440,7 @@ Result<void> Viewer::run(const std::atomic<bool>& stop) {
     data_->reader.join();
     data_->worker.reset();
     data_->saver.reset();
+    data_->downloads.reset();
     const std::lock_guard lock(data_->news_mutex);
     if (data_->failure && data_->failure->code != ErrorCode::cancelled) return *data_->failure;
     return {};

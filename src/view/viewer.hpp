@@ -49,7 +49,7 @@ struct ViewerOptions {
     std::optional<RefineOptions> refine =
         RefineOptions{}; ///< of curved cells where a page rests; nothing: it is not done
     std::string out;     ///< a folder where pages may save files; empty: they may not
-    std::string program; ///< that writes these files, by command lines of isotet
+    std::string program; ///< that writes these files, and those that pages download, by command lines of isotet
 };
 
 /// 128 random bits as 32 hexadecimal digits. Errors   system

@@ -149,6 +149,23 @@ TEST(SaveWords, SweepsReplaceTheIsovaluesAndTurnsKeepThem) {
     EXPECT_NE(turn.find("--isovalue 0.5"), std::string::npos) << turn;
 }
 
+TEST(SaveWords, StepsReplaceTheStepAndSolidsAreSurfaces) {
+    SaveRequest request = picture_request("a.webp");
+    request.kind = SaveKind::steps;
+    request.state.step = 3;
+    const std::string steps = shell_text(save_words(request, "out", "grid.vtu", {}).value());
+    EXPECT_NE(steps.find("--all-steps"), std::string::npos) << steps;
+    EXPECT_EQ(steps.find("--step "), std::string::npos) << steps;
+    request.kind = SaveKind::below;
+    EXPECT_FALSE(save_words(request, "out", "grid.vtu", {}));
+    request.name = "a.stl";
+    const std::string solid = shell_text(save_words(request, "out", "grid.vtu", {}).value());
+    EXPECT_NE(solid.find("isotet extract"), std::string::npos) << solid;
+    EXPECT_NE(solid.find("--solid below"), std::string::npos) << solid;
+    EXPECT_NE(solid.find("--step 3"), std::string::npos) << solid;
+    EXPECT_EQ(solid.find("--size"), std::string::npos) << solid;
+}
+
 TEST(SaveWords, PicturesHaveASize) {
     SaveRequest request = picture_request("a.png");
     request.width = 0;
