@@ -193,6 +193,63 @@ GivenOption option_of(const std::string& word) {
     return {};
 }
 
+bool set_flag(ViewState& state, std::string_view word) {
+    if (word == "--log") return state.logarithmic = true;
+    if (word == "--outline") return state.outline = true;
+    if (word == "--edges") return state.edges = true;
+    return false;
+}
+
+/// Where the words behind "isotet render" begin; 0 where the first one is an option.
+Result<std::size_t> begin_of_options(const std::vector<std::string>& words) {
+    constexpr std::array<std::string_view, 3> commands{"render", "extract", "view"};
+    const auto is_command = [&](std::size_t i) {
+        return i < words.size() && std::ranges::find(commands, words[i]) != commands.end();
+    };
+    if (words.empty() || words[0].starts_with('-')) return std::size_t{0};
+    const std::string_view program = std::string_view(words[0]).substr(words[0].rfind('/') + 1);
+    if (program == "isotet" && is_command(1)) return std::size_t{2};
+    if (is_command(0)) return std::size_t{1};
+    return Error{ErrorCode::invalid_argument,
+                 fmt::format("'{}' begins no command line of isotet render, isotet extract or isotet view", words[0])};
+}
+
+/// Options that say nothing about what is seen.
+bool is_of_the_machine(std::string_view word) {
+    constexpr std::array<std::string_view, 12> with_value{"-o",       "--output", "--size",   "--json",
+                                                          "--threads", "--device", "--port",   "--listen",
+                                                          "--engine", "--out",    "--method", "--snap"};
+    return std::ranges::find(with_value, word.substr(0, word.find('='))) != with_value.end();
+}
+
+bool is_flag_of_the_machine(std::string_view word) {
+    constexpr std::array<std::string_view, 7> flags{"-q",      "--quiet",      "-v",           "--verbose",
+                                                    "--plain", "--no-browser", "--allow-empty"};
+    return std::ranges::find(flags, word) != flags.end();
+}
+
+/// A word that is no option of the page: the file, what does not matter here, or what is left out. Returns how many
+/// words behind it go with it.
+std::size_t pass_over(const std::vector<std::string>& words, std::size_t i, const std::vector<std::string>& reading,
+                      PastedCommand& pasted) {
+    const std::string& word = words[i];
+    if (is_flag_of_the_machine(word)) return 0;
+    if (!word.starts_with('-') || word == "-") {
+        if (pasted.file.empty()) pasted.file = word;
+        return 0; // or the name of what is written
+    }
+    const bool has_value =
+        word.find('=') == std::string::npos && i + 1 < words.size() && !words[i + 1].starts_with('-');
+    if (is_of_the_machine(word)) return has_value ? 1 : 0;
+    if (const auto given = std::ranges::find(reading, word); given != reading.end()) {
+        const bool same = has_value && given + 1 != reading.end() && given[1] == words[i + 1];
+        if (same || !has_value) return same ? 1 : 0;
+        if (given + 1 == reading.end() || given[1].starts_with('-')) return 0;
+    }
+    pasted.left_out.push_back(has_value ? word + " " + words[i + 1] : word);
+    return has_value ? 1 : 0;
+}
+
 bool is_plain(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
            std::string_view("_-+.,:/=@%").find(c) != std::string_view::npos;
@@ -278,26 +335,29 @@ Result<std::vector<std::string>> shell_words(std::string_view text) {
     return words;
 }
 
-Result<ViewState> state_of_command(std::string_view text) {
+Result<PastedCommand> state_of_command(std::string_view text, const std::vector<std::string>& reading) {
     const Result<std::vector<std::string>> words = shell_words(text);
     if (!words) return words.error();
-    ViewState state;
-    for (std::size_t i = 0; i < words->size(); ++i) {
+    const Result<std::size_t> begin = begin_of_options(*words);
+    if (!begin) return begin.error();
+    PastedCommand pasted;
+    for (std::size_t i = *begin; i < words->size(); ++i) {
         const std::string& word = (*words)[i];
         if (word == "--") break;
-        state.logarithmic = state.logarithmic || word == "--log";
-        state.outline = state.outline || word == "--outline";
-        state.edges = state.edges || word == "--edges";
+        if (set_flag(pasted.state, word)) continue;
         const auto [option, attached] = option_of(word);
-        if (!option) continue;
+        if (!option) {
+            i += pass_over(*words, i, reading, pasted);
+            continue;
+        }
         if (!attached && i + 1 == words->size())
             return Error{ErrorCode::invalid_argument, fmt::format("{} takes {}", word, option->rule)};
         const std::string value = attached ? *attached : (*words)[++i];
-        if (!option->set(state, value))
+        if (!option->set(pasted.state, value))
             return Error{ErrorCode::invalid_argument,
                          fmt::format("{} got '{}', but it takes {}", option->name, value, option->rule)};
     }
-    return state;
+    return pasted;
 }
 
 } // namespace isotet::view

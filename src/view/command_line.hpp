@@ -26,10 +26,17 @@ std::string shell_text(const std::vector<std::string>& words);
 /// Errors   invalid_argument when a quotation does not end
 Result<std::vector<std::string>> shell_words(std::string_view text);
 
-/// The state that a command line for render or extract asks for. Options that the page does not have, FILE and OUT are
-/// passed over.
+/// What a page takes of a command line.
+struct PastedCommand {
+    ViewState state;
+    std::string file;                  ///< that it names; empty: none
+    std::vector<std::string> left_out; ///< options that change what is seen and that the page lacks, with their values
+};
+
+/// A command line for render, extract or view, or options alone.
+/// `reading`   options that the page's file is read with: they are not left out
 ///
-/// Errors   invalid_argument: an option of the page without its value, or with one that it does not take
-Result<ViewState> state_of_command(std::string_view text);
+/// Errors   invalid_argument: another program; an option of the page without its value, or with a wrong one
+Result<PastedCommand> state_of_command(std::string_view text, const std::vector<std::string>& reading = {});
 
 } // namespace isotet::view

@@ -304,9 +304,13 @@ void Viewer::Data::answer(ConnectionNumber from, PageMessage message) {
                            {"render", shell_text(render_words(command->state, options.file, options.reading))},
                            {"extract", shell_text(extract_words(command->state, options.file, options.reading))}}));
     } else if (const auto* paste = std::get_if<PasteMessage>(&message)) {
-        const Result<ViewState> state = state_of_command(paste->text);
-        server->send_text(from, state ? text_of({{"say", "state"}, {"state", to_json(*state)}})
-                                      : error_text("paste", state.error().message));
+        const Result<PastedCommand> pasted = state_of_command(paste->text, options.reading);
+        if (!pasted) return server->send_text(from, error_text("paste", pasted.error().message));
+        const bool other = !pasted->file.empty() && pasted->file != options.file;
+        server->send_text(from, text_of({{"say", "state"},
+                                         {"state", to_json(pasted->state)},
+                                         {"left_out", pasted->left_out},
+                                         {"other_file", other ? pasted->file : std::string()}}));
     }
 }
 

@@ -18,7 +18,7 @@ void check_state(const ViewState& state) {
     const auto back = state_of(*json);
     if (!back) std::abort();
     const auto command = state_of_command(shell_text(render_words(state, "grid.vtu")));
-    if (!command || !(*command == state)) std::abort();
+    if (!command || !(command->state == state)) std::abort();
 }
 
 void check_error(const isotet::Error& error) {
@@ -34,6 +34,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     else if (const auto* show = std::get_if<ShowMessage>(&*message)) check_state(show->state);
     const auto pasted = state_of_command(text);
     if (!pasted) check_error(pasted.error());
-    else check_state(*pasted);
+    else check_state(pasted->state);
     return 0;
 }
