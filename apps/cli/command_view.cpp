@@ -19,6 +19,7 @@
 #include "signals.hpp"
 #include "standard_streams.hpp"
 #include "text.hpp"
+#include "view_record.hpp"
 #include "view/viewer.hpp"
 
 namespace isotet::cli {
@@ -62,6 +63,26 @@ Result<view::ViewerInput> read_input(const ViewCommand& command, const GridSourc
     input.notes = console.noted();
     input.grid = *std::move(grid);
     return input;
+}
+
+/// Opens it with the token and port of the last run with this file: addresses stay valid. A line that is not encrypted
+/// may have been read: then the token is a new one each time.
+Result<std::unique_ptr<view::Viewer>> open_viewer(const ViewCommand& command, view::ViewerOptions options) {
+    const bool is_own = command.listen.empty() || command.listen == "127.0.0.1" || command.listen == "::1" ||
+                        command.listen.starts_with("unix:");
+    if (!is_own) return view::Viewer::open(std::move(options));
+    const std::optional<ViewRecord> last = recall_view(command.grid.file);
+    if (last) options.token = last->token;
+    const bool same_port = last && options.port == 0;
+    if (same_port) options.port = last->port;
+    auto viewer = view::Viewer::open(options);
+    const bool taken = !viewer && same_port;
+    if (taken) { // perhaps by a run that goes on
+        options.port = 0;
+        viewer = view::Viewer::open(std::move(options));
+    }
+    if (viewer && !taken) remember_view(command.grid.file, {(*viewer)->token(), (*viewer)->port()});
+    return viewer;
 }
 
 /// The address, before anything is read: for people, also with --quiet, or as JSON.
@@ -136,7 +157,7 @@ Result<ExitCode> run_view(const ViewCommand& command) {
     };
     options.is_left = is_left_by_ssh;
     options.failed = [](const Error& error) { say_error(error.message); };
-    auto viewer = view::Viewer::open(std::move(options));
+    auto viewer = open_viewer(command, std::move(options));
     if (!viewer) return viewer.error();
     Browser browser;
     if (Result<void> told = tell_address(command, **viewer, browser, console); !told) return told.error();

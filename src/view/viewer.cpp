@@ -424,6 +424,8 @@ Result<std::unique_ptr<Viewer>> Viewer::open(ViewerOptions options) {
 
 std::uint16_t Viewer::port() const noexcept { return data_->server->port(); }
 
+const std::string& Viewer::token() const noexcept { return data_->options.token; }
+
 std::string Viewer::address() const {
     const std::string& listen = data_->options.listen;
     const std::string& token = data_->options.token;

@@ -64,6 +64,7 @@ public:
     /// "http://127.0.0.1:PORT/#TOKEN"; with a Unix socket "http://localhost:PORT/#TOKEN" where it is forwarded to
     std::string address() const;
     std::uint16_t port() const noexcept;
+    const std::string& token() const noexcept;
 
     /// Serves pages, reads the file and packs it meanwhile, until `stop`, or until the last page is gone for long.
     ///
