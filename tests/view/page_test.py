@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 import traceback
 import zlib
 
@@ -89,7 +90,7 @@ def share_of_surface(browser):
 
 
 def test_first_surface(browser, viewer):
-    start(browser, viewer)
+    start(browser, viewer, '&labels=0')
     check(0.6 < shown(browser) < 1.3, 'the first value is one with a large surface')
     check(int(browser.value('document.body.dataset.triangles')) > 1000, 'triangles are there')
     check(0.1 < share_of_surface(browser) < 0.7, 'the surface is in the picture')
@@ -228,9 +229,9 @@ def test_area_and_volume(browser, viewer):
     type_value(browser, '0.6')
     at_rest(browser, 0.6)
     words = browser.value('document.getElementById("measures").textContent')
-    area, below, whole = [float(word.strip(',')) for word in words.split() if word[0].isdigit()]
+    area, below, share, whole = [float(word.strip(',:')) for word in words.split() if word[0].isdigit()]
     check(abs(area - 4 * 3.14159 * 0.36) < 0.1, words)
-    check(abs(below - 4 / 3 * 3.14159 * 0.216) < 0.05 and whole == 8, words)
+    check(abs(below - 4 / 3 * 3.14159 * 0.216) < 0.05 and whole == 8 and share == 11, words)
     before = browser.value('document.getElementById("chart").toDataURL()')
     choose(browser, '#curve', 'volume_below')
     check(before != browser.value('document.getElementById("chart").toDataURL()'), 'the curve is the same')
@@ -287,6 +288,30 @@ def test_pins_undo_and_address(browser, viewer):
     check(browser.value('document.querySelectorAll("#surfaces li").length') == 2, 'a reloaded page has its pins')
 
 
+def test_another_field_is_a_state_of_its_own(browser, viewer):
+    """Back leads to the last value and the pins of the field before; so does choosing it again."""
+    start(browser, viewer)
+    browser.click('#pin')
+    type_value(browser, '0.5')
+    at_rest(browser, 0.5)
+    choose(browser, '#field', 'gyroid')
+    browser.wait('document.body.dataset.field === "gyroid"')
+    at_rest(browser)
+    check(browser.value('document.querySelectorAll("#surfaces li").length') == 1, 'pins are of a field')
+    gyroid = shown(browser)
+    browser.value('history.back()')
+    browser.wait('document.body.dataset.field === "sphere"')
+    at_rest(browser, 0.5)
+    check(browser.value('document.querySelectorAll("#surfaces li").length') == 2, 'the pin is there again')
+    browser.value('history.forward()')
+    browser.wait('document.body.dataset.field === "gyroid"')
+    at_rest(browser, gyroid)
+    choose(browser, '#field', 'sphere')
+    browser.wait('document.body.dataset.field === "sphere"')
+    at_rest(browser, 0.5)
+    check(browser.value('document.querySelectorAll("#surfaces li").length') == 2, 'with its pin')
+
+
 def test_colour_by_field(browser, viewer):
     start(browser, viewer)
     plain = browser.picture()
@@ -321,6 +346,16 @@ def test_commands(browser, viewer):
     check(browser.value('document.body.dataset.field') == 'gyroid', 'the field follows')
     check(browser.value('document.querySelectorAll("#surfaces li").length') == 2, 'a surface an isovalue')
     check(browser.value('document.getElementById("color-by").value') == 'sphere', 'the colours follow')
+    check('for x.vtu' in browser.value('document.getElementById("message").textContent'), 'it says that the file is another one')
+    browser.click('#command')
+    browser.type(f'isotet extract {GRID} -i 0.5 --keep largest')
+    browser.key('Enter')
+    browser.wait('document.getElementById("message").textContent === "Not taken, as the page does not have it: --keep largest"')
+    browser.click('#command')
+    browser.type('rm -rf /')
+    browser.key('Enter')
+    browser.wait('document.getElementById("message").textContent.includes("no command line of isotet")')
+    check(browser.value('document.body.dataset.field') == 'gyroid', 'nothing changes')
 
 
 def test_reconnect(browser, viewer):
@@ -367,7 +402,7 @@ def choose(browser, selector, value):
 
 
 def test_slices_and_clip_planes(browser, viewer):
-    start(browser, viewer)
+    start(browser, viewer, '&labels=0')
     browser.click('#add-slice')
     browser.wait('document.body.dataset.kinds.includes("slice")')
     check(browser.value('document.getElementById("color-by").value') == 'sphere', 'a slice is coloured')
@@ -418,7 +453,9 @@ def test_pick(browser, viewer):
     browser.wait('document.getElementById("picked").hidden')
     browser.key('v')
     browser.wait('!document.getElementById("picked").hidden')
-    browser.click('#picked-close')
+    type_value(browser, '0.4')
+    at_rest(browser, 0.4)
+    check(browser.value('document.getElementById("picked").hidden'), 'the point goes with its surface')
 
 
 def test_time_steps(browser, viewer):
@@ -442,6 +479,66 @@ def test_time_steps(browser, viewer):
         browser.call('Page.navigate', url='about:blank')
 
 
+def at_step(browser, step):
+    choose(browser, '#step', str(step))
+    browser.wait(f'document.body.dataset.step_shown === "{step}" && document.body.dataset.chart_step === "{step}"')
+
+
+def span(browser):
+    return [float(v) for v in browser.value('document.body.dataset.span').split()]
+
+
+def test_the_slider_belongs_to_the_step(browser, viewer):
+    """A field that is 0 at first: its slider, chart and first value come with the step at which it varies."""
+    with Viewer(STEPS, '-f', 'nodal_Cauchy_Stress_1', '--step', '0') as other:
+        browser.call('Page.navigate', url='about:blank')
+        browser.open(other.address)
+        browser.wait('document.body.dataset.span === "0 0" && document.body.dataset.chart_step === "0"')
+        at_step(browser, 2)
+        lower, upper = span(browser)
+        check(lower < -10000 and upper > 20000, f'{lower} to {upper}')
+        browser.wait('Number(document.body.dataset.shown) !== 0 && Number(document.body.dataset.triangles) > 0')
+        check(lower < shown(browser) < upper, f'the first value is of the step: {shown(browser)}')
+        check('2 of 3 steps' in browser.value('document.getElementById("ends").textContent'), 'it says whose range it is')
+        choose(browser, '#span', 'step')
+        at_step(browser, 1)
+        one = span(browser)
+        check(one[1] < upper and 'step 1' in browser.value('document.getElementById("ends").textContent'), f'{one}')
+        choose(browser, '#span', '')
+        check(span(browser) == [min(lower, one[0]), max(upper, one[1])], 'the range grows, and never shrinks')
+        check('all steps' in browser.value('document.getElementById("ends").textContent'), 'all were seen')
+        browser.value('document.getElementById("slider").focus()')
+        browser.key('End')
+        at_rest(browser, upper)
+        type_value(browser, '100%')
+        at_rest(browser, upper)
+        type_value(browser, '1,5')
+        at_rest(browser, 1.5)
+        type_value(browser, '1e9')
+        browser.wait('document.getElementById("facts").textContent.includes("nodal_Cauchy_Stress_1 is")')
+        browser.picture(pictures and f'{pictures}/steps.png')
+        browser.call('Page.navigate', url='about:blank')
+
+
+def test_pages_at_other_steps_have_charts_of_their_own(browser, viewer):
+    with Viewer(STEPS, '-f', 'nodal_Cauchy_Stress_1', '--step', '1') as other:
+        proxy = Proxy(other.port, other.address.split('#')[1])
+        browser.call('Page.navigate', url='about:blank')
+        browser.open(f'http://127.0.0.1:{proxy.port}/')
+        first, second = (f'document.querySelectorAll("iframe")[{i}]?.contentDocument?.body?.dataset' for i in range(2))
+        browser.wait(f'{first}?.step_shown === "1" && {first}.chart_step === "1"')
+        of_first = browser.value(f'[{first}.span, {first}.shown]')
+        browser.value('(() => { const step = document.querySelector("iframe").contentDocument.getElementById("step"); step.value = 2; '
+                      'step.dispatchEvent(new Event("input")); })()')
+        browser.wait(f'{first}.step_shown === "2" && {first}.chart_step === "2"')
+        browser.value('document.body.append(document.querySelector("iframe").cloneNode())')
+        browser.wait(f'{second}?.step_shown === "1" && {second}.chart_step === "1"')
+        check(browser.value(f'[{second}.span, {second}.shown]') == of_first, 'its range and first value are those of its own step')
+        check(browser.value(f'{first}.chart_step') == '2', 'the first page keeps its own')
+        browser.call('Page.navigate', url='about:blank')
+        proxy.listener.close()
+
+
 def rendered(browser, folder):
     """Pixels of `isotet render` for the command that the page copies, at the size of its picture."""
     browser.value('document.getElementById("copied").textContent = ""')
@@ -457,7 +554,7 @@ def rendered(browser, folder):
 
 def test_pictures_of_the_server(browser, viewer):
     """JPEG while the hand moves; at rest exactly the pixels of `isotet render`."""
-    start(browser, viewer)
+    start(browser, viewer, '&labels=0')
     browser.click('#pin')
     choose(browser, '#color-by', 'gyroid')
     choose(browser, '#drawn-by', 'server')
@@ -524,24 +621,26 @@ def test_without_webgl_the_server_draws(browser, viewer):
 
 
 def test_save(browser, viewer):
-    """By name into the folder of --out; without it not at all."""
+    """By name into the folder of --out; without it as downloads only."""
     start(browser, viewer)
     browser.click('#save-open')
-    check(browser.value('document.getElementById("save-go").disabled'), 'without --out nothing can be saved')
+    check(browser.value('document.querySelector("#save-to [value=out]").disabled'), 'without --out nothing is saved on the server')
     browser.key('Escape')
     with tempfile.TemporaryDirectory() as folder, Viewer(GRID, '--out', folder) as other:
         start(browser, other)
         browser.value('document.activeElement.blur()')
         browser.key('s')
         browser.wait('document.getElementById("save").open')
-        for kind, name in (('picture', 'a picture.png'), ('surface', 'a.ply'), ('turn', 'turn.webp')):
+        for kind, name in (('picture.png', 'a picture.png'), ('surface.ply', 'a.ply'), ('turn.webp', 'turn.webp')):
             choose(browser, '#save-kind', kind)
+            choose(browser, '#save-to', 'out')
             for field, value in (('name', name), ('width', '200'), ('height', '150'), ('pictures', '3')):
                 choose(browser, '#save-' + field, value)
             browser.picture(pictures and f'{pictures}/save-{kind}.png')
             browser.click('#save-go')
             browser.wait('document.getElementById("save-told").textContent.startsWith("Saved")')
             check(os.path.getsize(f'{folder}/{name}') > 1000, f'{name} is there')
+        choose(browser, '#save-name', 'turn.webp')
         browser.click('#save-go')
         browser.wait('document.getElementById("save-told").textContent.includes("there already")')
         choose(browser, '#save-name', '../turn2.webp')
@@ -551,9 +650,97 @@ def test_save(browser, viewer):
         browser.call('Page.navigate', url='about:blank')
 
 
+def test_labels_full_screen_and_reset(browser, viewer):
+    start(browser, viewer)
+    type_value(browser, '0.7')
+    at_rest(browser, 0.7)
+    browser.wait(f'document.body.dataset.caption === "{GRID}  ·  sphere = 0.7"')
+    browser.click('#pin')
+    type_value(browser, '0.5')
+    at_rest(browser, 0.5)
+    browser.wait(f'document.body.dataset.caption === "{GRID}  ·  sphere = 0.5, 0.7"')
+    choose(browser, '#color-by', 'gyroid')
+    browser.wait('document.getElementById("range-upper").value !== ""')
+    at_rest(browser)
+    browser.picture(pictures and f'{pictures}/labels.png')
+    painted = 'labels.getContext("2d").getImageData(0, 0, labels.width, labels.height).data.some(v => v !== 0)'
+    check(browser.value(painted), 'a scale is there')
+    browser.value('document.activeElement.blur()')
+    browser.key('l')
+    browser.wait(f'document.body.dataset.caption === "" && !({painted})')
+    browser.key('h')
+    check(browser.value('scene.clientWidth === innerWidth'), 'the picture takes the place of the panel')
+    browser.key('h')
+    browser.click('#full-screen')
+    browser.wait('document.fullscreenElement !== null')
+    browser.click('#full-screen')
+    browser.wait('document.fullscreenElement === null')
+    browser.click('#reset')
+    browser.wait('document.querySelectorAll("#surfaces li").length === 1 && document.getElementById("color-by").value === ""')
+    at_rest(browser)
+    check(browser.value('document.getElementById("labels-on").checked'), 'labels are there again')
+    browser.value('history.back()')
+    browser.wait('document.querySelectorAll("#surfaces li").length === 2 && document.getElementById("color-by").value === "gyroid"')
+
+
+def test_notes_stay(browser, viewer):
+    """Notes about the file are in a list until that is closed, whatever frames come."""
+    with tempfile.TemporaryDirectory() as folder:
+        with open(f'{folder}/two.vtk', 'w') as file:
+            file.write('# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 float\n'
+                       '0 0 0 1 0 0 0 1 0 0 0 1\n1 0 0 0 1 0 0 0 1 1 1 1\nCELLS 2 10\n4 0 1 2 3\n4 4 5 6 7\nCELL_TYPES 2\n10 10\n'
+                       'POINT_DATA 8\nSCALARS p float\nLOOKUP_TABLE default\n0 1 1 1 1 1 1 2\n')
+        with Viewer(f'{folder}/two.vtk') as other:
+            start(browser, other)
+            type_value(browser, '0.5')
+            at_rest(browser, 0.5)
+            check('coincide' in browser.value('document.getElementById("notes-list").textContent'), 'the note is there')
+            check(browser.value('document.getElementById("notes-title").textContent') == '1 note', 'and counted')
+            check(browser.value('document.getElementById("message").hidden'), 'no message covers the picture')
+            browser.call('Page.navigate', url='about:blank')
+
+
+def test_downloads(browser, viewer):
+    """Without --out: the picture as seen, and files that isotet writes, in several parts where they are large."""
+    start(browser, viewer)
+    type_value(browser, '0.7')
+    at_rest(browser, 0.7)
+    with tempfile.TemporaryDirectory() as folder:
+        browser.call('Page.setDownloadBehavior', behavior='allow', downloadPath=folder)
+        browser.click('#save-open')
+        browser.wait('document.getElementById("save").open')
+
+        def download(kind, name):
+            choose(browser, '#save-kind', kind)
+            check(browser.value('document.getElementById("save-name").value') == name, browser.value('document.getElementById("save-name").value'))
+            browser.click('#save-go')
+            browser.wait(f'document.getElementById("save-told").textContent === "Downloaded: {name}"')
+            end = time.monotonic() + 20
+            while not os.path.exists(f'{folder}/{name}') and time.monotonic() < end:
+                time.sleep(0.02)
+            with open(f'{folder}/{name}', 'rb') as file:
+                return file.read()
+
+        stem = GRID.replace(':', '_').replace(',', '_') + '-sphere-0.7'
+        width, height, _ = pixels(download('seen.png', f'{stem}.png'))
+        check([width, height] == browser.value('[scene.clientWidth, scene.clientHeight]'), f'{width} x {height}')
+        stl = download('surface.stl', f'{stem}-1.stl')
+        triangles = int(browser.value('document.body.dataset.triangles'))
+        check(len(stl) == 84 + 50 * triangles and struct.unpack('<I', stl[80:84])[0] == triangles, f'{len(stl)} bytes')
+        command = browser.value('document.getElementById("save-command").textContent')
+        check('isotet extract' in command and command.endswith(f'-o {stem}-2.stl'), command)
+        browser.picture(pictures and f'{pictures}/download.png')
+        solid = download('above.stl', f'{stem}-above-2.stl')
+        inside, = struct.unpack('<I', solid[80:84])
+        check(inside > triangles and len(solid) == 84 + 50 * inside, f'the solid is closed by the boundary of the grid: {inside} triangles')
+        check('--solid above' in browser.value('document.getElementById("save-command").textContent'), 'the command is that of the solid')
+        check(download('surface.vtp', f'{stem}-3.vtp').startswith(b'<?xml'), 'a VTP')
+        browser.key('Escape')
+
+
 def test_the_picture_is_that_of_the_renderer(browser, viewer):
     """WebGL beside `isotet render` of the copied command: at rest nearly all pixels agree, edges aside."""
-    start(browser, viewer)
+    start(browser, viewer, '&labels=0')
     browser.click('#value')
     browser.value('document.getElementById("value").select()')
     browser.type('0.7')
@@ -590,7 +777,7 @@ class Proxy:
     """Answers below /node/host/ with what the viewer says, as JupyterHub and Open OnDemand do, and at / with a frame."""
 
     def __init__(self, port, token):
-        self.to, self.token = port, token
+        self.to, self.token, self.dead = port, token, False
         self.listener = socket.create_server(('127.0.0.1', 0))
         self.port = self.listener.getsockname()[1]
         threading.Thread(target=self.serve, daemon=True).start()
@@ -620,7 +807,8 @@ class Proxy:
         def copy(a, b):
             try:
                 while part := a.recv(65536):
-                    b.sendall(part)
+                    if not self.dead:
+                        b.sendall(part)
             except OSError:
                 pass
             for one in (a, b):
@@ -727,11 +915,55 @@ def test_contrast_light_and_dark(browser, viewer):
 def test_end(browser, viewer):
     start(browser, viewer)
     check(viewer.stop() == 0, 'Ctrl-C ends it without an error')
-    browser.wait('document.getElementById("link").textContent !== ""')
+    browser.wait('!document.getElementById("lost").hidden')
+    check('No connection' in browser.value('document.getElementById("lost").textContent'), 'the page says so at once')
+
+
+def test_a_file_that_cannot_be_read_is_told_in_the_page(browser, viewer):
+    with tempfile.TemporaryDirectory() as folder:
+        with open(f'{folder}/bad.vtk', 'w') as file:
+            file.write('# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\n'
+                       'CELLS 1 5\n4 0 1 2 9\nCELL_TYPES 1\n10\nPOINT_DATA 4\nSCALARS p float\nLOOKUP_TABLE default\n0 1 1 1\n')
+        with Viewer(f'{folder}/bad.vtk') as other:
+            browser.open(other.address)
+            browser.wait('document.getElementById("message").textContent.includes("has point 9") && !document.getElementById("lost").hidden')
+            check('has ended' in browser.value('document.getElementById("lost").textContent'), 'it does not try again')
+            check(other.process.wait(20) == 3, 'the exit status is that of a broken file')
+            check('has point 9' in other.process.stderr.read(), 'and the terminal tells it, too')
+
+
+def test_a_line_that_is_dead_is_noticed(browser, viewer):
+    """A line that passes nothing on, and does not end: the page tries again by itself."""
+    with Viewer(GRID) as other:
+        proxy = Proxy(other.port, '')
+        browser.open(f'http://127.0.0.1:{proxy.port}/node/host/#{other.address.split("#")[1]}')
+        browser.wait('document.body.dataset.shown !== undefined')
+        at_rest(browser)
+        proxy.dead = True
+        browser.value('document.body.dataset.silence = 1000')
+        browser.wait('document.body.dataset.link === "lost"')
+        proxy.dead = False
+        browser.value('delete document.body.dataset.silence')
+        browser.wait('document.body.dataset.link === "open"')
+        at_rest(browser)
+        proxy.listener.close()
+        browser.call('Page.navigate', url='about:blank')
+
+
+def test_ends_with_ssh(browser, viewer):
+    """Without a terminal, ssh's end is that of its lines."""
+    process = subprocess.Popen([os.environ['ISOTET_PROGRAM'], 'view', 'make:kuhn:4:sphere'], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                               stderr=subprocess.DEVNULL, env=dict(os.environ, SSH_CONNECTION='10.0.0.1 1 10.0.0.2 22'))
+    check(process.stdout.readline().startswith(b'http://'), 'it serves')
+    process.stdin.close()
+    process.stdout.close()
+    check(process.wait(20) == 0, 'it ends without an error')
 
 
 def main():
     wanted = sys.argv[1:]
+    state = tempfile.TemporaryDirectory()  # for the tokens of viewers
+    os.environ['XDG_STATE_HOME'] = state.name
     tests = [f for name, f in globals().items() if name.startswith('test_') and (not wanted or name in wanted)]
     failed = 0
     with Viewer(GRID) as viewer:

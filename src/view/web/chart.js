@@ -9,13 +9,14 @@ export class ChartSlider {
     this.canvas = canvas;
     this.context = canvas.getContext('2d');
     this.on = on;
-    this.chart = null;
+    this.chart = null; // of the step that is shown; null: not there yet
+    this.span = null;  // {lower, upper}: the ends of the slider
     this.spectrum = null; // area and volume against the isovalue
     this.curve = 'triangles'; // or 'area', 'volume_below'
     this.value = 0;
     this.marks = [];
     element.addEventListener('pointerdown', (event) => {
-      if (!this.chart || event.button !== 0) return;
+      if (!this.span || event.button !== 0) return;
       event.preventDefault();
       element.focus();
       try { element.setPointerCapture(event.pointerId); } catch { /* a pointer that is up already */ }
@@ -29,31 +30,34 @@ export class ChartSlider {
     new ResizeObserver(() => this.draw()).observe(element);
   }
 
-  range() { return this.chart ? this.chart.upper - this.chart.lower : 0; }
+  range() { return this.span ? this.span.upper - this.span.lower : 0; }
+
+  /** Part of the slider, 0 to 1 between its ends. */
+  part(value) { return (value - this.span.lower) / (this.range() || 1); }
 
   take(event) {
     const box = this.element.getBoundingClientRect();
     const part = Math.max(0, Math.min(1, (event.clientX - box.left) / box.width));
-    this.on.input(this.limited(roundTo(this.chart.lower + part * this.range(), this.range())));
+    this.on.input(this.limited(roundTo(this.span.lower + part * this.range(), this.range())));
   }
 
-  limited(value) { return Math.max(this.chart.lower, Math.min(this.chart.upper, value)); }
+  limited(value) { return Math.max(this.span.lower, Math.min(this.span.upper, value)); }
 
   /** Moves by so many 200ths of the range. */
   step(steps) {
-    if (!this.chart || !(this.range() > 0)) return;
+    if (!(this.range() > 0)) return;
     const fine = this.range() * Math.min(1, Math.abs(steps));
     this.on.input(this.limited(roundTo(this.value + steps * this.range() / 200, fine)));
     this.on.commit();
   }
 
   key(event) {
-    if (!this.chart || event.ctrlKey || event.altKey || event.metaKey) return;
+    if (!this.span || event.ctrlKey || event.altKey || event.metaKey) return;
     const fine = event.shiftKey ? 0.1 : 1;
     const steps = {ArrowLeft: -fine, ArrowDown: -fine, ArrowRight: fine, ArrowUp: fine, PageUp: 10, PageDown: -10}[event.key];
     if (steps) this.step(steps);
     else if (event.key === 'Home' || event.key === 'End') {
-      this.on.input(event.key === 'Home' ? this.chart.lower : this.chart.upper);
+      this.on.input(event.key === 'Home' ? this.span.lower : this.span.upper);
       this.on.commit();
     } else return;
     event.preventDefault();
@@ -62,10 +66,10 @@ export class ChartSlider {
 
   /** Triangles that are expected at a value; null where nothing is known. */
   expected(value) {
-    if (!this.chart || !(this.range() > 0)) return null;
-    const {triangles} = this.chart;
-    const at = Math.floor((value - this.chart.lower) / this.range() * triangles.length);
-    return triangles[Math.max(0, Math.min(triangles.length - 1, at))];
+    if (!this.chart || !(this.chart.lower < this.chart.upper)) return null;
+    const {lower, upper, triangles} = this.chart;
+    if (value < lower || value > upper) return 0;
+    return triangles[Math.min(triangles.length - 1, Math.floor((value - lower) / (upper - lower) * triangles.length))];
   }
 
   /** Area or volume at a value, between two that are exact; null where nothing is known. */
@@ -83,11 +87,11 @@ export class ChartSlider {
   /** The curve as points (part of the range, part of the largest). */
   line() {
     if (this.curve === 'triangles' || !this.spectrum) {
-      const {triangles} = this.chart, largest = Math.max(1, ...triangles);
-      return triangles.map((count, i) => [(i + 0.5) / triangles.length, count / largest]);
+      const {lower, upper, triangles} = this.chart, largest = Math.max(1, ...triangles);
+      return triangles.map((count, i) => [this.part(lower + (i + 0.5) / triangles.length * (upper - lower)), count / largest]);
     }
     const {isovalues} = this.spectrum, list = this.spectrum[this.curve], largest = Math.max(...list) || 1;
-    return list.map((one, i) => [(isovalues[i] - this.chart.lower) / (this.range() || 1), one / largest]);
+    return list.map((one, i) => [this.part(isovalues[i]), one / largest]);
   }
 
   set(value, marks) {
@@ -96,9 +100,9 @@ export class ChartSlider {
     const {element} = this;
     element.setAttribute('aria-valuenow', value);
     element.setAttribute('aria-valuetext', short(value));
-    if (this.chart) {
-      element.setAttribute('aria-valuemin', this.chart.lower);
-      element.setAttribute('aria-valuemax', this.chart.upper);
+    if (this.span) {
+      element.setAttribute('aria-valuemin', this.span.lower);
+      element.setAttribute('aria-valuemax', this.span.upper);
     }
     this.draw();
   }
@@ -111,24 +115,10 @@ export class ChartSlider {
     canvas.height = Math.round(height * ratio);
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     context.clearRect(0, 0, width, height);
-    if (!this.chart) return;
+    if (!this.span) return;
     const style = getComputedStyle(document.documentElement), color = (name) => style.getPropertyValue('--' + name).trim();
-    const base = height - 2, room = height - 14;
-    const {points} = this.chart;
-    // Square roots: bins with few points stay visible beside a bin with most of them.
-    const most = Math.sqrt(Math.max(1, ...points)), wide = width / points.length;
-    context.fillStyle = color('bars');
-    points.forEach((count, i) => {
-      const tall = room * Math.sqrt(count) / most;
-      if (count > 0) context.fillRect(i * wide, base - Math.max(1, tall), Math.max(1, wide - 0.5), Math.max(1, tall));
-    });
-    context.strokeStyle = color('curve');
-    context.lineWidth = 1.5;
-    context.lineJoin = 'round';
-    context.beginPath();
-    this.line().forEach(([x, y], i) => context[i ? 'lineTo' : 'moveTo'](x * width, base - room * y));
-    context.stroke();
-    const x = (value) => this.range() > 0 ? Math.round((value - this.chart.lower) / this.range() * (width - 2)) + 1 : width / 2;
+    if (this.chart) this.drawChart(width, height, color);
+    const x = (value) => this.range() > 0 ? Math.round(Math.max(0, Math.min(1, this.part(value))) * (width - 2)) + 1 : width / 2;
     for (const mark of this.marks) {
       context.fillStyle = mark.color;
       context.fillRect(x(mark.value) - 1, 10, 2, height - 10);
@@ -138,5 +128,23 @@ export class ChartSlider {
     context.beginPath();
     context.arc(x(this.value), 6, 5, 0, 2 * Math.PI);
     context.fill();
+  }
+
+  /** Histogram and curve, in their part of the slider. */
+  drawChart(width, height, color) {
+    const {context} = this, {points, lower, upper} = this.chart, base = height - 2, room = height - 14;
+    // Square roots: bins with few points stay visible beside a bin with most of them.
+    const most = Math.sqrt(Math.max(1, ...points)), wide = this.part(lower + (upper - lower) / points.length) - this.part(lower);
+    context.fillStyle = color('bars');
+    points.forEach((count, i) => {
+      const tall = room * Math.sqrt(count) / most, left = this.part(lower) + i * wide;
+      if (count > 0) context.fillRect(left * width, base - Math.max(1, tall), Math.max(1, wide * width - 0.5), Math.max(1, tall));
+    });
+    context.strokeStyle = color('curve');
+    context.lineWidth = 1.5;
+    context.lineJoin = 'round';
+    context.beginPath();
+    this.line().forEach(([x, y], i) => context[i ? 'lineTo' : 'moveTo'](x * width, base - room * y));
+    context.stroke();
   }
 }

@@ -23,7 +23,9 @@ export function showRange() {
   const scale = app.state.range ? {lower: app.state.range[0], upper: app.state.range[1]} : app.frame?.scale;
   for (const end of ['lower', 'upper']) {
     const input = id('range-' + end);
-    if (document.activeElement !== input) input.value = scale ? format.short(scale[end]) : '';
+    if (document.activeElement === input) continue;
+    input.value = scale ? format.short(scale[end]) : '';
+    input.removeAttribute('aria-invalid');
   }
 }
 

@@ -16,13 +16,15 @@ for (const kind of ['render', 'extract'])
   });
 
 export async function takeCommand(message) {
-  const text = message[copying] || '';
+  if (copying === null) return app.save.takeCommand(message);
+  const kind = copying, text = message[kind] || '';
+  copying = null;
   let copied = true;
   try { await navigator.clipboard.writeText(text); } catch { copied = false; }
-  const own = copying === 'render' && [app.state, ...app.state.pins].some((one) => one.color || (one.opacity !== null && one.opacity !== app.state.opacity));
+  const own = kind === 'render' && [app.state, ...app.state.pins].some((one) => one.color || (one.opacity !== null && one.opacity !== app.state.opacity));
   id('copied').textContent = text;
   id('copied').title = copied ? 'Copied' : 'The browser did not copy: select it';
-  id('copy-' + copying).textContent = copied ? 'Copied' : 'See below';
+  id('copy-' + kind).textContent = copied ? 'Copied' : 'See below';
   if (own) say('Colours and opacities of single surfaces are not part of isotet render.');
   setTimeout(() => { id('copy-render').textContent = 'Copy render'; id('copy-extract').textContent = 'Copy extract'; }, 1500);
 }
@@ -32,17 +34,25 @@ id('command').addEventListener('keydown', (event) => {
   app.link.send({do: 'paste', text: id('command').value});
 });
 
+/** What of a pasted command line was not taken. */
+function leftOut({left_out, other_file}) {
+  const parts = [];
+  if (other_file) parts.push(`The command is for ${other_file}; it is shown for this file.`);
+  if (left_out.length > 0) parts.push(`Not taken, as the page does not have it: ${left_out.join(', ')}`);
+  return parts.join(' ');
+}
+
 export function takeState(message) {
-  const next = fromMessage(message);
+  const next = fromMessage(message.state);
   if (!next.field) next.field = app.state.field;
   if (next.value === null && next.field === app.state.field) next.value = app.state.value;
   if (next.step === null) next.step = app.state.step;
   app.state = {...next, drawn: app.state.drawn};
   if (!app.state.camera) app.state.camera = app.camera.text();
   id('command').value = '';
-  say('');
   commit();
   commands.show();
+  say(leftOut(message));
 }
 
 /** As a command line has it: each isovalue once. */

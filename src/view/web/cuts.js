@@ -49,8 +49,8 @@ export class Cuts {
     if (document.activeElement !== slider) slider.value = offset;
     slider.setAttribute('aria-valuetext', short(this.told(normal, offset)));
     if (document.activeElement !== get('offset')) get('offset').value = short(this.told(normal, offset));
-    for (const [part, what] of [['axis', 'Direction'], ['normal', 'Normal'], ['place', 'Place'], ['offset', 'Place, typed,'], ['flip', 'Other side'], ['remove', 'Remove']])
-      get(part).setAttribute('aria-label', `${what} of ${name}`);
+    for (const [part, what] of [['axis', 'Direction'], ['normal', 'Normal'], ['place', 'Place'], ['offset', 'Place, typed,'], ['flip', 'Other side'], ['remove', '']])
+      get(part).setAttribute('aria-label', what ? `${what} of ${name}` : `Remove ${name}`);
   }
 
   /** Along -x the place is told as x. */

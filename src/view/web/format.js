@@ -1,11 +1,19 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Numbers for people.
 
-/** Six significant digits at most: 0.3127, 1.5e-7. */
-export function short(value) {
+/** Six significant digits at most, and a power of ten from a million on and below a ten thousandth: 0.3127, 1.5e-7, 3.64e14. */
+export const short = (value) => rounded(value, 6);
+
+export function rounded(value, digits) {
   if (!Number.isFinite(value)) return '–';
-  return String(Number(value.toPrecision(6)));
+  const size = Math.abs(value);
+  if (size === 0 || (size >= 1e-4 && size < 1e6)) return String(Number(value.toPrecision(digits)));
+  const [factor, power] = value.toExponential(digits - 1).split('e');
+  return `${Number(factor)}e${Number(power)}`;
 }
+
+/** Of a whole: 54 %, 0.3 %. */
+export const share = (part, whole) => (whole > 0 ? `${rounded(100 * part / whole, 2)} %` : '–');
 
 /** 1,234,567 */
 export function grouped(count) {
@@ -34,11 +42,13 @@ export function bytes(count) {
   return count + ' B';
 }
 
-/** A typed number, or null. */
-export function parseNumber(text) {
-  const trimmed = text.trim();
+/** A typed number, also with a decimal comma; "50 %" of a range {lower, upper}, where there is one. Else null. */
+export function parseNumber(text, range = null) {
+  const percent = range && text.trim().endsWith('%');
+  const trimmed = (percent ? text.trim().slice(0, -1) : text).trim().replace(/^([^.,]*),([^.,]*)$/, '$1.$2');
   const value = Number(trimmed);
-  return trimmed !== '' && Number.isFinite(value) ? value : null;
+  if (trimmed === '' || !Number.isFinite(value)) return null;
+  return percent ? range.lower + value / 100 * (range.upper - range.lower) : value;
 }
 
 /** Decimals that the hand can choose: a step is a 2000th of the range or more. */

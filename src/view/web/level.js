@@ -10,32 +10,49 @@ import {wishSoon} from './wishes.js';
 
 app.slider = new ChartSlider(id('slider'), id('chart'), {input: setValue, commit});
 
+const level = {
+  seen: new Map(),       // ranges: field -> step -> [lower, upper]
+  left: new Map(),       // what was shown of a field when another one was chosen
+  automatic: false,      // the value is that of a field that is constant, until a step has another
+  chart: '', spectrum: '', // that were asked for: step and field
+  empty: '',             // where no value is finite
+  msPerTriangle: null,   // of the server, by the last frames that it made
+};
+
 export function setValue(value) {
   app.state.value = value;
+  level.automatic = false;
   showValue();
   wishSoon();
 }
 
 export function showValue() {
-  if (document.activeElement !== id('value')) id('value').value = app.state.value === null ? '' : String(app.state.value);
-  id('value').removeAttribute('aria-invalid');
+  showSpan();
+  if (document.activeElement !== id('value')) {
+    id('value').value = app.state.value === null ? '' : String(app.state.value);
+    id('value').removeAttribute('aria-invalid');
+  }
   const rows = id('surfaces').children;
   if (rows.length > 0 && app.state.value !== null) rows[0].querySelector('.value').textContent = format.short(app.state.value);
   app.slider.set(app.state.value ?? 0, app.state.pins.map((pin, i) => ({value: pin.value, color: pinColor(i)})));
   const expected = app.state.value === null ? null : app.slider.expected(app.state.value);
-  const ms = expected === null || !msPerTriangle ? '' : `, ${format.duration(expected * msPerTriangle)}`;
-  id('prediction').textContent = expected === null ? '' : `About ${format.rough(expected)} triangles${ms} expected`;
+  const ms = expected === null || !level.msPerTriangle ? '' : `, ${format.duration(expected * level.msPerTriangle)}`;
+  id('prediction').textContent = expected === null ? '' : expected === 0 ? 'No triangles expected' : `About ${format.rough(expected)} triangles${ms} expected`;
   showMeasures();
 }
 
-/** What the server took for a triangle, by the last frames that it made. */
-let msPerTriangle = null;
 export function measureServer(made) {
   const triangles = made.surfaces.filter(({kind, mesh}) => kind === 'surface' && mesh).reduce((sum, one) => sum + one.triangles, 0);
   if (triangles < 1000 || made.picture) return;
   const now = (made.extract_ms + made.mesh_ms) / triangles;
-  msPerTriangle = msPerTriangle === null ? now : 0.7 * msPerTriangle + 0.3 * now;
+  level.msPerTriangle = level.msPerTriangle === null ? now : 0.7 * level.msPerTriangle + 0.3 * now;
 }
+
+/** Of fields that were shown before. */
+export const forgetValues = () => level.left.clear();
+
+/** Once the grid is packed, frames take another time. */
+export const forgetSpeed = () => { level.msPerTriangle = null; };
 
 /** Area and volume at the slider's value. */
 function showMeasures() {
@@ -46,24 +63,73 @@ function showMeasures() {
   if (!spectrum || app.state.value === null) { id('measures').textContent = 'Area and volume come when nothing moves'; return; }
   const [area, below] = ['area', 'volume_below'].map((name) => app.slider.measured(name, app.state.value));
   id('measures').textContent = area === null ? '' :
-    `Area ${area.toPrecision(4)}, volume below ${below.toPrecision(4)} of ${spectrum.volume.toPrecision(4)}`;
+    `Area ${format.rounded(area, 4)}, volume below ${format.rounded(below, 4)}: ${format.share(below, spectrum.volume)} of ${format.rounded(spectrum.volume, 4)}`;
 }
 
 id('curve').addEventListener('change', () => { app.slider.curve = id('curve').value; app.slider.draw(); });
 
+/** The range of a field in a step; nothing where it was not seen. */
+export const rangeOf = (field, step) => level.seen.get(field)?.get(step);
+
+function see(field, step, lower, upper) {
+  if (!level.seen.has(field)) level.seen.set(field, new Map());
+  if (lower <= upper) level.seen.get(field).set(step, [lower, upper]);
+}
+
+/** The ends of the slider: of the step that is shown, or of all that were seen. */
+function showSpan() {
+  const {slider, state, frame} = app, steps = level.seen.get(state.field) || new Map();
+  const many = app.time.times.length > 1, step = frame?.field === state.field ? frame.step : state.step;
+  const ranges = many && state.span === 'step' ? [steps.get(step)].filter(Boolean) : [...steps.values()];
+  slider.span = ranges.length === 0 ? null : {lower: Math.min(...ranges.map(([lower]) => lower)), upper: Math.max(...ranges.map(([, upper]) => upper))};
+  id('lower').textContent = slider.span ? format.short(slider.span.lower) : '';
+  id('upper').textContent = slider.span ? format.short(slider.span.upper) : level.empty === question() ? 'The field has no finite value' : '';
+  id('ends-of').textContent = !many || !slider.span ? '' : state.span === 'step' ? `step ${step}` :
+    steps.size === app.time.times.length ? 'all steps' : `${steps.size} of ${app.time.times.length} steps`;
+  Object.assign(document.body.dataset, {chart_step: slider.chart?.step ?? '', span: slider.span ? `${slider.span.lower} ${slider.span.upper}` : ''});
+}
+
+id('span').addEventListener('change', () => {
+  app.state.span = id('span').value;
+  showValue();
+  commit();
+});
+
+/** The chart belongs to one step: another one's is taken away, and asked for unless they play. */
+export function followStep() {
+  const {slider, state, frame, time} = app;
+  if (frame?.range) see(frame.field, frame.step, ...frame.range);
+  const step = frame?.field === state.field ? frame.step : state.step;
+  for (const kind of ['chart', 'spectrum'])
+    if (slider[kind] && (slider[kind].field !== state.field || (state.step !== null && slider[kind].step !== step))) slider[kind] = null;
+  if ((!slider.chart || state.value === null) && !time.playing && level.empty !== question()) askChart();
+  showValue();
+  askSpectrum();
+}
+
+const question = () => `${app.state.step}|${app.state.field}`;
+
 export function askChart() {
-  if (app.slider.chart?.field !== app.state.field) app.slider.chart = app.slider.spectrum = null; // the same field's serves until the new one is there
-  app.link.send({do: 'chart', field: app.state.field});
+  const wanted = question(), message = {do: 'chart', field: app.state.field};
+  if (app.state.step !== null) message.step = app.state.step;
+  if (level.chart !== wanted && app.link.send(message)) level.chart = wanted;
 }
 
 export function takeChart(chart) {
-  if (chart.field !== app.state.field) return;
-  app.slider.chart = chart.lower <= chart.upper ? chart : null;
-  id('lower').textContent = app.slider.chart ? format.short(chart.lower) : '';
-  id('upper').textContent = app.slider.chart ? format.short(chart.upper) : 'The field has no finite value';
-  if (app.state.value === null && app.slider.chart) {
-    app.state.value = chart.first;
+  const {slider, state} = app;
+  level.chart = '';
+  if (chart.lower <= chart.upper) see(chart.field, chart.step, chart.lower, chart.upper);
+  if (chart.field !== state.field || (state.step !== null && chart.step !== state.step)) return;
+  slider.chart = chart.lower <= chart.upper ? chart : null;
+  level.empty = slider.chart ? '' : question();
+  const varies = chart.lower < chart.upper;
+  if (state.value === null && slider.chart) {
+    state.value = chart.first;
+    level.automatic = !varies;
     history.replaceState(null, '', address());
+  } else if (level.automatic && varies) {
+    setValue(chart.first);
+    commitSoon();
   }
   showValue();
   askSpectrum();
@@ -71,27 +137,28 @@ export function takeChart(chart) {
 }
 
 /** Of the step that is shown, unless they play. */
-let spectrumAsked = '';
 export function askSpectrum() {
-  const step = app.frame?.step ?? 0, wanted = `${step}|${app.state.field}`;
-  if (!app.slider.chart || app.time.playing || spectrumAsked === wanted || (app.slider.spectrum?.field === app.state.field && app.slider.spectrum.step === step)) return;
-  if (app.link.send({do: 'spectrum', field: app.state.field})) spectrumAsked = wanted;
+  const {slider, state} = app, wanted = question();
+  if (!slider.chart || app.time.playing || level.spectrum === wanted || slider.spectrum?.field === state.field) return;
+  const message = {do: 'spectrum', field: state.field};
+  if (state.step !== null) message.step = state.step;
+  if (app.link.send(message)) level.spectrum = wanted;
 }
 
 /** Another connection knows of no question. */
-export const forgetQuestions = () => { spectrumAsked = ''; };
+export const forgetQuestions = () => { level.chart = level.spectrum = ''; };
 
 export function takeSpectrum(spectrum) {
-  spectrumAsked = '';
-  if (spectrum.field !== app.state.field || (app.frame && spectrum.step !== app.frame.step)) return;
+  level.spectrum = '';
+  if (spectrum.field !== app.state.field || (app.state.step !== null && spectrum.step !== app.state.step)) return;
   app.slider.spectrum = spectrum.isovalues.length > 0 ? spectrum : null;
   showValue();
 }
 
 function typed() {
-  const value = format.parseNumber(id('value').value);
+  const value = format.parseNumber(id('value').value, app.slider.span);
   id('value').setAttribute('aria-invalid', value === null);
-  if (value === null) return say('An isovalue is a number, such as 0.25 or 1e-3.');
+  if (value === null) return say('An isovalue is a number, such as 0.25 or 1e-3, or a part of the range, such as 50 %.');
   say('');
   setValue(value);
   commit();
@@ -103,11 +170,17 @@ id('value').addEventListener('keydown', (event) => {
 });
 id('value').addEventListener('blur', () => showValue());
 
+/** Another field has its own value and pins: those that it had, when it was shown before. */
 id('field').addEventListener('change', () => {
-  app.state.field = id('field').value;
-  app.state.value = null;
-  app.state.pins = [];
+  const {state} = app;
+  commit(); // what was shown last is a state of its own
+  level.left.set(state.field, {value: state.value, pins: state.pins});
+  Object.assign(state, {field: id('field').value, value: null, pins: []}, level.left.get(id('field').value));
+  app.slider.chart = app.slider.spectrum = null;
+  level.automatic = false;
+  commit();
   askChart();
+  showValue();
   showSurfaces();
-  commitSoon();
+  wishSoon();
 });

@@ -2,6 +2,7 @@
 // Standard views, and what is drawn beside the surfaces.
 import {app, aspect, id} from './app.js';
 import {showValue} from './level.js';
+import {say} from './notes.js';
 import {closePicked} from './picked.js';
 import {drawSoon} from './picture.js';
 import {commit, commitSoon} from './undo.js';
@@ -25,6 +26,18 @@ for (const button of document.querySelectorAll('[data-view]')) button.addEventLi
 id('parallel').addEventListener('change', () => { app.camera.setProjection(id('parallel').checked ? 'parallel' : 'perspective'); moved(); });
 for (const flag of ['edges', 'outline'])
   id(flag).addEventListener('change', () => { app.state[flag] = id(flag).checked; if (serverDraws()) wishSoon(); drawSoon(); commitSoon(); });
+id('labels-on').addEventListener('change', () => { app.state.labels = id('labels-on').checked; drawSoon(); commit(); });
+
+export function toggleFullScreen() {
+  if (document.fullscreenElement) document.exitFullscreen();
+  else document.documentElement.requestFullscreen().catch(() => say('The browser does not allow full screen here.'));
+}
+
+export const togglePanel = () => document.body.classList.toggle('wide');
+
+id('full-screen').addEventListener('click', toggleFullScreen);
+document.addEventListener('fullscreenchange', () => { id('full-screen').textContent = document.fullscreenElement ? 'Leave full screen' : 'Full screen'; });
+
 id('drawn-by').addEventListener('change', () => {
   app.state.drawn = id('drawn-by').value;
   app.sent = null;

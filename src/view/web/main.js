@@ -4,13 +4,14 @@ import {app, aspect, id} from './app.js';
 import {colorsChanged, showMap, showRange} from './colors.js';
 import {commands, takeCommand, takeState, wholeState} from './commands.js';
 import {Cuts} from './cuts.js';
+import {short} from './format.js';
 import './keys.js';
-import {askChart, forgetQuestions, showValue, takeChart, takeSpectrum} from './level.js';
+import {askChart, followStep, forgetQuestions, forgetSpeed, forgetValues, takeChart, takeSpectrum} from './level.js';
 import {Link} from './link.js';
 import {moved, showBoundary} from './looking.js';
-import {say} from './notes.js';
+import {say, showNotes} from './notes.js';
 import {pickAt, takePicked} from './picked.js';
-import {drawSoon, takeFrame} from './picture.js';
+import {drawSoon, pictureAsSeen, takeFrame} from './picture.js';
 import {Pointer} from './pointer.js';
 import {Save} from './save.js';
 import {Scene} from './scene.js';
@@ -29,6 +30,7 @@ function showState() {
   id('logarithmic').checked = app.state.logarithmic;
   id('outline').checked = app.state.outline;
   id('edges').checked = app.state.edges;
+  id('labels-on').checked = app.state.labels;
   id('parallel').checked = app.camera.projection === 'parallel';
   id('color-details').hidden = !app.state.colorBy;
   id('drawn-by').value = app.scene ? app.state.drawn : 'server';
@@ -39,8 +41,8 @@ function showState() {
   app.time.show(app.state.step ?? 0);
   showMap();
   showRange();
-  if (app.slider.chart?.field !== app.state.field) askChart();
-  showValue();
+  id('span').value = app.state.span;
+  followStep();
   showSurfaces();
   wishSoon();
   drawSoon();
@@ -62,7 +64,7 @@ app.cuts = new Cuts(id('cuts'), {slice: id('add-slice'), clip: id('add-clip')}, 
 });
 
 app.time = new TimeSteps({section: id('time'), slider: id('step'), label: id('step-text'), play: id('play')}, {
-  step: () => app.state.step ?? 0, commit,
+  step: () => app.state.step ?? 0, commit, rest: followStep,
   go(step) {
     if (step < 0 || step >= app.time.times.length) return;
     app.state.step = step;
@@ -72,9 +74,27 @@ app.time = new TimeSteps({section: id('time'), slider: id('step'), label: id('st
   },
 });
 
-app.save = new Save({state: wholeState, send: (message) => app.link.send(message),
+/** "artery-Umag-0.2", of letters that every system takes. */
+const fileName = () => [id('file').textContent.replace(/\.[a-z0-9]+$/i, ''), app.state.field, app.state.value === null ? '' : short(app.state.value)].filter(Boolean)
+  .join('-').replace(/[^A-Za-z0-9._+=-]+/g, '_').replace(/^[.]+/, '').slice(0, 80);
+
+app.save = new Save({state: wholeState, send: (message) => app.link.send(message), name: fileName, seen: pictureAsSeen, steps: () => app.time.times.length,
   size: () => [id('scene').clientWidth, id('scene').clientHeight].map((side) => Math.round(side * Math.max(1, window.devicePixelRatio))),
-  range: () => (app.slider.chart ? [app.slider.chart.lower, app.slider.chart.upper] : [0, 1])});
+  range: () => (app.slider.span ? [app.slider.span.lower, app.slider.span.upper] : [0, 1])});
+
+/** As at the start; the browser's Back leads to what was shown. */
+id('reset').addEventListener('click', () => {
+  if (!app.grid) return;
+  commit();
+  app.time.stop();
+  app.state = fromMessage(app.grid.state);
+  app.camera.look('oblique');
+  app.camera.setProjection('perspective');
+  forgetValues();
+  say('');
+  showState();
+  commit();
+});
 
 onReturn(showState);
 commands.show = showState;
@@ -91,14 +111,14 @@ function takeGrid(message) {
   app.time.set(app.grid.times);
   const names = app.grid.fields.map(({name}) => name), start = fromMessage(app.grid.state);
   const fresh = !app.state.field || !names.includes(app.state.field);
-  if (fresh) app.state = {...start, camera: app.state.camera};
+  if (fresh) app.state = {...start, camera: app.state.camera, labels: app.state.labels, drawn: app.state.drawn};
   if (app.grid.times.length < 2) app.state.step = null;
   else if (app.state.step === null || app.state.step >= app.grid.times.length) app.state.step = start.step;
   if (!names.includes(app.state.field)) names.unshift(app.state.field);
   const label = (name) => [name, name + (app.grid.fields.find((one) => one.name === name)?.cell ? ' (cells)' : '')];
   fill(id('field'), names.map(label), app.state.field);
   fill(id('color-by'), [['', 'Surface'], ...names.map(label)], app.state.colorBy);
-  say(app.grid.notes.join(' '), 0);
+  showNotes();
   document.body.dataset.grid = `${app.grid.points} points, ${app.grid.cells} cells`;
   showState();
   if (fresh) history.replaceState(null, '', address());
@@ -113,6 +133,7 @@ function takeProgress({step, fraction}) {
   if (fraction > 0) id('progress-bar').value = fraction;
   else id('progress-bar').removeAttribute('value');
   document.body.dataset.step = step;
+  if (step === 'ready') forgetSpeed();
   if (step === 'ready' && app.grid) wishSoon(); // the boundary is there
 }
 
@@ -134,13 +155,15 @@ const messages = {
   spectrum: takeSpectrum,
   command: takeCommand,
   picked: takePicked,
-  state: (message) => takeState(message.state),
+  state: takeState,
   refused(message) {
     if (message.number >= app.number) stopWaiting();
+    app.sentAt.delete(message.number);
     app.sent = null;
-    say(message.sentence, message.number);
+    say(message.sentence);
   },
-  saved: (message) => app.save.tell(`Saved: ${message.path}`),
+  saved: (message) => app.save.done(`Saved: ${message.path}`),
+  download: (message) => app.save.begin(message),
   error: (message) => (message.about === 'save' ? app.save.tell(message.sentence) : say(message.sentence)),
 };
 
@@ -152,17 +175,23 @@ try {
 }
 
 app.link = new Link(app.token, {
-  open: () => { id('link').textContent = ''; document.body.dataset.link = 'open'; },
-  lost: () => {
+  open: () => { id('lost').hidden = true; document.body.dataset.link = 'open'; },
+  waits: () => app.sentAt.size > 0 || app.save.file !== null,
+  lost: (refused) => {
     // Another connection begins without surfaces: all are sent again.
     app.sent = null;
     forgetQuestions();
+    app.save.lost();
     stopWaiting();
-    id('link').textContent = 'No connection: trying again';
+    app.sentAt.clear();
+    id('lost').textContent = refused === 'file' ? 'isotet view has ended.' :
+      'No connection to isotet view: what is chosen now is shown when it is back. Trying again … If it was ended, start it again.';
+    id('lost').hidden = refused === 'token' || refused === 'pages';
     document.body.dataset.link = 'lost';
   },
   text: (message) => messages[message.say]?.(message),
   frame: takeFrame,
+  part: (bytes) => app.save.takePart(bytes),
 });
 
 new Pointer(id('scene'), app.camera, () => (serverDraws() ? null : app.scene), {

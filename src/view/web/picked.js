@@ -9,7 +9,7 @@ export function pickAt(x, y) {
   if (serverDraws()) {
     if (!app.grid?.lower) return;
     const [point, ray] = app.camera.ray(x, y, aspect(), app.grid.lower, app.grid.upper);
-    app.picked = {point: null, isovalue: null};
+    app.picked = {point: null, isovalue: null, key: null, field: app.frame?.field, step: app.frame?.step};
     app.link.send({do: 'pick', state: {...toMessage(app.state), camera: undefined}, point, ray});
     return;
   }
@@ -20,7 +20,8 @@ export function pickAt(x, y) {
   if (surface.kind === 'slice') message.slice = app.frame.surfaces.filter(({kind}) => kind === 'slice').findIndex(({key}) => key === surface.key);
   else message.state.isovalues = [surface.isovalue];
   if (message.slice >= message.state.slices.length) return;
-  app.picked = {point, isovalue: surface.kind === 'slice' ? null : surface.isovalue};
+  app.picked = {point, isovalue: surface.kind === 'slice' ? null : surface.isovalue, key: surface.kind === 'slice' ? surface.key : null,
+    field: app.frame.field, step: app.frame.step};
   app.link.send(message);
 }
 
@@ -43,6 +44,15 @@ export function takePicked(message) {
   id('picked').hidden = false;
   document.body.dataset.picked = JSON.stringify(message);
   placeMark();
+}
+
+/** The point belongs to a surface that is shown: it goes with it. */
+export function checkPicked() {
+  const {picked, frame} = app;
+  if (!picked || picked.point === null) return;
+  const {isovalue, key, field, step} = picked, has = (fits) => frame.surfaces.some(fits);
+  const there = key === null || frame.picture ? isovalue === null || has((one) => one.kind === 'surface' && one.isovalue === isovalue) : has((one) => one.key === key);
+  if (!there || frame.step !== step || frame.field !== field) closePicked();
 }
 
 export function closePicked() {

@@ -3,10 +3,11 @@
 import {app, aspect, css, id} from './app.js';
 import {showRange} from './colors.js';
 import * as format from './format.js';
-import {askSpectrum, measureServer} from './level.js';
+import {followStep, measureServer, rangeOf} from './level.js';
+import {paintLabels, showLabels} from './labels.js';
 import {readFrame} from './link.js';
 import {showNotes} from './notes.js';
-import {placeMark} from './picked.js';
+import {checkPicked, placeMark} from './picked.js';
 import {planesOf} from './state.js';
 import {showSurfaces} from './surfaces.js';
 import {measureLine, measureSpeed, noteSize, pictureSize, refineSoon, restSoon, serverDraws, stopWaiting, wishSoon} from './wishes.js';
@@ -44,6 +45,7 @@ function draw() {
   if (serverDraws()) {
     drawAxes();
     placeMark();
+    showLabels();
     document.body.dataset.camera = app.camera.text();
     if (app.frame && !app.frame.picture) {
       acknowledge(app.frame);
@@ -62,9 +64,11 @@ function draw() {
   placeMark();
   drawAxes();
   app.scene.finish();
+  id('stage').classList.add('drawn');
   const took = performance.now() - start;
   if (app.scene.scale === 1) slow = took > 50;
   measureSpeed(took);
+  showLabels();
   if (app.frame && !app.frame.acknowledged) {
     app.frame.draw_ms = took;
     app.frame.age_ms = performance.now() - (app.sentAt.get(app.frame.number) ?? start);
@@ -73,10 +77,29 @@ function draw() {
     tellFacts();
     app.time.shown(app.frame.step);
     measureServer(app.frame);
-    askSpectrum();
+    followStep();
     refineSoon();
   }
   document.body.dataset.camera = app.camera.text();
+}
+
+/** What the stage shows, with the pixels of the screen. */
+export function pictureAsSeen() {
+  const canvas = document.createElement('canvas'), context = canvas.getContext('2d');
+  [canvas.width, canvas.height] = pictureSize();
+  context.fillStyle = css('scene');
+  context.fillRect(0, 0, canvas.width, canvas.height);
+  if (serverDraws()) context.drawImage(id('picture'), 0, 0);
+  else {
+    resting = true;
+    draw(); // what was drawn is there until the browser shows it
+    context.drawImage(id('scene'), 0, 0, canvas.width, canvas.height);
+  }
+  const ratio = window.devicePixelRatio || 1;
+  context.scale(ratio, ratio);
+  paintLabels(context, canvas.width / ratio, canvas.height / ratio);
+  paintAxes(context, 46, canvas.height / ratio - 46);
+  return canvas;
 }
 
 export function drawSoon() {
@@ -85,12 +108,36 @@ export function drawSoon() {
   requestAnimationFrame(draw);
 }
 
+/** Ends of the axes, the nearest one last. */
+function axes() {
+  const right = app.camera.right(), colors = ['#d1495b', '#3a9d5d', '#3f7cc4'];
+  return [0, 1, 2].map((i) => ({x: right[i], y: -app.camera.up[i], z: app.camera.direction[i], name: 'xyz'[i], color: colors[i]})).sort((a, b) => a.z - b.z);
+}
+
 function drawAxes() {
-  const right = app.camera.right(), ends = [0, 1, 2].map((i) => [right[i], -app.camera.up[i], app.camera.direction[i]]);
-  const colors = ['#d1495b', '#3a9d5d', '#3f7cc4'];
-  id('axes').innerHTML = ends.map(([x, y, z], i) => ({x, y, z, i})).sort((a, b) => a.z - b.z).map(({x, y, i}) =>
-    `<line x2="${22 * x}" y2="${22 * y}" stroke="${colors[i]}" stroke-width="2.5" stroke-linecap="round"/>` +
-    `<text x="${30 * x}" y="${30 * y}">${'xyz'[i]}</text>`).join('');
+  id('axes').innerHTML = axes().map(({x, y, name, color}) =>
+    `<line x2="${22 * x}" y2="${22 * y}" stroke="${color}" stroke-width="2.5" stroke-linecap="round"/>` +
+    `<text x="${30 * x}" y="${30 * y}">${name}</text>`).join('');
+}
+
+/** The same in a picture. */
+function paintAxes(context, left, top) {
+  Object.assign(context, {lineWidth: 2.5, lineCap: 'round', textAlign: 'center', textBaseline: 'middle', font: '600 11px system-ui, "DejaVu Sans", sans-serif'});
+  for (const {x, y, name, color} of axes()) {
+    context.strokeStyle = color;
+    context.beginPath();
+    context.moveTo(left, top);
+    context.lineTo(left + 22 * x, top + 22 * y);
+    context.stroke();
+    context.fillStyle = css('soft');
+    context.fillText(name, left + 30 * x, top + 30 * y);
+  }
+}
+
+/** The range of the field, where a value is not in it. */
+function outside(value) {
+  const {field, step} = app.frame, [lower, upper] = rangeOf(field, step) || [];
+  return lower === undefined || (value >= lower && value <= upper) ? '' : `${field} is ${format.short(lower)} to ${format.short(upper)}`;
 }
 
 function tellFacts() {
@@ -99,7 +146,7 @@ function tellFacts() {
   const drawn = isosurfaces().reduce((sum, one) => sum + (app.scene?.meshes.get(one.key)?.count || 0) / 3, 0);
   id('shown').textContent = first ? `${format.short(first.isovalue)} shown` : 'No surface';
   const parts = [`${format.grouped(triangles)} triangles` + (app.frame.preview && !app.frame.picture ? `, preview of ${format.rough(drawn)}` : '')];
-  if (triangles === 0 && first) parts[0] = 'no triangles at this value';
+  if (triangles === 0 && first) parts[0] = ['no triangles at this value', outside(first.isovalue)].filter(Boolean).join(': ');
   const {picture} = app.frame;
   if (picture) parts.push(`drawn by the server (${serverDraws() || 'until now'}): ${picture.type === 'image/png' ? 'exact' : 'while it moves'}, ${picture.width} × ${picture.height}`);
   parts.push(`extract ${format.duration(app.frame.extract_ms)}`, `${picture ? 'draw and encode' : 'encode'} ${format.duration(app.frame.mesh_ms)}`, format.bytes(app.frame.bytes),
@@ -126,7 +173,6 @@ async function takePicture(next) {
   // A pixel of the picture is one of the screen, also where the stage has a part of a pixel more.
   ['width', 'height'].forEach((side, i) => { canvas.style[side] = `${pictureSize()[i] / (window.devicePixelRatio || 1)}px`; });
   canvas.hidden = !serverDraws();
-  next.field = app.state.field;
   next.draw_ms = performance.now() - start;
   next.age_ms = performance.now() - (app.sentAt.get(next.number) ?? start);
   for (const old of app.sentAt.keys()) if (old <= next.number) app.sentAt.delete(old);
@@ -135,13 +181,14 @@ async function takePicture(next) {
   acknowledge(app.frame);
   if (next.number >= app.number) stopWaiting();
   showNotes(next);
+  checkPicked();
   showSurfaces();
   showRange();
   tellFacts();
   drawSoon();
   if (next.preview && next.number >= app.number) restSoon();
   app.time.shown(next.step);
-  askSpectrum();
+  followStep();
 }
 
 /** The server sends no more than two frames ahead: each is acknowledged once, also one that is replaced before it is drawn. */
@@ -162,10 +209,10 @@ export function takeFrame(buffer) {
   const keep = new Set(next.surfaces.map(({key}) => key));
   for (const key of [...app.scene.meshes.keys()]) if (!keep.has(key)) app.scene.remove(key);
   for (const {key, mesh} of next.surfaces) if (mesh) app.scene.add(key, mesh);
-  next.field = app.state.field;
   app.frame = next;
   if (next.number >= app.number) stopWaiting();
   showNotes(next);
+  checkPicked();
   showSurfaces();
   showRange();
   drawSoon();

@@ -6,6 +6,8 @@ export const firstState = () => ({
   color: null, opacity: null,       // of the surface that the slider moves
   colorBy: '', map: 'viridis', range: null, logarithmic: false, outline: false, edges: false, camera: null,
   boundary: 0.1, planes: [], step: null, drawn: '', // 'server': pictures, 'browser': never
+  labels: true, // scale, field, isovalue and time in the scene
+  span: '', // of the slider: 'step', else all steps that were seen
   // planes: [{kind: 'clip' or 'slice', normal, offset}]
 });
 
@@ -30,6 +32,8 @@ export function toAddress(state) {
   for (const {kind, normal, offset} of state.planes) parts.append(kind, [...normal, offset].join(','));
   if (state.step !== null) parts.set('step', state.step);
   if (state.drawn) parts.set('drawn', state.drawn);
+  if (state.span) parts.set('span', state.span);
+  if (!state.labels) parts.set('labels', 0);
   if (state.camera) parts.set('camera', state.camera);
   return parts.toString();
 }
@@ -65,6 +69,8 @@ export function fromAddress(text) {
   const step = number(parts.get('step'));
   if (step !== null && Number.isInteger(step) && step >= 0) state.step = step;
   if (['server', 'browser'].includes(parts.get('drawn'))) state.drawn = parts.get('drawn');
+  if (parts.get('span') === 'step') state.span = 'step';
+  state.labels = parts.get('labels') !== '0';
   state.camera = parts.get('camera');
   return state;
 }

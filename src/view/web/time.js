@@ -3,7 +3,7 @@
 import {short} from './format.js';
 
 export class TimeSteps {
-  /** @param on  {step(): shown, go(step), commit()} */
+  /** @param on  {step(): shown, go(step), commit(), rest(): no longer playing} */
   constructor({section, slider, label, play}, on) {
     Object.assign(this, {section, slider, label, button: play, on, times: [], playing: false});
     slider.addEventListener('input', () => { this.stop(); on.go(Number(slider.value)); });
@@ -36,9 +36,11 @@ export class TimeSteps {
   }
 
   stop() {
+    if (!this.playing) return;
     this.playing = false;
     clearTimeout(this.timer);
     this.button.textContent = 'Play';
+    this.on.rest();
   }
 
   /** A frame of this step is on the screen: the next one follows, 8 a second at most. */

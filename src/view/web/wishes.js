@@ -2,7 +2,6 @@
 // What the page asks the server for, and how much of it it can take.
 import {app, id} from './app.js';
 import * as format from './format.js';
-import {drawSoon} from './picture.js';
 import {planesOf, toMessage} from './state.js';
 
 /** Why the server draws, or nothing where the browser does. */
@@ -100,5 +99,6 @@ export function refineSoon() {
   if (app.frame.number !== app.number || app.sent !== wanted() + '|rest') return;
   const message = {do: 'refine', number: app.number + 1, state: toMessage(app.state), most: measured.lastMost};
   delete message.state.camera;
-  if (app.link.send(message)) app.sentAt.set(++app.number, performance.now());
+  if (!app.link.send(message)) return;
+  app.sentAt.set(++app.number, performance.now());
 }
