@@ -319,18 +319,21 @@ void add_view(const Command& program, ViewCommand& view) {
     command.add_text("--color-by", view.color_by, "FIELD", "Colour by this point or cell field to begin with");
     command.add_count(
         "--port", {1, 65535}, [&](std::uint64_t n) { view.port = n; }, "N",
-        "The port of 127.0.0.1 to serve the page at; default: a free one");
+        "The port of 127.0.0.1 to serve the page at; default: that of the last run with this file, or a free one");
     command.add_texts(
         "--allow-host",
         [&](const std::vector<std::string>& names) { view.hosts.insert(view.hosts.end(), names.begin(), names.end()); },
         "NAME", "A name by which browsers reach the page, of a proxy say, beside localhost; may be repeated");
     command.add_file(
         "--out", view.out, "FOLDER",
-        "A folder into which the page may save pictures, surfaces and animations, by name; default: none");
+        "A folder into which the page may save pictures, surfaces and animations, by name; without it, it downloads "
+        "them");
     command.add_text("--listen", view.listen, "ADDRESS",
                      "Serve at this address of the machine, 0.0.0.0 for all, instead of 127.0.0.1: whoever knows the "
                      "printed address can look, over an open line; or unix:PATH, a socket that only you can open");
-    command.add_flag("--keep", view.keep, "Keep running after the last page was closed; default: end after a minute");
+    command.add_flag("--keep", view.keep,
+                     "Keep running after the last page was closed; default: end after a minute, or half an hour after it "
+                     "was lost");
     command.add_flag("--no-browser", view.no_browser, "Open no browser: only print the address");
     add_refinement(command, view.refine);
     add_time(command, view.grid);
