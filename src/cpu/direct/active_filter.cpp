@@ -237,9 +237,10 @@ private:
     template <std::size_t n, class Index>
     void take(std::uint8_t type, std::uint64_t first_cell, const Index* corners,
               const std::array<std::uint64_t, cells_at_once / 64>& keep) {
+        if (std::ranges::all_of(keep, [](std::uint64_t word) { return word == 0; })) return;
         std::size_t count = 0;
         for (const std::uint64_t word : keep) count += static_cast<std::size_t>(std::popcount(word));
-        if (count == 0 || broken_) return;
+        if (broken_) return;
         Kept& kept = kept_.local();
         Point* const room = kept.room(n * count);
         Point* next = room;

@@ -97,7 +97,8 @@ std::vector<PointUse> ActivePass::use() const {
 }
 
 bool ActivePass::uses_all_points() const {
-    return std::all_of(numbers_.begin(), numbers_.begin() + points_, [](std::uint32_t number) { return (number & used_bit) != 0; });
+    const auto is_used = [](std::uint32_t number) { return (number & used_bit) != 0; };
+    return std::all_of(numbers_.begin(), numbers_.begin() + points_, is_used);
 }
 
 template <class Index>
