@@ -13,6 +13,7 @@
 #include <isotet/check.hpp>
 #include <isotet/parts.hpp>
 #include <isotet/read.hpp>
+#include <isotet/reduce.hpp>
 #include <isotet/surface.hpp>
 #include <isotet/write.hpp>
 
@@ -156,6 +157,13 @@ void add_surfaces(nb::module_& module) {
             });
         },
         "surface"_a, "kept"_a, "call"_a);
+
+    module.def(
+        "reduce",
+        [](const Surface& surface, double share, double error, const CallOptions& options) {
+            return call(options, [&](const Run& run) { return reduce(surface, {share, error}, run); }).surface;
+        },
+        "surface"_a, "share"_a, "error"_a, "call"_a);
 
     module.def(
         "write_surface",

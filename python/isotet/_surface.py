@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
@@ -153,6 +154,21 @@ class Surface:
             raise ValueError(f"part {min(numbers)} is asked for, but parts are counted from 0")
         return Surface._of(_isotet.keep_parts(self._surface, numbers, call_options(threads, progress)), dict(self._how))
 
+    def reduce(
+        self, share: float = 0.9, error: float | None = None, *, threads: int = 0, progress: Progress | None = None
+    ) -> Surface:
+        """The surface with fewer triangles: vertices are left out where that moves it least, by meshoptimizer.
+
+        share: of the triangles that may go, from 0 to below 1
+        error: how far the surface may move, in units of the grid, by meshoptimizer's measure: a mean, no bound
+
+        Vertices that stay keep their point fields; closed surfaces stay closed, and cell fields but isovalue, part and
+        boundary, edge_ends and source_cells are left out.
+        """
+        most = math.inf if error is None else float(error)
+        reduced = _isotet.reduce(self._surface, share, most, call_options(threads, progress))
+        return Surface._of(reduced, dict(self._how))
+
     def write(
         self,
         path: str | os.PathLike[str],
@@ -161,7 +177,7 @@ class Surface:
         compression: str = "none",
         progress: Progress | None = None,
     ) -> list[str]:
-        """Writes the surface: .vtp, .ply, .stl, .obj, .vtk (legacy) or .ts (Gocad), whole or not at all.
+        """Writes the surface: .vtp, .ply, .stl, .3mf, .obj, .glb, .usda, .vtk (legacy) or .ts (Gocad), whole or not at all.
 
         compression, of .vtp only: "zlib", which every VTK reads, or "lz4", which is read faster.
 
@@ -304,7 +320,7 @@ def check(surface: Surface, *, grid: Grid | None = None, field=None, closed: boo
 
 
 def read_surface(path: str | os.PathLike[str], *, format: str = "", progress: Progress | None = None) -> Surface:
-    """Reads a surface from the file at `path`: VTP, PLY, STL, OBJ, legacy VTK, Gocad TSurf; of the
+    """Reads a surface from the file at `path`: VTP, PLY, STL, 3MF, OBJ, legacy VTK, Gocad TSurf; of the
     `format` that is named, or found out.
 
     Raises OSError where the file cannot be read, ValueError where its content is broken.

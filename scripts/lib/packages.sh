@@ -1,7 +1,7 @@
 # Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 # The Debian packages that the project needs, and how missing ones get onto a Debian 12. Sourced, never run.
 
-readonly packages_to_build=(g++ cmake ninja-build libtbb-dev libfmt-dev libfreetype-dev libpng-dev libwebp-dev libcli11-dev nlohmann-json3-dev libboost-dev libjpeg62-turbo-dev
+readonly packages_to_build=(g++ cmake ninja-build libtbb-dev libfmt-dev libmeshoptimizer-dev libfreetype-dev libpng-dev libwebp-dev libcli11-dev nlohmann-json3-dev libboost-dev libjpeg62-turbo-dev
     libpugixml-dev libdeflate-dev liblz4-dev liblzma-dev
     libvtk9-dev libhdf5-dev glslc libvulkan-dev)
 # What the software Vulkan device of software_vulkan.sh is linked with.

@@ -27,7 +27,7 @@ link() {
         return 1
     fi
 }
-link isotet -ltbb -lfmt -lpthread
+link isotet -ltbb -lfmt -lmeshoptimizer -lpthread
 link isotet_vulkan -lisotet -lfmt -ldl
 link isotet_render -lisotet_vulkan -lisotet -lfmt -lfreetype
 link isotet_io -lisotet -lfmt -lpng -lwebpmux -lwebp -ldeflate -llz4 -llzma -lpugixml -ldl

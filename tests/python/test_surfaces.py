@@ -451,6 +451,10 @@ def test_parts_are_told_and_kept():
     assert len(table) > 1 and [part["area"] for part in table] == sorted((part["area"] for part in table), reverse=True)
     assert table[0]["means"]["gyroid"] == pytest.approx(0.95, abs=1e-3)
     largest = surface.keep_parts()
+    reduced = largest.reduce(0.5)
+    assert 0 < len(reduced.triangles) < 0.6 * len(largest.triangles)
+    with pytest.raises(ValueError, match="share"):
+        largest.reduce(1)
     assert len(largest.triangles) == table[0]["triangles"]
     assert set(largest.cell_fields["part"]) == {0}
     assert len(surface.keep_parts(range(len(table))).triangles) == len(surface.triangles)

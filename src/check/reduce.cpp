@@ -1,0 +1,203 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/reduce.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <span>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+#include <fmt/core.h>
+#include <meshoptimizer.h>
+
+#include "base/carry_out.hpp"
+#include "base/errors.hpp"
+#include "base/memory.hpp"
+#include "check/mesh.hpp"
+#include "check/surface_rows.hpp"
+#include "check/triangle_groups.hpp"
+
+namespace isotet {
+namespace checking {
+namespace {
+
+constexpr std::array<std::string_view, 3> kept_fields{"isovalue", "part", "boundary"};
+constexpr std::uint64_t bytes_a_triangle = 150;
+
+bool is_kept(const Field& field) { return std::ranges::find(kept_fields, field.name) != kept_fields.end(); }
+
+/// Triangles of one group with vertices numbered from 0: what meshoptimizer takes.
+struct Piece {
+    std::vector<std::uint64_t> vertices; ///< ascending: those of the surface
+    std::vector<unsigned> indices;
+    std::vector<float> positions; ///< relative to the first vertex
+};
+
+Piece piece_of(const Mesh& mesh, std::span<const std::uint64_t> triangles) {
+    Piece piece;
+    piece.vertices.reserve(3 * triangles.size());
+    for (const std::uint64_t triangle : triangles)
+        for (const std::uint64_t vertex : mesh.corners(triangle)) piece.vertices.push_back(vertex);
+    std::ranges::sort(piece.vertices);
+    piece.vertices.erase(std::ranges::unique(piece.vertices).begin(), piece.vertices.end());
+    piece.indices.reserve(3 * triangles.size());
+    for (const std::uint64_t triangle : triangles)
+        for (const std::uint64_t vertex : mesh.corners(triangle))
+            piece.indices.push_back(
+                static_cast<unsigned>(std::ranges::lower_bound(piece.vertices, vertex) - piece.vertices.begin()));
+    const core::Point origin = mesh.position(piece.vertices.front());
+    piece.positions.reserve(3 * piece.vertices.size());
+    for (const std::uint64_t vertex : piece.vertices) {
+        const core::Point place = mesh.position(vertex);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            piece.positions.push_back(static_cast<float>(place[axis] - origin[axis]));
+    }
+    return piece;
+}
+
+/// Leaves fewer indices; returns the error in units of the grid.
+double simplify(Piece& piece, const ReduceOptions& options) {
+    constexpr std::size_t stride = 3 * sizeof(float);
+    const auto scale =
+        static_cast<double>(meshopt_simplifyScale(piece.positions.data(), piece.vertices.size(), stride));
+    const double limit = scale > 0 ? std::min(options.error / scale, 1.0) : 0;
+    const std::size_t triangles = piece.indices.size() / 3;
+    const auto wanted = static_cast<std::size_t>(std::ceil(static_cast<double>(triangles) * (1 - options.share)));
+    float reached = 0;
+    const std::size_t left = meshopt_simplify(piece.indices.data(), piece.indices.data(), piece.indices.size(),
+                                              piece.positions.data(), piece.vertices.size(), stride, 3 * wanted,
+                                              static_cast<float>(limit), meshopt_SimplifyLockBorder, &reached);
+    piece.indices.resize(left);
+    return static_cast<double>(reached) * scale;
+}
+
+/// What of the surface is left: triangles by numbers of its vertices, and for each a triangle of the surface that is of
+/// the same group.
+struct Left {
+    std::vector<std::uint64_t> corners, like;
+};
+
+/// Takes away pairs of triangles on the same corners, back to back: where both sides of a border lost the vertices between
+/// the same three of its own.
+void cancel_double_sheets(Left& left) {
+    struct Sheet {
+        Corners corners; ///< ascending
+        bool mirrored;
+        std::uint64_t triangle;
+
+        bool operator<(const Sheet& other) const {
+            return std::tie(corners, mirrored, triangle) < std::tie(other.corners, other.mirrored, other.triangle);
+        }
+    };
+    std::vector<Sheet> sheets(left.like.size());
+    for (std::uint64_t i = 0; i < sheets.size(); ++i) {
+        const Corners c = lowest_first({left.corners[3 * i], left.corners[3 * i + 1], left.corners[3 * i + 2]});
+        const bool mirrored = c[1] > c[2];
+        sheets[i] = {{c[0], std::min(c[1], c[2]), std::max(c[1], c[2])}, mirrored, i};
+    }
+    std::ranges::sort(sheets, std::less<>());
+    std::vector<std::uint8_t> gone(sheets.size());
+    for (std::size_t begin = 0, end = 0; begin < sheets.size(); begin = end) {
+        while (end < sheets.size() && sheets[end].corners == sheets[begin].corners) ++end;
+        // Upright ones stand first: the outermost pair is one of each until one kind is used up.
+        for (std::size_t a = begin, b = end; a < b && !sheets[a].mirrored && sheets[b - 1].mirrored; ++a, --b)
+            gone[sheets[a].triangle] = gone[sheets[b - 1].triangle] = 1;
+    }
+    Left kept;
+    for (std::size_t i = 0; i < gone.size(); ++i) {
+        if (gone[i]) continue;
+        kept.corners.insert(kept.corners.end(), &left.corners[3 * i], &left.corners[3 * i] + 3);
+        kept.like.push_back(left.like[i]);
+    }
+    left = std::move(kept);
+}
+
+/// The vertices that are left, with what belongs to them, and the new triangles.
+Surface surface_of(const Surface& surface, const Left& left) {
+    std::vector<std::uint64_t> vertices = left.corners;
+    std::ranges::sort(vertices);
+    vertices.erase(std::ranges::unique(vertices).begin(), vertices.end());
+    Surface out;
+    out.positions = rows_of(surface.positions, vertices);
+    std::vector<std::uint32_t> triangles(left.corners.size());
+    for (std::size_t i = 0; i < triangles.size(); ++i)
+        triangles[i] =
+            static_cast<std::uint32_t>(std::ranges::lower_bound(vertices, left.corners[i]) - vertices.begin());
+    out.triangles = Array::own(std::move(triangles), 3);
+    if (surface.normals_kind == Normals::gradient) {
+        out.normals_kind = Normals::gradient;
+        out.normals = rows_of(surface.normals, vertices);
+    }
+    for (const Field& field : surface.point_fields)
+        out.point_fields.push_back({field.name, rows_of(field.values, vertices)});
+    for (const Field& field : surface.cell_fields)
+        if (is_kept(field)) out.cell_fields.push_back({field.name, rows_of(field.values, left.like)});
+    return out;
+}
+
+std::vector<std::string> left_out_of(const Surface& surface) {
+    std::vector<std::string> names;
+    for (const Field& field : surface.cell_fields)
+        if (!is_kept(field)) names.push_back(field.name);
+    if (!surface.edge_ends.empty()) names.emplace_back("edge_ends");
+    if (!surface.source_cells.empty()) names.emplace_back("source_cells");
+    return names;
+}
+
+/// Normals that follow the triangles.
+Result<void> renew_normals(Surface& out, Normals kind, const Run& run) {
+    if (kind != Normals::vertex && kind != Normals::face) return {};
+    Result<Array> normals = kind == Normals::vertex ? vertex_normals(out, run) : face_normals(out, run);
+    if (!normals) return normals.error();
+    out.normals_kind = kind;
+    out.normals = *std::move(normals);
+    return {};
+}
+
+Result<ReducedSurface> reduced(const Surface& surface, const ReduceOptions& options, const Progress& progress) {
+    const Result<Mesh> mesh = Mesh::open(surface);
+    if (!mesh) return mesh.error();
+    if (auto enough = core::require_memory("reducing a surface", bytes_a_triangle * surface.triangle_count()); !enough)
+        return enough.error();
+    ReducedSurface out;
+    out.triangles_before = surface.triangle_count();
+    out.left_out = left_out_of(surface);
+    Left left;
+    for (const TriangleGroup& group : triangle_groups(surface, kept_fields)) {
+        if (progress.cancelled()) return Error{ErrorCode::cancelled, "reducing a surface was cancelled"};
+        Piece piece = piece_of(*mesh, group.triangles);
+        out.error = std::max(out.error, simplify(piece, options));
+        for (const unsigned index : piece.indices) left.corners.push_back(piece.vertices[index]);
+        left.like.insert(left.like.end(), piece.indices.size() / 3, group.triangles.front());
+        progress("reduce", static_cast<double>(left.like.size()) / static_cast<double>(out.triangles_before));
+    }
+    cancel_double_sheets(left);
+    out.surface = surface_of(surface, left);
+    return out;
+}
+
+} // namespace
+} // namespace checking
+
+Result<ReducedSurface> reduce(const Surface& surface, const ReduceOptions& options, const Run& run) {
+    if (!(options.share >= 0 && options.share < 1))
+        return invalid_argument(fmt::format("the share of triangles that may go is {}, but must be from 0 to below 1",
+                                            options.share));
+    if (!(options.error >= 0))
+        return invalid_argument(fmt::format("the error is {}, but must be 0 or more", options.error));
+    if (surface.vertex_count() > std::numeric_limits<std::uint32_t>::max())
+        return invalid_argument(fmt::format("the surface has {} vertices, but must have fewer than 2^32 to be reduced",
+                                            surface.vertex_count()));
+    Result<ReducedSurface> out = core::carry_out("reducing a surface", run, [&](const Progress& progress) {
+        return checking::reduced(surface, options, progress);
+    });
+    if (!out) return out;
+    if (auto renewed = checking::renew_normals(out->surface, surface.normals_kind, run); !renewed)
+        return renewed.error();
+    return out;
+}
+
+} // namespace isotet
