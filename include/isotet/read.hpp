@@ -140,7 +140,7 @@ struct SurfaceFile {
     std::vector<Field> field_data = {};  ///< WriteOptions::field_data
 };
 
-/// Reads a surface (VTP, PLY, STL, OBJ, legacy VTK, Gocad TSurf), polygons split into triangles. STL has no shared
+/// Reads a surface (VTP, PLY, STL, 3MF, OBJ, legacy VTK, Gocad TSurf), polygons split into triangles. STL has no shared
 /// vertices: weld it.
 ISOTET_API Result<SurfaceFile> read_surface(const std::string& path, const ReadSurfaceOptions& options = {},
                                             const Run& run = {});

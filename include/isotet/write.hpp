@@ -39,8 +39,8 @@ struct WriteOptions {
             ///< "isotet:"
 };
 
-/// Writes a surface: vtp, ply, stl, obj, vtk (legacy), ts (Gocad TSurf); the format from the ending of `path` unless
-/// the options name one.
+/// Writes a surface: vtp, ply, stl, 3mf, obj, glb, usda, vtk (legacy), ts (Gocad TSurf); the format from the ending of
+/// `path` unless the options name one.
 ///
 /// The file is written beside `path` under another name, flushed, checked, and renamed: at every moment `path` is the
 /// old file or the whole new one. Nothing in the file differs between runs. A symbolic link stays: what it points to is

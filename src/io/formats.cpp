@@ -37,8 +37,14 @@ std::vector<Format> written_formats() {
     };
     std::vector<Format> formats{
         surface("vtp", "VTK XML surface"), surface("ply", "PLY"),        surface("stl", "STL"),
-        surface("obj", "Wavefront OBJ"),   surface("ts", "Gocad TSurf"), surface("vtk", "legacy VTK")};
+        surface("obj", "Wavefront OBJ"),   surface("ts", "Gocad TSurf"), surface("3mf", "3MF"),
+        surface("vtk", "legacy VTK")};
     formats.back().writes_grid = true;
+    for (const auto& [name, title] : {std::pair{"glb", "glTF, binary"}, {"usda", "USD, text"}}) {
+        Format scene{name, title, {std::string(".") + name}};
+        scene.writes_surface = true;
+        formats.push_back(std::move(scene));
+    }
     Format vtu{"vtu", "VTK XML unstructured grid", {".vtu"}};
     vtu.writes_grid = true;
     formats.push_back(vtu);

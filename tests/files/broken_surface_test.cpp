@@ -94,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(Formats, BrokenSurface,
                          testing::Values(Sample{"vtp", false}, Sample{"vtp", true}, Sample{"ply", false},
                                          Sample{"ply", true}, Sample{"stl", false}, Sample{"stl", true},
                                          Sample{"obj", false}, Sample{"vtk", false}, Sample{"vtk", true},
-                                         Sample{"ts", false}),
+                                         Sample{"ts", false}, Sample{"3mf", false}),
                          name_of_sample);
 
 TEST_P(BrokenSurface, IsAnErrorOrASurfaceWhereverItIsCut) {
@@ -113,7 +113,8 @@ class SurfaceCutInHalf : public BrokenSurface {};
 INSTANTIATE_TEST_SUITE_P(Formats, SurfaceCutInHalf,
                          testing::Values(Sample{"vtp", false}, Sample{"vtp", true}, Sample{"ply", false},
                                          Sample{"ply", true}, Sample{"stl", false}, Sample{"stl", true},
-                                         Sample{"vtk", false}, Sample{"vtk", true}, Sample{"ts", false}),
+                                         Sample{"vtk", false}, Sample{"vtk", true}, Sample{"ts", false},
+                                         Sample{"3mf", false}),
                          name_of_sample);
 
 TEST_P(SurfaceCutInHalf, IsAnError) {

@@ -77,8 +77,8 @@ TEST(ReadSurface, BelievesTheContentBeforeTheName) {
 }
 
 TEST(ReadSurface, SaysWhatItSawWhenNothingFits) {
-    EXPECT_EQ(message_of("PK\x03\x04 zip"), "neither content nor name is that of a surface file (vtp, ply, stl, obj, "
-                                            "vtk, ts): it starts with 'PK\\x03\\x04 zip'");
+    EXPECT_EQ(message_of("PQ\x03\x04 zip"), "neither content nor name is that of a surface file (vtp, ply, stl, obj, "
+                                            "vtk, ts, 3mf): it starts with 'PQ\\x03\\x04 zip'");
     EXPECT_NE(message_of("v 0 0 0", "xyz").find("'xyz'"), std::string::npos);
 }
 

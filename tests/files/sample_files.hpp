@@ -18,6 +18,7 @@
 
 #include <isotet/grid.hpp>
 #include <isotet/surface.hpp>
+#include <isotet/write.hpp>
 
 #include "support/temporary_folder.hpp"
 
@@ -76,6 +77,19 @@ inline void expect_same(const Array& a, const Array& b, std::string_view what) {
     EXPECT_EQ(a.type(), b.type()) << what;
     EXPECT_EQ(a.components(), b.components()) << what;
     EXPECT_EQ(bits_of(a), bits_of(b)) << what;
+}
+
+inline WriteReport write(const Surface& surface, const std::string& path) {
+    auto report = write_surface(surface, path);
+    EXPECT_TRUE(report) << report.error().message;
+    return report ? *report : WriteReport{};
+}
+
+inline bool has_note(const WriteReport& report, std::string_view words) {
+    for (const auto& note : report.notes) {
+        if (note.find(words) != std::string::npos) return true;
+    }
+    return false;
 }
 
 inline const Field* find_field(const std::vector<Field>& fields, std::string_view name) {

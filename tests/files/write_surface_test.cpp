@@ -12,13 +12,7 @@
 namespace isotet::test {
 namespace {
 
-const std::vector<std::string> all_formats{"vtp", "ply", "stl", "obj", "vtk", "ts"};
-
-WriteReport write(const Surface& surface, const std::string& path) {
-    auto report = write_surface(surface, path);
-    EXPECT_TRUE(report) << report.error().message;
-    return report ? *report : WriteReport{};
-}
+const std::vector<std::string> all_formats{"vtp", "ply", "stl", "obj", "vtk", "ts", "3mf"};
 
 Surface written_and_read(const Surface& surface, const std::string& format) {
     const Folder folder;
@@ -30,13 +24,6 @@ Surface written_and_read(const Surface& surface, const std::string& format) {
     if (!file) return {};
     EXPECT_EQ(file->format, format);
     return std::move(file->surface);
-}
-
-bool has_note(const WriteReport& report, std::string_view words) {
-    for (const auto& note : report.notes) {
-        if (note.find(words) != std::string::npos) return true;
-    }
-    return false;
 }
 
 Surface with_normals(Surface surface, Normals kind) {

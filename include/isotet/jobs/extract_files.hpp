@@ -16,6 +16,8 @@
 #include <isotet/jobs/grid_source.hpp>
 #include <isotet/parts.hpp>
 #include <isotet/pieces.hpp>
+#include <isotet/reduce.hpp>
+#include <isotet/scene.hpp>
 #include <isotet/solid.hpp>
 #include <isotet/write.hpp>
 
@@ -43,6 +45,13 @@ struct PartChoice {
     double limit = 1;
 };
 
+/// Colours that go with each surface, as its point field "rgb".
+struct ColorChoice {
+    std::string by;            ///< a point field that is carried; empty: no colours
+    ColorScale scale;          ///< the map, the logarithm and the colour for no data
+    std::vector<double> range; ///< both ends of the scale, or none: those of each surface
+};
+
 struct ExtractJob {
     GridOptions grid;
     bool all_steps = false;
@@ -68,10 +77,12 @@ struct ExtractJob {
     DeviceChoice device; ///< `name` is empty where none is asked for
     std::optional<PieceOf> piece;
     Compression compression = Compression::none;
+    ColorChoice colors;
     std::optional<RefineOptions> refine = RefineOptions{}; ///< of curved cells; nothing: at their nodes only
     bool refine_averaged = false; ///< also for a field averaged from cells, which else is taken at the nodes only
     std::optional<SolidChoice> solid;                      ///< nothing: isosurfaces
     std::optional<PartChoice> keep;                        ///< nothing: all parts
+    std::optional<ReduceOptions> reduce; ///< nothing: all triangles
     std::string parts_table; ///< a CSV file with a row for each part; empty: none, and parts are not looked for
 };
 

@@ -13,13 +13,14 @@
 #include "io/files/file_ending.hpp"
 #include "io/files/text_scanner.hpp"
 #include "io/files/whole_file.hpp"
+#include "io/files/zip.hpp"
 #include "io/surfaces/surface_parts.hpp"
 
 namespace isotet {
 namespace io {
 namespace {
 
-constexpr std::array<std::string_view, 6> format_names{"vtp", "ply", "stl", "obj", "vtk", "ts"};
+constexpr std::array<std::string_view, 7> format_names{"vtp", "ply", "stl", "obj", "vtk", "ts", "3mf"};
 constexpr std::size_t head_bytes = 4096;
 
 bool starts_with_word(std::string_view text, std::string_view word) {
@@ -46,6 +47,7 @@ Result<Surface> parse_as(std::string_view format, std::string_view content, Surf
     if (format == "stl") return parse_stl(content, progress);
     if (format == "obj") return parse_obj(content, progress);
     if (format == "vtk") return parse_legacy_vtk(content, file.field_data, progress);
+    if (format == "3mf") return parse_3mf(content, file.notes, progress);
     return parse_ts(content, progress);
 }
 
@@ -54,6 +56,7 @@ Result<Surface> parse_as(std::string_view format, std::string_view content, Surf
 std::string_view recognize_surface(std::string_view content, std::string_view ending) {
     const auto head = content.substr(0, head_bytes);
     if (starts_with_word(head, "ply")) return "ply";
+    if (is_zip(head)) return "3mf";
     if (head.starts_with("# vtk DataFile")) return "vtk";
     const auto text = without_leading_space(head.starts_with("\xEF\xBB\xBF") ? head.substr(3) : head);
     if (text.starts_with("<") && text.find("<VTKFile") != std::string_view::npos) return "vtp";

@@ -46,6 +46,7 @@ Result<Surface> parse_stl(std::string_view content, const Progress& progress);
 Result<Surface> parse_obj(std::string_view content, const Progress& progress);
 Result<Surface> parse_ts(std::string_view content, const Progress& progress);
 Result<Surface> parse_legacy_vtk(std::string_view content, std::vector<Field>& field_data, const Progress& progress);
+Result<Surface> parse_3mf(std::string_view content, std::vector<std::string>& notes, const Progress& progress);
 Result<Surface> parse_vtp(std::string_view content, std::vector<std::string>& notes, std::vector<Field>& field_data,
                           const Progress& progress);
 

@@ -9,6 +9,7 @@
 
 #include <fmt/core.h>
 
+#include "io/surfaces/surface_colors.hpp"
 #include "io/write/write_formats.hpp"
 #include "io/write/write_names.hpp"
 
@@ -90,6 +91,11 @@ struct Element {
         Column column = field;
         if (field.type == ScalarType::int64) column = narrowed<std::int64_t>(field, notes);
         if (field.type == ScalarType::uint64) column = narrowed<std::uint64_t>(field, notes);
+        if (is_color(field) && !names.contains("red")) {
+            add(column, field.components == 3 ? std::vector<std::string>{"red", "green", "blue"}
+                                              : std::vector<std::string>{"red", "green", "blue", "alpha"});
+            return;
+        }
         std::vector<std::string> properties;
         bool renamed = false;
         for (std::size_t i = 0; i < field.components; ++i) {

@@ -30,7 +30,10 @@ constexpr std::array surface_formats{SurfaceFormat{"vtp", write_vtp, true},
                                      SurfaceFormat{"stl", write_stl},
                                      SurfaceFormat{"obj", write_obj},
                                      SurfaceFormat{"vtk", write_legacy_surface},
-                                     SurfaceFormat{"ts", write_ts}};
+                                     SurfaceFormat{"ts", write_ts},
+                                     SurfaceFormat{"glb", write_glb},
+                                     SurfaceFormat{"3mf", write_3mf},
+                                     SurfaceFormat{"usda", write_usda}};
 
 struct GridFormat {
     std::string_view name;

@@ -29,6 +29,9 @@ Result<WriteReport> write_ply(const SurfaceToWrite& input);
 Result<WriteReport> write_stl(const SurfaceToWrite& input);
 Result<WriteReport> write_obj(const SurfaceToWrite& input);
 Result<WriteReport> write_ts(const SurfaceToWrite& input);
+Result<WriteReport> write_glb(const SurfaceToWrite& input);
+Result<WriteReport> write_3mf(const SurfaceToWrite& input);
+Result<WriteReport> write_usda(const SurfaceToWrite& input);
 
 /// Notes what a format has no place for: "OBJ holds no fields: pressure, temperature were left out".
 void note_left_out(const SurfaceToWrite& input, std::string_view format,
