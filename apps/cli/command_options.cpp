@@ -282,6 +282,23 @@ PartChoice parse_parts(const std::string& text) {
     return out;
 }
 
+/// "90%" or "0.9".
+double parse_reduction(const std::string& text) {
+    double share = 0;
+    const char* const end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data(), end, share);
+    const bool percent = error == std::errc{} && rest + 1 == end && *rest == '%';
+    if (percent) share /= 100;
+    if (error != std::errc{} || (!percent && rest != end) || !(share >= 0 && share < 1))
+        refuse_value("--reduce", text, "a share of the triangles from 0 to below 1, such as 90% or 0.9");
+    return share;
+}
+
+ReduceOptions& wanted_reduction(ExtractJob& job) {
+    if (!job.reduce) job.reduce = ReduceOptions{0.99};
+    return *job.reduce;
+}
+
 void add_compression(const Command& command, Compression& compression, const char* format) {
     command.add_choice<Compression>(
         "--compress", compression,
@@ -586,12 +603,23 @@ void add_surface_options(const Command& command, ExtractJob& job, const std::str
         "enclosed volume; cell field part: their numbers");
     command.add_file("--parts", job.parts_table, "FILE.csv",
                      "Write a table of the connected parts: triangles, area, volume, place, means of the fields");
+    command.add_value(
+        "--reduce", [&job](const std::string& text) { wanted_reduction(job).share = parse_reduction(text); }, "SHARE",
+        "Leave out this share of the triangles, such as 90%, where that moves the surface least; closed solids stay "
+        "closed");
+    command.add_number(
+        "--reduce-error", [&job](double error) { wanted_reduction(job).error = error; }, "E",
+        "Leave out triangles while the surface moves by no more than about E, a mean; without --reduce up to 99 %");
     command.add_flag("--keep-degenerate", job.keep_degenerate,
                      "One vertex for every active edge and one or two triangles for every active tet, ties or not");
     command.add_flag("--volumes", job.volumes,
                      "Tell the volume of the grid where the field is below each isovalue, and where it is above");
     command.add_flag("--fail-if-empty", job.fail_if_empty,
                      "An empty surface is an error, exit status 3, and is not written");
+    command.add_text("--color-by", job.colors.by, "FIELD",
+                     "Colour vertices by this point field: vertex colours in .glb, .ply and .usda, a field rgb in .vtp "
+                     "and .vtk");
+    add_color_scale(command, job.colors.scale, job.colors.range);
     add_compression(command, job.compression, ".vtp");
     command.add_choice<Precision>("--precision", job.precision,
                                   {{"float", Precision::float32}, {"double", Precision::float64}},

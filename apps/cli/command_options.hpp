@@ -28,6 +28,7 @@ Option add_isovalues(const Command& command, std::vector<double>& isovalues);
 Option add_isovalues(const Command& command, std::vector<double>& isovalues, std::vector<IsovalueShare>& shares);
 /// `asked`   becomes true with any of the options; may be null
 void add_refinement(const Command& command, RefineChoice& refine, bool* asked = nullptr);
+void add_color_scale(const Command& command, ColorScale& scale, std::vector<double>& range);
 void add_device(const Command& command, DeviceChoice& device);
 void add_device_memory(const Command& command, DeviceChoice& device);
 

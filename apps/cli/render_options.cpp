@@ -227,17 +227,7 @@ Command add_render_command(const Command& program, RenderCommand& render) {
                        "default: cluster_ranges");
     command.add_text("--color-by", render.color_by, "FIELD",
                      "Colour by this point or cell field; default: each isovalue has its colour");
-    command.add_choice<ColorMap>("--colormap", render.scale.map,
-                                 {{"viridis", ColorMap::viridis},
-                                  {"cividis", ColorMap::cividis},
-                                  {"plasma", ColorMap::plasma},
-                                  {"turbo", ColorMap::turbo},
-                                  {"cool-warm", ColorMap::cool_warm}},
-                                 "Colour map; default: viridis");
-    command.add_numbers("--range", render.range, "A,B",
-                        "Values at the ends of the colour map; default: the smallest and the largest of the field");
-    command.add_flag("--log", render.scale.logarithmic, "Colours follow the logarithm of the values");
-    add_color(command, "--no-data", render.scale.no_data, "Colour where the field has no value; default: gray");
+    add_color_scale(command, render.scale, render.range);
     const Option reference = command.add_file(
         "--reference", render.reference, "FILE",
         "Compare with this picture (.png); exit status 1 when more pixels differ than --threshold allows");
@@ -257,6 +247,20 @@ Command add_render_command(const Command& program, RenderCommand& render) {
               "Background: white, black, gray, red, green, blue, transparent, or #rrggbb; default: white");
     command.set_details(render_details);
     return command;
+}
+
+void add_color_scale(const Command& command, ColorScale& scale, std::vector<double>& range) {
+    command.add_choice<ColorMap>("--colormap", scale.map,
+                                 {{"viridis", ColorMap::viridis},
+                                  {"cividis", ColorMap::cividis},
+                                  {"plasma", ColorMap::plasma},
+                                  {"turbo", ColorMap::turbo},
+                                  {"cool-warm", ColorMap::cool_warm}},
+                                 "Colour map; default: viridis");
+    command.add_numbers("--range", range, "A,B",
+                        "Values at the ends of the colour map; default: the smallest and the largest of the field");
+    command.add_flag("--log", scale.logarithmic, "Colours follow the logarithm of the values");
+    add_color(command, "--no-data", scale.no_data, "Colour where the field has no value; default: gray");
 }
 
 } // namespace isotet::cli

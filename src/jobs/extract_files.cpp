@@ -21,6 +21,7 @@
 #include "jobs/part_table.hpp"
 #include "jobs/refinement_record.hpp"
 #include "jobs/refuse.hpp"
+#include "jobs/vertex_colors.hpp"
 
 namespace isotet::jobs {
 
@@ -58,7 +59,8 @@ private:
     Result<FieldReport> range_of_field();
     Method method() const { return solids_ ? solids_->method() : contour_->method(); }
     Result<void> find_parts_of(Surface& surface, SurfaceNumbers& numbers);
-    Result<void> write(const Surface& surface, SurfaceNumbers& numbers);
+    Result<void> reduce_triangles(Surface& surface, SurfaceNumbers& numbers);
+    Result<void> write(Surface surface, SurfaceNumbers& numbers);
     OutputKey key(double isovalue, std::size_t step) const;
 
     const ExtractJob& job_;
@@ -399,6 +401,7 @@ Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> is
             return Error{ErrorCode::invalid_data, "`fail_if_empty`: " + why_empty(numbers_.field, isovalues[i])};
         note_what_extracting_found(numbers_, numbers, caller_);
         if (auto found = find_parts_of(surface, numbers); !found) return found.error();
+        if (auto reduced = reduce_triangles(surface, numbers); !reduced) return reduced.error();
     }
     return surfaces;
 }
@@ -433,10 +436,11 @@ Result<std::vector<Surface>> ExtractRun::extract_solid(double isovalue, std::siz
     if (numbers.triangles == 0 && job_.fail_if_empty)
         return Error{ErrorCode::invalid_data, "`fail_if_empty`: the solid is empty"};
     note_what_a_solid_is(numbers_, numbers, caller_);
-    if (!plan_.holds_fields) made->surface.cell_fields.clear(); // "boundary" alone: no note for that
     std::vector<Surface> surfaces;
     surfaces.push_back(std::move(made->surface));
     if (auto found = find_parts_of(surfaces[0], numbers); !found) return found.error();
+    if (auto reduced = reduce_triangles(surfaces[0], numbers); !reduced) return reduced.error();
+    if (!plan_.holds_fields) surfaces[0].cell_fields.clear(); // "boundary" alone: no note for that
     return surfaces;
 }
 
@@ -473,7 +477,28 @@ std::vector<Field> ExtractRun::field_data_of(const Surface& surface) const {
     return {refinement_record(options)};
 }
 
-Result<void> ExtractRun::write(const Surface& surface, SurfaceNumbers& numbers) {
+/// Leaves out triangles where the job asks for it.
+Result<void> ExtractRun::reduce_triangles(Surface& surface, SurfaceNumbers& numbers) {
+    if (!job_.reduce || surface.triangle_count() == 0) return {};
+    caller_.detail("reducing the surface");
+    Result<ReducedSurface> reduced = reduce(surface, *job_.reduce, caller_.run());
+    if (!reduced) return reduced.error();
+    caller_.note(fmt::format("{} of {} triangles are kept, which moved the surface by about {:.2g}",
+                             grouped(reduced->surface.triangle_count()), grouped(reduced->triangles_before),
+                             reduced->error));
+    if (!reduced->left_out.empty())
+        caller_.note(fmt::format("reduced surfaces have no place for {}: left out", quoted_list(reduced->left_out)));
+    surface = std::move(reduced->surface);
+    numbers.vertices = surface.vertex_count();
+    numbers.triangles = surface.triangle_count();
+    numbers.area = area(surface);
+    return {};
+}
+
+Result<void> ExtractRun::write(Surface surface, SurfaceNumbers& numbers) {
+    if (!job_.colors.by.empty()) {
+        if (auto colored = add_vertex_colors(surface, job_.colors, caller_); !colored) return colored;
+    }
     const core::Stopwatch writing;
     caller_.detail("writing " + numbers.file);
     std::error_code ignored;

@@ -37,8 +37,15 @@ Result<Holds> holds(const ExtractJob& job) {
             return refusal("{} was asked for, but {} holds no such array: .vtp and .vtk do", option, format->name);
         }
     }
-    const bool fields = format->name != "stl" && format->name != "obj";
-    return Holds{fields, fields && format->name != "ts", vtk};
+    if (job.reduce && (job.edge_ends || job.source_cells))
+        return refusal("`reduce` was asked for, which leaves no `edge_ends` and `source_cells`: they belong to the "
+                       "triangles of an isosurface as it is cut");
+    const bool colored = vtk || format->name == "glb" || format->name == "ply" || format->name == "usda";
+    if (!job.colors.by.empty() && !colored)
+        return refusal("`color_by` was asked for, but {} holds no colours: .glb, .ply, .usda, .vtp and .vtk do",
+                       format->name);
+    const bool shape_only = format->name == "stl" || format->name == "obj" || format->name == "3mf";
+    return Holds{!shape_only, vtk || format->name == "ply", vtk};
 }
 
 Result<void> check_names(const ExtractJob& job, const ExtractPlan& plan, const FileInfo& info) {

@@ -15,6 +15,7 @@
 
 #include "base/stopwatch.hpp"
 #include "jobs/refuse.hpp"
+#include "jobs/vertex_colors.hpp"
 
 namespace isotet::jobs {
 
@@ -33,21 +34,11 @@ Result<std::vector<double>> choose_levels(const DrawJob& job, const PointField& 
                  fmt::format("field '{}' has no finite value: there is nothing to contour", field.name)};
 }
 
-/// The scale that is asked for.
-Result<ColorOptions> color_options(const DrawJob& job) {
-    ColorOptions options{job.scale, {}};
-    if (job.range.empty()) return options;
-    if (job.range.size() != 2 || !(job.range[0] < job.range[1]))
-        return refusal("`range` takes two numbers, the smaller one first, such as 0,100");
-    options.range = ValueRange{job.range[0], job.range[1]};
-    return options;
-}
-
 /// A field of `from`, a grid or a surface, that colours.
 template <class From>
 Result<ColorField> colors_of(const From& from, const std::string& name, const std::vector<RegionName>& regions,
                              const DrawJob& job, Caller& caller) {
-    Result<ColorOptions> options = color_options(job);
+    Result<ColorOptions> options = color_options(job.scale, job.range);
     if (!options) return options.error();
     for (const RegionName& region : regions)
         if (region.field == name) options->names[static_cast<double>(region.number)] = region.name;
