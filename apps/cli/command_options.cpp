@@ -313,8 +313,8 @@ void add_extract(const Command& program, ExtractCommand& extract) {
     add_centre(command, extract.field);
     add_levels(command, extract);
     add_surface_options(command, extract,
-                        "Closed solids: the part of the grid where the field is at least the isovalue, below it, or from "
-                        "A to B, with the grid's boundary there; cell field boundary: 1 there, 0 on isosurfaces");
+                        "Closed solids: the part of the grid where the field is at least the isovalue, below it, or "
+                        "from A to B, with the grid's boundary there; cell field boundary: 1 there, 0 on isosurfaces");
     add_common(command, extract.common);
     command.set_details(extract_details);
 }
@@ -491,9 +491,9 @@ std::optional<IsovalueShare> parse_share(std::string_view word) {
 Option add_isovalues(const Command& command, std::vector<double>& isovalues, std::vector<IsovalueShare>& shares) {
     return command.add_numbers(
         "-i,--isovalue", isovalues, "V[,W...]",
-        "Isovalues, separated by commas: numbers, 90%v for the one with 90 % of the grid's volume below, p95 for the 95th "
-        "percentile of the point values; or @NAME: from that file, separated by blanks, commas or line ends, # begins a "
-        "comment; may be repeated",
+        "Isovalues, separated by commas: numbers, 90%v for the one with 90 % of the grid's volume below, p95 for the "
+        "95th percentile of the point values; or @NAME: from that file, separated by blanks, commas or line ends, # "
+        "begins a comment; may be repeated",
         {[&shares](std::string_view word) {
              const std::optional<IsovalueShare> share = parse_share(word);
              if (share) shares.push_back(*share);

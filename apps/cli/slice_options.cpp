@@ -57,7 +57,8 @@ void add_shapes(const Command& command, SliceCommand& slice) {
             slice.shape = Plane{*direction, 0};
             slice.count = 1;
         },
-        "DIRECTION", "Cut along planes across this direction, evenly inside the grid's extent; as many as --count says");
+        "DIRECTION",
+        "Cut along planes across this direction, evenly inside the grid's extent; as many as --count says");
     command
         .add_count(
             "--count", {1, 1'000'000}, [&slice](std::uint64_t n) { slice.count = n; }, "N",
@@ -69,7 +70,8 @@ void add_shapes(const Command& command, SliceCommand& slice) {
     const Option cylinder =
         add_shape(command, slice, "--cylinder", parse_cylinders, "DIRECTION@X,Y,Z,R[,R2...]",
                   "DIRECTION@X,Y,Z,R, such as z@0,0,0,0.5",
-                  "Cut along a cylinder without ends: direction of its axis, a point on it, and the radius, or several");
+                  "Cut along a cylinder without ends: direction of its axis, a point on it, and the radius, or "
+                  "several");
     along.excludes(plane);
     sphere.excludes(plane).excludes(along);
     cylinder.excludes(plane).excludes(along).excludes(sphere);
@@ -78,13 +80,14 @@ void add_shapes(const Command& command, SliceCommand& slice) {
 } // namespace
 
 void add_slice_command(const Command& program, SliceCommand& slice) {
-    const Command command = program.add_command("slice", "Cut a grid along planes, spheres or cylinders, with its fields");
+    const Command command =
+        program.add_command("slice", "Cut a grid along planes, spheres or cylinders, with its fields");
     add_grid_and_surface(command, slice);
     add_shapes(command, slice);
     add_surface_options(command, slice,
-                        "Closed solids: the part of the grid beyond the plane or outside the shape (above), before it or "
-                        "inside (below), or, with --along, from A to B; cell field boundary: 1 at the grid's boundary, 0 on "
-                        "the cut");
+                        "Closed solids: the part of the grid beyond the plane or outside the shape (above), before it "
+                        "or inside (below), or, with --along, from A to B; cell field boundary: 1 at the grid's "
+                        "boundary, 0 on the cut");
     add_common(command, slice.common);
     command.set_details(slice_details);
 }

@@ -12,6 +12,7 @@
 #include <isotet/grid.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
+#include <isotet/slice.hpp>
 #include <isotet/surface.hpp>
 
 namespace isotet {
@@ -76,6 +77,7 @@ struct ReadActiveCells {
     std::string field; ///< as find_field() takes it
     std::vector<double> isovalues;
     DirectOptions options; ///< of the extraction; the point fields that are read count as carried ones
+    std::optional<SliceShape> shape = {}; ///< slice_field() in place of `field`
 };
 
 struct ReadOptions {

@@ -123,12 +123,12 @@ constexpr std::size_t most_isovalues_of_active_cells = 8;
 
 std::optional<ReadActiveCells> plan_active_cells(const ExtractJob& job, const ExtractPlan& plan) {
     const bool has_components = plan.carried && !plan.carried->components.empty();
-    const bool needs_all = job.field.shape || job.piece || job.solid || job.volumes || job.grid.merge_points;
+    const bool needs_all = job.piece || job.solid || job.volumes || job.grid.merge_points;
     if (needs_all || has_components || !plan.read.cell || !plan.read.cell->empty() ||
         plan.contour.expected_isovalues.size() > most_isovalues_of_active_cells ||
         !Contour::can_do_with_active_cells(plan.contour))
         return std::nullopt;
-    ReadActiveCells active{plan.field.name, plan.contour.expected_isovalues, {}};
+    ReadActiveCells active{plan.field.name, plan.contour.expected_isovalues, {}, job.field.shape};
     active.options.precision = plan.contour.precision;
     active.options.extract.ties = plan.contour.ties;
     return active;

@@ -69,6 +69,17 @@ TEST_F(Program, SliceRefusesWhatIsNoShape) {
               std::string::npos);
 }
 
+/// The reader process keeps only the cells that the shape cuts; the reference engine has all read.
+TEST_F(Program, SliceOfAFileReadByVtkIsThatOfAllCells) {
+    const std::string file = (source_folder() / "data/vtkhdf/can_hex.hdf").string();
+    for (const char* shape : {"--plane=0.2,1,0.1,-1", "--sphere=0,5,-5,13", "--cylinder=y@0,0,-5,12"}) {
+        const json some = json_of({"slice", file, path("some.vtp"), shape, "--with", ""});
+        json_of({"slice", file, path("all.vtp"), shape, "--with", "", "--engine", "reference"});
+        EXPECT_GT(some["surfaces"][0]["triangles"], 0) << shape;
+        EXPECT_EQ(content_of(path("some.vtp")), content_of(path("all.vtp"))) << shape;
+    }
+}
+
 TEST_F(Program, SliceThatMissesTheGridIsToldAndMayFail) {
     const RunResult run = isotet({"slice", "make:kuhn:4:sphere", path("s.vtp"), "--plane", "z=9"});
     EXPECT_EQ(run.status, 0);

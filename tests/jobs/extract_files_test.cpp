@@ -106,7 +106,8 @@ TEST(ExtractFiles, AnEmptySurfaceIsAnErrorWhereAsked) {
 
 TEST(ExtractFiles, TakesIsovaluesByTheirShareAndTellsVolumes) {
     const test::TemporaryFolder folder;
-    ASSERT_TRUE(write_grid(make_grid({.shape = "kuhn", .side = 8, .fields = {"gyroid"}}).value(), folder.file("g.vtu")));
+    const Grid grid = make_grid({.shape = "kuhn", .side = 8, .fields = {"gyroid"}}).value();
+    ASSERT_TRUE(write_grid(grid, folder.file("g.vtu")));
     Listener listener;
     ExtractJob job = job_of(folder.file("g.vtu"), "");
     job.isovalues = {0.25};

@@ -105,6 +105,35 @@ TEST(SliceFiles, OfSeveralPlacesAreTheSameAsAlone) {
     EXPECT_EQ(test::content_of(folder.file("some-0.2.vtp")), test::content_of(folder.file("alone.vtp")));
 }
 
+TEST(SliceFiles, OfReadersThatKeepOnlyCutCellsAreThoseOfAllCells) {
+    const test::TemporaryFolder folder;
+    const std::string file = folder.file("grid.vtu");
+    for (const char* kind : {"shuffled", "hex"}) {
+        const Grid grid = make_grid({.shape = kind, .side = 14, .fields = {"gyroid"}}).value();
+        ASSERT_TRUE(write_grid(grid, file));
+        for (const SliceShape& shape : {SliceShape(Plane{{0.2, -0.5, 1}, 0.1}), SliceShape(Plane{{0, 0, 1}, 0}),
+                                        SliceShape(Sphere{{0, 0, 0}, 0.4}),
+                                        SliceShape(Cylinder{{0, 1, 1}, {0, 0, 0}, 0.3})}) {
+            SCOPED_TRACE(testing::Message() << kind << " " << shape.index());
+            ReadOptions some;
+            some.cell_fields = std::vector<std::string>{};
+            some.active_cells = ReadActiveCells{"", {slice_isovalue(shape)}, {}, shape};
+            const ReadResult read_some = read(file, some).value();
+            ASSERT_EQ(read_some.cells_in_file, grid.cells.count());
+            EXPECT_LT(read_some.grid.cells.count(), grid.cells.count() / 3);
+            Listener listener;
+            SliceJob job = slice_of_file(file, folder.file("some.vtp"), shape);
+            const ExtractNumbers numbers = slice_files(job, listener).value();
+            EXPECT_EQ(numbers.cells, grid.cells.count());
+            EXPECT_EQ(std::ranges::count(listener.details, "reading all cells of step 0"), 0);
+            job.out = folder.file("all.vtp");
+            job.engine = EngineChoice::reference; // reads all cells
+            ASSERT_TRUE(slice_files(job, listener));
+            EXPECT_EQ(test::content_of(folder.file("some.vtp")), test::content_of(folder.file("all.vtp")));
+        }
+    }
+}
+
 TEST(SliceFiles, CutsEveryTimeStep) {
     const test::TemporaryFolder folder;
     for (const std::uint64_t step : {0, 1}) {

@@ -1,12 +1,17 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Requests as bytes and back.
+#include <array>
+#include <variant>
+
+#include <isotet/slice.hpp>
+
 #include "io/process/messages.hpp"
 #include "io/process/wire.hpp"
 
 namespace isotet::io::vtk {
 namespace {
 
-constexpr std::uint32_t request_version = 0x69730004;
+constexpr std::uint32_t request_version = 0x69730005;
 
 using Names = std::optional<std::vector<std::string>>;
 
@@ -22,6 +27,43 @@ Names decode_names(Decoder& in) {
     return names;
 }
 
+void encode_vector(Encoder& out, const std::array<double, 3>& vector) {
+    for (const double component : vector) out.number(component);
+}
+
+std::array<double, 3> decode_vector(Decoder& in) {
+    std::array<double, 3> vector{};
+    for (double& component : vector) component = in.number<double>();
+    return vector;
+}
+
+/// The kind of a shape on the wire.
+enum class ShapeKind : std::uint8_t { none, plane, sphere, cylinder };
+
+void encode_shape(Encoder& out, const std::optional<SliceShape>& shape) {
+    out.number(shape ? static_cast<ShapeKind>(shape->index() + 1) : ShapeKind::none);
+    if (!shape) return;
+    if (const auto* plane = std::get_if<Plane>(&*shape)) {
+        encode_vector(out, plane->normal);
+    } else if (const auto* sphere = std::get_if<Sphere>(&*shape)) {
+        encode_vector(out, sphere->centre);
+    } else if (const auto* cylinder = std::get_if<Cylinder>(&*shape)) {
+        encode_vector(out, cylinder->axis);
+        encode_vector(out, cylinder->point);
+    }
+    out.number(slice_isovalue(*shape));
+}
+
+std::optional<SliceShape> decode_shape(Decoder& in) {
+    const auto kind = in.enumerator(ShapeKind::cylinder);
+    if (kind == ShapeKind::none) return std::nullopt;
+    const std::array<double, 3> first = decode_vector(in);
+    if (kind == ShapeKind::plane) return Plane{first, in.number<double>()};
+    if (kind == ShapeKind::sphere) return Sphere{first, in.number<double>()};
+    const std::array<double, 3> point = decode_vector(in);
+    return Cylinder{first, point, in.number<double>()};
+}
+
 /// Of the options of extraction those that tell which cells are active.
 void encode_active(Encoder& out, const std::optional<ReadActiveCells>& active) {
     const bool can_be_told = active && !active->options.extract.source_cells &&
@@ -33,6 +75,7 @@ void encode_active(Encoder& out, const std::optional<ReadActiveCells>& active) {
     out.list(active->isovalues, [&](double isovalue) { out.number(isovalue); });
     out.number<std::uint8_t>(active->options.extract.ties == Ties::keep);
     out.number<std::uint8_t>(active->options.precision == Precision::float64);
+    encode_shape(out, active->shape);
 }
 
 std::optional<ReadActiveCells> decode_active(Decoder& in) {
@@ -42,6 +85,7 @@ std::optional<ReadActiveCells> decode_active(Decoder& in) {
     in.list([&] { active.isovalues.push_back(in.number<double>()); });
     if (in.number<std::uint8_t>() != 0) active.options.extract.ties = Ties::keep;
     if (in.number<std::uint8_t>() != 0) active.options.precision = Precision::float64;
+    active.shape = decode_shape(in);
     return active;
 }
 
