@@ -49,7 +49,7 @@ std::vector<std::vector<std::uint64_t>> cells_of(const Grid& grid, const Cut& cu
 }
 
 /// Coordinates that differ by a rounding, in some of the points.
-Array rounded(const Array& points, std::mt19937& random) {
+Array rounded_points(const Array& points, std::mt19937& random) {
     std::vector<float> out;
     for (const float value : points.as<float>())
         out.push_back(random() % 4 == 0 ? std::nextafter(value, 2.0f) : value);
@@ -90,7 +90,7 @@ std::string write_pieces(const test::TemporaryFolder& folder, const Cut& cut, co
             grid.point_fields.push_back({field.name, test::taken(field.values, piece.points)});
         if (cut.ids) grid.point_fields.push_back({"GlobalNodeId", grid.point_numbers});
         grid.point_numbers = {};
-        if (cut.rounded) grid.points = rounded(grid.points, random);
+        if (cut.rounded) grid.points = rounded_points(grid.points, random);
         if (cut.wide) {
             grid.points = widened(grid.points);
             grid.point_fields[0].values = widened(grid.point_fields[0].values);
