@@ -180,8 +180,9 @@ struct FindFieldOptions {
 /// Finds the scalar field called `name` on a grid.
 ///
 /// The name is first taken whole; only if no field has it is the part after the last colon a component: `x`, `y`, `z`,
-/// `mag`, or a number from 0. A name that is both a point and a cell field means the preferred one, with a note. If no
-/// field is meant, `x`, `y`, `z` are the coordinates. An empty name means the only field there is.
+/// `mag`, or a number from 0. A name that no field has may be that of a component group (component_groups.hpp). A name
+/// that is both a point and a cell field means the preferred one, with a note. If no field is meant, `x`, `y`, `z` are
+/// the coordinates. An empty name means the only field there is.
 /// A cell field is averaged to the points, weighted by the volumes of the cells around each; cells where it is NaN are
 /// left out; a point without a cell left is NaN.
 ///
@@ -194,10 +195,12 @@ ISOTET_API Result<PointField> find_field(const Grid& grid, std::string_view name
 struct FieldName {
     std::string field;
     std::optional<std::string> component;
+    std::vector<std::string> parts = {}; ///< of a component group: the scalar fields to read in its place
 };
 
 /// The name taken apart by the rule of find_field() against a list of names; used by readers to load only what is
-/// needed.
+/// needed. A component group may be called without the "_", ".", ":" or blank at its end; one component of it is the
+/// field that holds it.
 ISOTET_API std::optional<FieldName> match_field_name(std::string_view name, const std::vector<std::string>& names);
 
 /// `names`, nearest to `wanted` first (edit distance, upper and lower case alike), for error messages.

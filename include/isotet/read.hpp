@@ -89,7 +89,8 @@ struct ReadOptions {
     bool merge_pieces_by_coordinates = true; ///< join points of different pieces that are one (docs/pieces.md),
                                              ///< so that surfaces have no seams there
     bool allow_outside = false;              ///< index files may name files outside their own folder
-    std::string displace;                    ///< a point vector field to add to the coordinates
+    std::string displace;                    ///< a point vector field to add to the coordinates, or the name of three
+                                             ///< scalars (component_groups())
     std::string reader_program;              ///< the program isotet-reader; empty: the one beside the library or this
                                              ///< program, in PATH, or where isotet was to be installed
     std::uint64_t memory_limit = 0;          ///< bytes of address space of a reader process; 0: by free memory

@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <isotet/component_groups.hpp>
+
 #include "base/parallel.hpp"
 #include "base/rising_progress.hpp"
 #include "grid/cell/linear_names.hpp"
@@ -117,17 +119,26 @@ Result<void> check_grid(const Grid& grid, const Progress& progress) {
     return core::check_faces(grid, *cells, progress);
 }
 
+/// The point field called so, or gathered from the fields of its components.
+Result<Field> vector_called(const std::string& name, const Grid& grid) {
+    std::vector<std::string> names;
+    for (const Field& field : grid.point_fields) names.push_back(field.name);
+    const auto match = match_field_name(name, names);
+    if (match && !match->parts.empty()) return gather_components(grid.point_fields, name, match->parts);
+    const auto field = std::ranges::find(grid.point_fields, name, &Field::name);
+    if (field != grid.point_fields.end()) return *field;
+    return Field{name, Array{}};
+}
+
 /// Adds a vector field to the coordinates, in double.
 Result<void> displace(const std::string& name, ReadResult& result) {
     Grid& grid = result.grid;
-    const auto field = std::find_if(grid.point_fields.begin(), grid.point_fields.end(),
-                                    [&](const Field& other) { return other.name == name; });
-    if (field == grid.point_fields.end() || field->values.components() != 3) {
-        const std::size_t components = field == grid.point_fields.end() ? 0 : field->values.components();
+    const Result<Field> field = vector_called(name, grid);
+    if (!field) return field.error();
+    if (field->values.components() != 3)
         return Error{ErrorCode::invalid_argument,
                      fmt::format("field {} has {} components, but displacing takes a point field of 3", in_quotes(name),
-                                 components)};
-    }
+                                 field->values.empty() ? 0 : field->values.components())};
     std::vector<double> moved(grid.points.size());
     const auto for_each_coordinate = [&](const Array& array, const auto& put) {
         array.visit([&](auto values) {
@@ -142,11 +153,19 @@ Result<void> displace(const std::string& name, ReadResult& result) {
     return {};
 }
 
-/// The displacement must be read even where the surface does not carry it.
-ReadOptions with_displacement(ReadOptions options) {
-    if (!options.displace.empty() && !wanted(options, Association::point, options.displace)) {
-        options.point_fields->push_back(options.displace);
-    }
+/// The displacement, or the fields of its components, must be read even where the surface does not carry it.
+Result<ReadOptions> with_displacement(const GridReader& reader, const std::string& path, ReadOptions options,
+                                      const Progress& progress) {
+    if (options.displace.empty() || !options.point_fields) return options;
+    const auto info = reader.inspect(path, options, progress);
+    if (!info) return info.error();
+    std::vector<std::string> names;
+    for (const FieldInfo& field : info->fields)
+        if (field.association == Association::point) names.push_back(field.name);
+    const auto match = match_field_name(options.displace, names);
+    for (const std::string& part :
+         match && !match->parts.empty() ? match->parts : std::vector<std::string>{options.displace})
+        if (!wanted(options, Association::point, part)) options.point_fields->push_back(part);
     return options;
 }
 
@@ -182,7 +201,9 @@ Result<ReadOptions> with_regions(const GridReader& reader, const std::string& pa
 Result<ReadResult> read_checked(const std::string& path, const ReadOptions& options, const Progress& progress) {
     const auto reader = choose_reader(path, options);
     if (!reader) return reader.error();
-    const auto extended = with_regions(**reader, path, with_displacement(options), progress);
+    auto displaced_options = with_displacement(**reader, path, options, progress);
+    if (!displaced_options) return displaced_options.error();
+    const auto extended = with_regions(**reader, path, *std::move(displaced_options), progress);
     if (!extended) return extended.error();
     const ReadOptions& all = *extended;
     auto result = (*reader)->read(path, all, progress);
@@ -214,9 +235,8 @@ Result<ReadResult> read_checked(const std::string& path, const ReadOptions& opti
     }
     if (options.displace.empty()) return result;
     if (auto displaced = displace(options.displace, *result); !displaced) return displaced.error();
-    if (!wanted(options, Association::point, options.displace)) {
-        std::erase_if(result->grid.point_fields, [&](const Field& field) { return field.name == options.displace; });
-    }
+    std::erase_if(result->grid.point_fields,
+                  [&](const Field& field) { return !wanted(options, Association::point, field.name); });
     // Displaced coordinates may be too large or not finite.
     if (auto checked = check_grid(result->grid, progress); !checked) return in_file(checked.error());
     return result;

@@ -27,12 +27,20 @@ std::vector<std::string> all_names(const GridSource& source) {
     return names;
 }
 
+/// The fields to read for a name that find_field() takes; none where it is of no field.
+std::vector<std::string> arrays_of(const std::string& name, const std::vector<std::string>& names) {
+    const auto match = match_field_name(name, names);
+    if (!match) return {};
+    return match->parts.empty() ? std::vector<std::string>{match->field} : match->parts;
+}
+
 /// Adds what one argument of --with names.
 Result<void> add_carried(const GridSource& source, const std::string& name, CarriedFields& carried) {
     const std::vector<std::string> point = source.names(Association::point), cell = source.names(Association::cell);
     if (has(point, name)) add_names(carried.point, {name});
     else if (has(cell, name)) add_names(carried.cell, {name});
-    else if (const auto match = match_field_name(name, point)) carried.components.push_back({name, {match->field}, {}});
+    else if (const auto arrays = arrays_of(name, point); !arrays.empty())
+        carried.components.push_back({name, arrays, {}});
     else if (is_coordinate(name)) carried.components.push_back({name, {}, {}});
     else if (match_field_name(name, cell))
         return refusal("`with` got '{}', a component of a cell field, but cell fields are carried whole", name);
@@ -64,8 +72,8 @@ Result<FoundField> choose_field(const GridSource& source, const FieldChoice& cho
         }
         found.name = names.front();
     }
-    if (const auto match = match_field_name(found.name, source.names(Association::point))) found.point = {match->field};
-    if (const auto match = match_field_name(found.name, source.names(Association::cell))) found.cell = {match->field};
+    found.point = arrays_of(found.name, source.names(Association::point));
+    found.cell = arrays_of(found.name, source.names(Association::cell));
     if (found.point.empty() && found.cell.empty() && !is_coordinate(found.name))
         return source.no_such_field(found.name);
     if (choice.cell_field && found.cell.empty()) {

@@ -172,8 +172,7 @@ Result<GridSource> GridSource::open(const GridOptions& options, Caller& caller) 
     if (options.time && source.info_.times.size() > 1)
         if (const Result<std::size_t> step = step_at(source.info_.times, *options.time))
             if (auto looked = source.look_at(*step, caller.run()); !looked) return looked.error();
-    const std::vector<std::string> points = source.names(Association::point);
-    if (!options.displace.empty() && std::ranges::find(points, options.displace) == points.end()) {
+    if (!options.displace.empty() && !match_field_name(options.displace, source.names(Association::point))) {
         Error error = source.no_such_field(options.displace);
         error.message = "`displace` takes a point field: " + error.message;
         return error;

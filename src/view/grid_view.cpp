@@ -11,6 +11,7 @@
 
 #include <isotet/boundary.hpp>
 #include <isotet/color_field.hpp>
+#include <isotet/component_groups.hpp>
 #include <isotet/field_statistics.hpp>
 #include <isotet/linear_cells.hpp>
 #include <isotet/memory.hpp>
@@ -30,6 +31,8 @@ void offer(const std::vector<Field>& fields, Association association, std::vecto
         for (std::size_t i = 0; i < components; ++i)
             offered.push_back({field.name + ":" + (components == 3 ? axes[i] : std::to_string(i)), association});
     }
+    for (const ComponentGroup& group : component_groups(scalar_names(fields)))
+        offered.push_back({group.name + ":mag", association});
 }
 
 bool same_values(const Array& a, const Array& b) {

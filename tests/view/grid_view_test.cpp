@@ -63,6 +63,14 @@ TEST_F(GridViewTest, OffersScalarsMagnitudesAndComponents) {
     EXPECT_EQ(view_->fields().back().association, Association::cell);
 }
 
+TEST(OfferedFields, HaveTheMagnitudeOfComponents) {
+    Grid grid;
+    for (const char* name : {"vx", "vy", "vz"}) grid.point_fields.push_back({name, Array::own(std::vector<float>{1})});
+    std::vector<std::string> names;
+    for (const OfferedField& field : offered_fields(grid)) names.push_back(field.name);
+    EXPECT_EQ(names, (std::vector<std::string>{"vx", "vy", "vz", "v:mag"}));
+}
+
 TEST_F(GridViewTest, TheFirstSurfaceIsDirectAndThePackedGridGivesTheSame) {
     const Json direct = frame(show(1, {0.7}));
     EXPECT_EQ(direct["method"], "direct");

@@ -5,6 +5,8 @@
 
 #include <isotet/grid.hpp>
 
+#include "grid/fields/component_groups.hpp"
+
 namespace isotet {
 
 namespace {
@@ -44,10 +46,10 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 std::optional<FieldName> match_field_name(std::string_view name, const std::vector<std::string>& names) {
     if (std::ranges::find(names, name) != names.end()) return FieldName{std::string(name), std::nullopt};
     const std::size_t colon = name.rfind(':');
-    if (colon == std::string_view::npos) return std::nullopt;
-    const std::string_view field = name.substr(0, colon), component = name.substr(colon + 1);
-    if (!is_component(component) || std::ranges::find(names, field) == names.end()) return std::nullopt;
-    return FieldName{std::string(field), std::string(component)};
+    const bool has_component = colon != std::string_view::npos && is_component(name.substr(colon + 1));
+    if (has_component && std::ranges::find(names, name.substr(0, colon)) != names.end())
+        return FieldName{std::string(name.substr(0, colon)), std::string(name.substr(colon + 1))};
+    return core::match_component_group(name, names);
 }
 
 std::vector<std::string> nearest_first(std::string_view wanted, std::vector<std::string> names) {

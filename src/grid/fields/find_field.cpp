@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include <isotet/component_groups.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/linear_cells.hpp>
 
@@ -34,9 +35,19 @@ std::string in_quotes(const std::vector<std::string>& names) {
     return list;
 }
 
-const Field* find(const std::vector<Field>& fields, std::string_view name) {
-    const auto found = std::ranges::find(fields, name, &Field::name);
-    return found == fields.end() ? nullptr : &*found;
+/// A field by its name; where `parts` are given, one that is gathered from these. Nothing where it is not there.
+Result<std::optional<Field>> find_or_gather(const std::vector<Field>& fields, const FieldName& wanted) {
+    const auto is_there = [&](const std::string& name) {
+        return std::ranges::find(fields, name, &Field::name) != fields.end();
+    };
+    if (wanted.parts.empty()) {
+        const auto found = std::ranges::find(fields, wanted.field, &Field::name);
+        return found == fields.end() ? std::optional<Field>() : std::optional(*found);
+    }
+    if (!std::ranges::all_of(wanted.parts, is_there)) return std::optional<Field>();
+    Result<Field> gathered = gather_components(fields, wanted.field, wanted.parts);
+    if (!gathered) return gathered.error();
+    return std::optional(*std::move(gathered));
 }
 
 Result<core::Scalar> choose_scalar(const Field& field, const std::optional<std::string>& component) {
@@ -101,10 +112,14 @@ Result<PointField> find_by_name(const Grid& grid, std::string_view name, const F
             names.empty()
                 ? fmt::format("the field is '{}', but the grid has none, only the coordinates x, y, z", name)
                 : fmt::format("the field is '{}', but the grid has {}", name, in_quotes(nearest_first(name, names))));
-    const Field* of_points = find(grid.point_fields, match->field);
-    const Field* of_cells = find(grid.cell_fields, match->field);
-    const bool take_cells = of_cells && (!of_points || options.prefer == Association::cell);
-    const Field& field = take_cells ? *of_cells : *of_points;
+    const auto of_points = find_or_gather(grid.point_fields, *match);
+    if (!of_points) return of_points.error();
+    const auto of_cells = find_or_gather(grid.cell_fields, *match);
+    if (!of_cells) return of_cells.error();
+    if (!*of_points && !*of_cells)
+        return invalid_argument(fmt::format("the components of '{}' are of points and of cells", match->field));
+    const bool take_cells = *of_cells && (!*of_points || options.prefer == Association::cell);
+    const Field& field = take_cells ? **of_cells : **of_points;
     const auto scalar = choose_scalar(field, match->component);
     if (!scalar) return scalar.error();
 
@@ -117,7 +132,7 @@ Result<PointField> find_by_name(const Grid& grid, std::string_view name, const F
     } else {
         if (auto fits = check_length(field, "point", grid.points.tuples()); !fits) return fits.error();
         found.values = core::scalar_of(field.values, *scalar);
-        if (of_cells)
+        if (*of_cells)
             found.note =
                 fmt::format("'{}' is both a point field and a cell field; the point field is taken", field.name);
     }

@@ -208,25 +208,6 @@ void say_what_is_read(const ExodusFile& file, Loaded& loaded) {
                                            fmt::join(parts, ", ")));
 }
 
-/// "disp" or "disp_" stands for the variables disp_x, disp_y and disp_z, as a vector to move the points by.
-Result<void> read_displacement(ExodusFile& file, const std::string& name, std::size_t step, Grid& grid) {
-    const auto& variables = file.point_variables();
-    if (name.empty() || std::find(variables.begin(), variables.end(), name) != variables.end()) return {};
-    std::vector<double> steps(3 * file.points());
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const char letter = "xyz"[axis];
-        const auto found = std::find_if(variables.begin(), variables.end(), [&](const std::string& variable) {
-            return variable == name + letter || variable == name + "_" + letter;
-        });
-        if (found == variables.end()) return {}; // whoever asked for it learns that there is no such field
-        auto values = file.point_variable(static_cast<std::size_t>(found - variables.begin()), step);
-        if (!values) return values.error();
-        for (std::size_t i = 0; i < values->tuples(); ++i) steps[3 * i + axis] = values->at(i);
-    }
-    grid.point_fields.push_back({name, Array::own(std::move(steps), 3)});
-    return {};
-}
-
 /// Blocks, then sets.
 std::vector<BlockInfo> blocks_of(const ExodusFile& file) {
     std::vector<BlockInfo> blocks;
@@ -300,7 +281,6 @@ Result<Piece> read_piece(ExodusFile& file, const std::string& path, const ReadOp
     piece.grid.cells = std::move(*cells);
     say_what_is_read(file, loaded);
     if (auto read = read_fields(file, options, loaded, piece.grid); !read) return read.error();
-    if (auto read = read_displacement(file, options.displace, loaded.step, piece.grid); !read) return read.error();
     if (!with_ids) return piece;
     auto point_ids = file.point_ids();
     if (!point_ids) return point_ids.error();

@@ -1,0 +1,155 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "grid/fields/component_groups.hpp"
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <type_traits>
+#include <unordered_set>
+
+#include <fmt/core.h>
+
+#include <isotet/component_groups.hpp>
+
+#include "base/buffer.hpp"
+#include "base/errors.hpp"
+#include "base/parallel.hpp"
+#include "grid/fields/scalar_of.hpp"
+
+namespace isotet {
+
+namespace {
+
+using Endings = std::span<const std::string_view>;
+
+constexpr std::array<std::string_view, 9> full_tensor{"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"};
+constexpr std::array<std::string_view, 6> symmetric_xz{"xx", "yy", "zz", "xy", "yz", "xz"};
+constexpr std::array<std::string_view, 6> symmetric_zx{"xx", "yy", "zz", "xy", "yz", "zx"};
+constexpr std::array<std::string_view, 3> vector_axes{"x", "y", "z"};
+
+std::string capitals_of(std::string_view text) {
+    std::string capitals(text);
+    for (char& c : capitals) c = static_cast<char>(c - 'a' + 'A');
+    return capitals;
+}
+
+/// Finds groups among names, larger ones first: a part of a tensor is not one of a vector.
+class GroupFinder {
+public:
+    explicit GroupFinder(const std::vector<std::string>& names) : names_(names), known_(names.begin(), names.end()) {
+        for (const Endings endings :
+             {Endings(full_tensor), Endings(symmetric_xz), Endings(symmetric_zx), Endings(vector_axes)})
+            for (std::size_t i = 0; i < names_.size(); ++i)
+                for (const bool capital : {false, true}) look_for(i, endings, capital);
+    }
+
+    std::vector<ComponentGroup> take() {
+        std::ranges::stable_sort(found_, {}, &Found::first);
+        std::vector<ComponentGroup> groups;
+        for (Found& one : found_) groups.push_back(std::move(one.group));
+        return groups;
+    }
+
+private:
+    struct Found {
+        std::size_t first;
+        ComponentGroup group;
+    };
+
+    void look_for(std::size_t index, Endings endings, bool capital) {
+        const auto spelled = [&](std::string_view ending) {
+            return capital ? capitals_of(ending) : std::string(ending);
+        };
+        const std::string& name = names_[index];
+        const std::string first = spelled(endings[0]);
+        if (name.size() <= first.size() || !name.ends_with(first)) return;
+        ComponentGroup group{name.substr(0, name.size() - first.size()), {}};
+        if (known_.contains(group.name)) return;
+        for (const std::string_view ending : endings) {
+            group.parts.push_back(group.name + spelled(ending));
+            if (!known_.contains(group.parts.back()) || taken_.contains(group.parts.back())) return;
+        }
+        taken_.insert(group.parts.begin(), group.parts.end());
+        found_.push_back({index, std::move(group)});
+    }
+
+    const std::vector<std::string>& names_;
+    std::unordered_set<std::string> known_, taken_;
+    std::vector<Found> found_;
+};
+
+/// A group's name as people type it: "disp" for "disp_".
+std::string_view without_separator(std::string_view name) {
+    while (!name.empty() && (name.back() == '_' || name.back() == '.' || name.back() == ':' || name.back() == ' '))
+        name.remove_suffix(1);
+    return name;
+}
+
+/// Copies scalar arrays of the same length into the components of one.
+template <class Scalar>
+Array interleaved(const std::vector<Array>& parts) {
+    constexpr std::size_t grain = std::size_t{1} << 16U;
+    const std::size_t components = parts.size(), tuples = parts[0].tuples();
+    core::Buffer<Scalar> all(components * tuples);
+    for (std::size_t c = 0; c < components; ++c)
+        parts[c].visit([&](auto values) {
+            core::parallel_each(tuples, grain,
+                                [&](std::size_t i) { all[components * i + c] = static_cast<Scalar>(values[i]); });
+        });
+    return std::move(all).to_array(components);
+}
+
+} // namespace
+
+std::vector<ComponentGroup> component_groups(const std::vector<std::string>& names) {
+    return GroupFinder(names).take();
+}
+
+std::vector<std::string> scalar_names(const std::vector<Field>& fields) {
+    std::vector<std::string> names;
+    for (const Field& field : fields)
+        if (field.values.components() == 1) names.push_back(field.name);
+    return names;
+}
+
+Result<Field> gather_components(const std::vector<Field>& fields, const std::string& name,
+                                const std::vector<std::string>& parts) {
+    std::vector<Array> arrays;
+    for (const std::string& part : parts) {
+        const auto field = std::ranges::find(fields, part, &Field::name);
+        if (field == fields.end())
+            return invalid_argument(fmt::format("'{}' needs the field '{}', which is not there", name, part));
+        const Array& values = field->values;
+        if (values.components() != 1 || (!arrays.empty() && values.tuples() != arrays[0].tuples()))
+            return invalid_argument(
+                fmt::format("'{}' takes the field '{}' for a component, but it has {} tuples of {} components", name,
+                            part, values.tuples(), values.components()));
+        arrays.push_back(values);
+    }
+    if (arrays.empty()) return invalid_argument(fmt::format("'{}' has no components", name));
+    const bool is_single =
+        std::ranges::all_of(arrays, [](const Array& one) { return one.type() == ScalarType::float32; });
+    return Field{name, is_single ? interleaved<float>(arrays) : interleaved<double>(arrays)};
+}
+
+namespace core {
+
+std::optional<FieldName> match_component_group(std::string_view name, const std::vector<std::string>& names) {
+    const std::size_t colon = name.rfind(':');
+    for (const ComponentGroup& group : component_groups(names)) {
+        const auto is_called = [&](std::string_view text) {
+            return text == group.name || text == without_separator(group.name);
+        };
+        if (is_called(name)) return FieldName{group.name, std::nullopt, group.parts};
+        if (colon == std::string_view::npos || !is_called(name.substr(0, colon))) continue;
+        const auto scalar = parse_scalar(name.substr(colon + 1));
+        if (!scalar) continue;
+        if (scalar->magnitude) return FieldName{group.name, "mag", group.parts};
+        if (scalar->component < group.parts.size()) return FieldName{group.parts[scalar->component], std::nullopt};
+    }
+    return std::nullopt;
+}
+
+} // namespace core
+
+} // namespace isotet
