@@ -33,6 +33,7 @@ struct FieldInfo {
     Association association = Association::point;
     ScalarType type = ScalarType::float32;
     std::size_t components = 1;
+    bool active = false; ///< the file marks it as the scalars, or else the vectors, to show first
 };
 
 /// A part of a file that can be read without the others: an element block of Exodus, a zone of CGNS, a part of EnSight,

@@ -161,6 +161,7 @@ Result<void> LegacyData::read_named(std::uint64_t components, bool normals) {
 
 Result<void> LegacyData::read_scalars() {
     Header header{read_name(), {}, 1, tuples_};
+    scalars_.emplace_back(data_ == Data::points ? Association::point : Association::cell, header.name);
     header.type = lower(scanner_.word());
     if (!scanner_.at_line_end() && !scanner_.number_of_line(header.components))
         return values_.before_here("not a number of components");
@@ -465,7 +466,11 @@ void LegacyData::finish() {
             file_.info.fields.erase(same);
             std::erase_if(attributes, [&](const Attribute& attribute) { return attribute.name == name; });
         }
-        announce(file_.info, {name, found.association, found.type, static_cast<std::size_t>(found.components)});
+        const std::pair one(found.association, name);
+        const bool marked = std::ranges::find(scalars_, one) != scalars_.end() && // VTK writes one so, others as FIELD
+                            std::ranges::count(scalars_, one.first, &std::pair<Association, std::string>::first) == 1;
+        announce(file_.info,
+                 {name, found.association, found.type, static_cast<std::size_t>(found.components), marked});
         if (found.wanted) attributes.push_back(std::move(found.attribute));
     }
     found_.clear();

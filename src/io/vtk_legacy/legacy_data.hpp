@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <isotet/result.hpp>
@@ -95,6 +96,7 @@ private:
     std::size_t faults_ = 0;
     bool unread_ = false; ///< the rest of the file
     std::vector<Found> found_;
+    std::vector<std::pair<Association, std::string>> scalars_; ///< names of SCALARS
 };
 
 } // namespace isotet::io

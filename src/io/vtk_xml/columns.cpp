@@ -47,7 +47,7 @@ struct Columns {
     std::vector<Column> columns;
     std::vector<LeftOut> left_out;
     std::vector<std::string> notes;
-    std::string global_ids;
+    std::string global_ids, active;
 };
 
 /// Pieces that count: those with tuples; all where none has any.
@@ -116,6 +116,7 @@ Columns columns_of(const Document& document, Association association, const Layo
     for (const std::size_t p : filled_pieces(layout)) {
         Section section = describe_section(document, pieces[p].child(element), step);
         if (all.global_ids.empty()) all.global_ids = section.global_ids;
+        if (all.active.empty()) all.active = section.active;
         for (const std::string& name : section.unnamed) add_name(unnamed, name);
         for (const std::string& name : section.repeated) add_name(repeated, name);
         for (LeftOut& item : section.left_out) {
@@ -339,6 +340,8 @@ std::vector<pugi::xml_node> pieces_of(const Document& document) {
 Section describe_section(const Document& document, const pugi::xml_node& element, std::size_t step) {
     Section section;
     section.global_ids = element.attribute("GlobalIds").value();
+    const pugi::xml_attribute scalars = element.attribute("Scalars");
+    section.active = scalars ? scalars.value() : element.attribute("Vectors").value();
     const auto is_named = [&](const std::string& name) { return find_array(section.arrays, name) != nullptr; };
     for (const auto& child : element.children()) {
         if (child.type() != pugi::node_element || !is_of_step(child, step)) continue;
@@ -389,7 +392,9 @@ Result<void> announce_fields(Document& document, const Layouts& layouts, const R
         Columns columns = columns_of(document, association, *layout, *step);
         if (auto sound = check_ghosts(columns, association); !sound) return sound;
         for (const Column& column : columns.columns)
-            if (!is_ghost_array(column.name)) announce(info, {column.name, association, column.type, column.components});
+            if (!is_ghost_array(column.name))
+                announce(info,
+                         {column.name, association, column.type, column.components, column.name == columns.active});
         for (LeftOut& item : columns.left_out) leave_out(info, std::move(item));
         std::ranges::move(columns.notes, std::back_inserter(loaded.notes));
     }

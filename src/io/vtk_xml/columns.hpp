@@ -29,6 +29,7 @@ struct Section {
     std::vector<LeftOut> left_out; ///< arrays that cannot be described; `what` is empty
     std::vector<std::string> unnamed, repeated;
     std::string global_ids; ///< the array that is marked so
+    std::string active;     ///< the one that is marked as Scalars, else as Vectors
 };
 
 Section describe_section(const Document& document, const pugi::xml_node& element, std::size_t step);
