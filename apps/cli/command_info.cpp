@@ -1,9 +1,11 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // `isotet info`: what a grid file holds.
 #include <algorithm>
+#include <array>
 #include <cstdint>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <isotet/contour.hpp>
 #include <isotet/jobs/look_into.hpp>
@@ -117,6 +119,32 @@ std::string grid_table(const GridSummary& found, const std::string& path) {
     return table.text();
 }
 
+/// "isosurfaces of p: its name".
+std::string first_table(const FirstView& first) {
+    Table table = facts();
+    const auto text = [&] {
+        switch (first.draw) {
+        case FirstDraw::isosurfaces: return fmt::format("isosurfaces of {}: {}", first.field, text_of(first.reason));
+        case FirstDraw::field_on_boundary:
+            return fmt::format("the boundary, coloured by {}: {}", first.field,
+                               first.rough ? "it jumps from cell to cell" : "the grid is one cell thick");
+        case FirstDraw::regions_on_boundary:
+            return fmt::format("the boundary, coloured by {}: no field varies, but regions do", first.field);
+        case FirstDraw::boundary: break;
+        }
+        return std::string("the boundary: no field varies");
+    };
+    table.row({"shown first", text()});
+    return table.text();
+}
+
+Json json_of(const FirstView& first) {
+    constexpr std::array<const char*, 4> draws{"isosurfaces", "field_on_boundary", "regions_on_boundary", "boundary"};
+    return {{"draw", draws[static_cast<std::size_t>(first.draw)]},
+            {"field", first.field.empty() ? Json(nullptr) : Json(json_text(first.field))},
+            {"why", text_of(first.reason)}};
+}
+
 /// Chosen or not: what --block takes.
 std::string block_table(const FileInfo& file) {
     using enum Table::Align;
@@ -172,6 +200,27 @@ std::string field_table(const std::vector<FieldSummary>& fields) {
         }
     }
     return table.text();
+}
+
+std::string vector_table(const std::vector<VectorSummary>& vectors) {
+    using enum Table::Align;
+    Table table({left, left, left, left});
+    for (const auto& [group, association] : vectors)
+        table.row({"vector", group.name, association == Association::point ? "point" : "cell",
+                   fmt::format("{}", fmt::join(group.parts, ", "))});
+    return table.text();
+}
+
+Json json_of(const std::vector<VectorSummary>& vectors) {
+    Json list = Json::array();
+    for (const auto& [group, association] : vectors) {
+        Json parts = Json::array();
+        for (const std::string& part : group.parts) parts.push_back(json_text(part));
+        list.push_back({{"name", json_text(group.name)},
+                        {"association", association == Association::point ? "point" : "cell"},
+                        {"fields", std::move(parts)}});
+    }
+    return list;
 }
 
 Json json_of(const std::vector<FieldSummary>& fields) {
@@ -241,11 +290,13 @@ Result<ExitCode> run_info(const InfoCommand& command) {
     report["blocks"] = json_of(found->file.blocks);
     report["regions"] = json_of(found->file.regions);
     report["fields"] = json_of(found->fields);
+    report["vectors"] = json_of(found->vectors);
+    report["first_view"] = json_of(found->first);
     if (found->chart) report["chart"] = json_of(*found->chart);
     return finish(console, command.common,
                   grid_table(*found, path) + curved_table(found->curved) + block_table(found->file) +
-                      region_table(found->file) + field_table(found->fields) +
-                      (found->chart ? chart_table(*found->chart) : ""),
+                      region_table(found->file) + field_table(found->fields) + vector_table(found->vectors) +
+                      first_table(found->first) + (found->chart ? chart_table(*found->chart) : ""),
                   std::move(report));
 }
 

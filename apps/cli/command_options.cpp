@@ -34,6 +34,13 @@ A field's range is that of its finite values; no data is the number of NaN. Inve
 that of most. Of --survey: repeated tets have the corners of an earlier one, duplicate points the place of another, and
 boundary faces are those that the tets do not use equally often in both directions.
 
+Shown first is what isotet render, view and extract take where no field is named: the array that the file marks as its
+scalars; else one with a name that people contour, such as alpha, temperature, velocity or pressure; else the one that
+varies most, and smoothly. Numbers of points, cells and processes, weights, sizes, centres and errors are never taken.
+Vectors count by their magnitude, also those stored as x, y and z (Exodus, CGNS). Where the field jumps from cell to
+cell, or the grid is one cell thick, it colours the boundary; where no field varies, regions do. Of several time steps
+the first one, the second or the last is taken, where a field varies.
+
 Of --chart: areas are in the square, volumes in the cube of the unit of the points. They are those of the tets that
 extract --split-cells makes, up to rounding; quadratic cells are split at their nodes.
 
@@ -45,8 +52,9 @@ Examples:
 
 constexpr const char* extract_details = R"(
 FIELD is taken whole first; only if no field has that name is the part after the last colon a component: x, y, z, mag,
-or a number from 0. x, y and z alone are the coordinates, unless fields are called so. A cell field is averaged to the
-points, weighted by volume (ParaView's Cell Data to Point Data takes the plain mean).
+or a number from 0. Velocity stands for the fields VelocityX, VelocityY and VelocityZ, disp for disp_x, disp_y and
+disp_z, where no field is called so. x, y and z alone are the coordinates, unless fields are called so. A cell field is
+averaged to the points, weighted by volume (ParaView's Cell Data to Point Data takes the plain mean).
 
 OUT ends in .vtp, .ply, .stl, .obj, .vtk or .ts. Several isovalues in one OUT make one surface with a cell field
 isovalue. With {value}, {time} or {step} in OUT there is one file each: values and times are the shortest decimals that
@@ -191,7 +199,7 @@ void add_info(const Command& program, InfoCommand& info) {
     const Option chart = command.add_count(
         "--chart", {1, 65'535}, [&](std::uint64_t n) { info.chart = n; }, "N",
         "Area of the isosurface and volume below it at N + 1 isovalues, from end to end of the field's range");
-    add_field(command, info.field, "The field of the chart; default: the one that varies most").needs(chart);
+    add_field(command, info.field, "The field of the chart; default: the one that is shown first").needs(chart);
     add_common(command, info.common);
     command.set_details(info_details);
 }
@@ -309,7 +317,7 @@ void add_compression(const Command& command, Compression& compression, const cha
 void add_extract(const Command& program, ExtractCommand& extract) {
     const Command command = program.add_command("extract", "Extract isosurfaces and write them into files");
     add_grid_and_surface(command, extract);
-    add_field(command, extract.field, "The field to contour; may be left out where there is only one");
+    add_field(command, extract.field, "The field to contour; default: the one that info says is shown first");
     add_centre(command, extract.field);
     add_levels(command, extract);
     add_surface_options(command, extract,

@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include <isotet/field_statistics.hpp>
 #include <isotet/jobs/field_choice.hpp>
+#include <isotet/jobs/first_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
 #include <isotet/jobs/number_text.hpp>
 #include <isotet/jobs/output_names.hpp>
@@ -47,15 +47,26 @@ std::vector<std::string> reading_options(const GridOptions& grid, const RefineCh
     return words;
 }
 
-/// Reads all fields of the step, and finds the one to begin with.
-Result<view::ViewerInput> read_input(const ViewCommand& command, const GridSource& source, std::size_t step,
-                                     Console& console, const Run& run) {
+/// What the page shows first where no field is named: an opaque boundary hides what says nothing.
+void take_first_view(const FirstView& first, bool isovalues_are_given, view::ViewState& state, Console& console) {
+    state.field = first.field.empty() ? std::string("x") : first.field;
+    if (first.draw != FirstDraw::isosurfaces && !isovalues_are_given) state.boundary = 1;
+    console.note(first.field.empty() ? std::string("no field varies: this is the grid") : note_of(first));
+}
+
+/// Reads all fields of the step to begin with, and finds the field.
+Result<view::ViewerInput> read_input(const ViewCommand& command, GridSource& source, Console& console, const Run& run) {
+    ChoiceWish wish{Steps::one, command.field, {}, false};
+    const Result<FirstChoice> choice = choose_first(source, command.grid, wish, console, run);
+    if (!choice) return choice.error();
+    const std::size_t step = choice->steps.front();
+    const std::vector<FieldInfo> fields = source.info().fields;
     Result<Grid> grid = source.read({}, step, console, run);
     if (!grid) return grid.error();
     view::ViewerInput input;
     input.state.field = command.field.name;
-    if (input.state.field.empty()) input.state.field = default_field(*grid).name;
-    if (input.state.field.empty()) input.state.field = std::string("x");
+    if (input.state.field.empty())
+        take_first_view(first_view(*grid, fields), !command.isovalues.empty(), input.state, console);
     input.state.isovalues = command.isovalues;
     input.state.color_by = command.color_by;
     input.times = source.info().times;
@@ -130,8 +141,9 @@ Result<ExitCode> run_view(const ViewCommand& command) {
     if (!command.color_by.empty())
         if (const Result<FoundField> found = choose_field(*source, {command.color_by, false}); !found)
             return found.error();
-    const auto steps = choose_steps(source->info(), command.grid, Steps::one, console);
-    if (!steps) return steps.error();
+    if (command.grid.time || command.grid.step)
+        if (const auto steps = choose_steps(source->info(), command.grid, Steps::one, console); !steps)
+            return steps.error();
     view::ViewerOptions options;
     options.file = valid_utf8(command.grid.file);
     options.reading = reading_options(command.grid, command.refine);
@@ -149,7 +161,7 @@ Result<ExitCode> run_view(const ViewCommand& command) {
     }
     options.program = "/proc/self/exe";
     options.listen = command.listen;
-    options.read = [&](const Run& run) { return read_input(command, *source, steps->front(), console, run); };
+    options.read = [&](const Run& run) { return read_input(command, *source, console, run); };
     std::mutex reading; // steps are read by several threads
     options.read_step = [&](std::size_t step, const Run& run) {
         const std::lock_guard lock(reading);

@@ -12,8 +12,9 @@ namespace isotet::cli {
 namespace {
 
 constexpr const char* render_details = R"(
-FILE is a grid or a surface. With nothing but FILE the field that varies most is taken, with three isovalues between the
-ends of its range (without rare values at the ends), each in its own colour. FIELD is found as by isotet extract.
+FILE is a grid or a surface. With nothing but FILE it draws what isotet info says is shown first: isosurfaces at three
+isovalues between the ends of the field's range (without rare values at the ends), each in its own colour; or the
+boundary, coloured. FIELD is found as by isotet extract.
 
 The picture is as large as possible in its frame, z upwards; +x looks from the end of the x axis. OUT ends in .png;
 without it the picture gets FILE's name, in the current folder. The pictures of --sweep and --orbit are numbered from 1

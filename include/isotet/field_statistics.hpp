@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// What the values of a field are like, before anything is contoured: ranges, missing values, and which field to show.
+// What the values of a field are like, before anything is contoured: ranges and missing values.
 #pragma once
 
 #include <cstdint>
@@ -39,18 +39,5 @@ struct ValueRange {
 ///
 /// Cost   up to 200,000 values, spread evenly, are sorted
 ISOTET_API ValueRange typical_range(const Array& values);
-
-/// A field to begin with.
-struct DefaultField {
-    std::string name;           ///< for find_field(), "velocity:mag" of a vector; empty: none has two different values
-    bool whole_numbers = false; ///< it numbers something, regions say, more likely than it was measured
-};
-
-/// The field to show where none was named: the one whose values are spread most evenly over its range, by the entropy
-/// of a histogram of 64 bins. Scalars and vectors of three components are judged, vectors by their magnitude. Fields of
-/// whole numbers count only where no other field has two different values; missing values count against a field.
-///
-/// Cost   up to 200,000 values of each field are looked at
-ISOTET_API DefaultField default_field(const Grid& grid);
 
 } // namespace isotet

@@ -5,12 +5,14 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <isotet/contour_spectrum.hpp>
+#include <isotet/first_view.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/isovalue_shares.hpp>
 #include <isotet/make.hpp>
@@ -83,6 +85,10 @@ nb::dict info_out(const FileInfo& info) {
         regions.append(nb::make_tuple(region.field, region.number, region.name));
     out["blocks"] = blocks;
     out["regions"] = regions;
+    nb::list marked;
+    for (const FieldInfo& field : info.fields)
+        if (field.active) marked.append(nb::make_tuple(field.name, field.association == Association::cell));
+    out["marked"] = marked;
     return out;
 }
 
@@ -205,6 +211,29 @@ void add_grids(nb::module_& module) {
             return out;
         },
         "grid"_a, "field"_a, "isovalues"_a, "call"_a);
+
+    module.def(
+        "first_view",
+        [](const Grid& grid, const std::vector<std::pair<std::string, bool>>& marked) {
+            std::vector<FieldInfo> fields = describe_fields(grid);
+            for (FieldInfo& field : fields) {
+                const std::pair own(field.name, field.association == Association::cell);
+                field.active = std::ranges::find(marked, own) != marked.end();
+            }
+            FirstView view;
+            {
+                const nb::gil_scoped_release release;
+                view = first_view(grid, fields);
+            }
+            constexpr std::array draws{"isosurfaces", "field_on_boundary", "regions_on_boundary", "boundary"};
+            nb::dict out;
+            out["draw"] = draws[static_cast<std::size_t>(view.draw)];
+            out["field"] = view.field.empty() ? nb::object(nb::none()) : nb::object(nb::str(view.field.c_str()));
+            out["cell_field"] = view.association == Association::cell && !view.field.empty();
+            out["why"] = std::string(text_of(view.reason));
+            return out;
+        },
+        "grid"_a, "marked"_a);
 
     nb::class_<ReadOptions>(module, "ReadOptions")
         .def(

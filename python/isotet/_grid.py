@@ -113,6 +113,22 @@ class Grid:
         """Arrays with one row a cell, by name."""
         return self._grid.cell_fields
 
+    @property
+    def first_view(self) -> dict[str, Any]:
+        """What to show of the grid where nothing is said, by the rule of the program: "field", a name that `contour` takes, or
+        None; "draw": "isosurfaces", or what is drawn of the boundary: "field_on_boundary" where the field jumps from cell to
+        cell, "regions_on_boundary" where there are only numbers of regions, "boundary" where nothing varies; "cell_field",
+        whether it is one; "why".
+
+        The array that the file marks as its scalars comes first, then names that people contour (alpha, temperature, velocity,
+        pressure and others), then what varies most. Ids, ranks, weights, sizes, centres and errors are never taken.
+
+        >>> import isotet
+        >>> isotet.make("kuhn", 4, ["plane", "integer"]).first_view["field"]
+        'plane'
+        """
+        return _isotet.first_view(self._grid, self.info.get("marked", []))
+
     def _field(self, field, call: _isotet.CallOptions | None = None, for_pieces: bool = False,
                centre: str = "mean") -> _isotet.PointField:  # fmt: skip
         """A field by name, or of values."""
@@ -121,6 +137,8 @@ class Grid:
         own = centre == "own"
         if own and for_pieces:
             raise ValueError("centre is 'own', but pieces of a grid take 'mean' only")
+        if field is None and len(self.fields) + len(self.cell_fields) > 1:
+            field = self.first_view["field"]
         if isinstance(field, _isotet.PointField):
             found = field
         elif field is None or isinstance(field, str):
@@ -157,8 +175,8 @@ class Grid:
         isovalues
             A number in the unit of the field; or several, which give one surface with the cell field "isovalue".
         field
-            A name ("p"; "velocity:x" or "velocity:mag" of a vector; a cell field is averaged to the points), or one value
-            a point. Without it the only field there is.
+            A name ("p"; "velocity:x" or "velocity:mag" of a vector, also one that is stored as velocity_x, velocity_y and
+            velocity_z; a cell field is averaged to the points), or one value a point. Without it that of `first_view`.
         normals
             "none"; "gradient", one a vertex, along the field's gradient; "vertex", one a vertex, the mean of its triangles',
             which follows the surface on thin cells, too; "face", one a triangle.
@@ -695,7 +713,7 @@ def read(path: str | os.PathLike[str], *, fields: Iterable[str] | None = None, c
     allow_outside
         Index files (.pvd, .pvtu and so on) may name files outside their own folder.
     displace
-        A vector field of the points by which they are moved.
+        A vector field of the points by which they are moved; "disp" for disp_x, disp_y and disp_z.
     reader_program
         The program `isotet-reader`, which reads formats that need VTK's readers (Exodus, CGNS, EnSight, VTKHDF). Without it:
         the one in PATH.

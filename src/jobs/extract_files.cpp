@@ -63,7 +63,7 @@ private:
     Result<void> write(Surface surface, SurfaceNumbers& numbers);
     OutputKey key(double isovalue, std::size_t step) const;
 
-    const ExtractJob& job_;
+    ExtractJob job_; ///< with the field that was chosen where none is named
     Caller& caller_;
     std::optional<GridSource> source_;
     ExtractPlan plan_;

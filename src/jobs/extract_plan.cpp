@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include <isotet/component_groups.hpp>
+#include <isotet/jobs/first_choice.hpp>
 #include <isotet/jobs/number_text.hpp>
 #include <isotet/levels.hpp>
 #include <isotet/linear_cells.hpp>
@@ -153,6 +155,39 @@ Result<void> check_solid(const ExtractJob& job) {
     return {};
 }
 
+/// Steps, and the field where none is named.
+Result<void> choose_first_of(ExtractJob& job, GridSource& source, ExtractPlan& plan, Caller& caller) {
+    ChoiceWish wish{job.all_steps ? Steps::all : Steps::one, job.field};
+    if (job.field.shape) { // any step has it
+        auto steps = choose_steps(source.info(), job.grid, wish.steps, caller);
+        if (!steps) return steps.error();
+        plan.steps = *std::move(steps);
+        return {};
+    }
+    wish.only_field_will_do = true;
+    if (!job.with && plan.holds_fields) wish.also.point.reset();
+    const Result<FirstChoice> choice = choose_first(source, job.grid, wish, caller, caller.run());
+    if (!choice) return choice.error();
+    plan.steps = choice->steps;
+    if (!job.field.name.empty() || source.info().fields.size() < 2) {
+        if (job.field.name.empty()) job.field.name = choice->view.field;
+        return {};
+    }
+    const std::vector<FieldInfo>& fields = source.info().fields;
+    if (choice->view.field.empty())
+        return Error{ErrorCode::invalid_data,
+                     fmt::format("none of the {} fields has two different values: there is nothing to contour; `field` "
+                                 "x, y or z contours a coordinate",
+                                 fields.size())};
+    if (choice->view.draw == FirstDraw::regions_on_boundary)
+        return refusal("no field was named, and only numbers of regions vary, such as '{}': `field` names one to "
+                       "contour",
+                       choice->view.field);
+    job.field.name = choice->view.field;
+    caller.note(note_of(choice->view));
+    return {};
+}
+
 } // namespace
 
 SolidRange range_for(const SolidChoice& choice, double isovalue) {
@@ -177,7 +212,7 @@ Result<void> choose_fields(const ExtractJob& job, const GridSource& source, Extr
     return {};
 }
 
-Result<ExtractPlan> plan_extract(const ExtractJob& job, GridSource& source, Caller& caller) {
+Result<ExtractPlan> plan_extract(ExtractJob& job, GridSource& source, Caller& caller) {
     ExtractPlan plan;
     if (Result<void> solid = check_solid(job); !solid) return solid.error();
     plan.names = OutputNames(job.out);
@@ -185,14 +220,14 @@ Result<ExtractPlan> plan_extract(const ExtractJob& job, GridSource& source, Call
     if (!format) return format.error();
     plan.holds_fields = format->fields;
 
-    auto steps = choose_steps(source.info(), job.grid, job.all_steps ? Steps::all : Steps::one, caller);
-    if (!steps) return steps.error();
-    plan.steps = *std::move(steps);
+    plan.steps.assign(job.all_steps ? std::max<std::size_t>(source.info().times.size(), 1) : 1, 0);
+    for (std::size_t i = 0; i < plan.steps.size(); ++i) plan.steps[i] = i;
     if (Result<void> names = check_names(job, plan, source.info()); !names) return names.error();
     Result<std::string> collection = plan_collection(job, plan, caller);
     if (!collection) return collection.error();
     plan.collection = *std::move(collection);
 
+    if (Result<void> chosen = choose_first_of(job, source, plan, caller); !chosen) return chosen.error();
     if (job.piece && job.field.own_centres) return refusal("`piece` takes `centre` mean only");
     plan.out_holds_fields = format->fields;
     plan.out_holds_cell_fields = format->cell_fields;
@@ -268,7 +303,13 @@ Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid, con
         return std::ranges::find(grid.point_fields, name, &Field::name) != grid.point_fields.end();
     };
     for (const FoundField& component : plan.carried->components) {
-        if (!component.point.empty() && !is_read(component.point.front())) continue; // not in this step
+        if (!std::ranges::all_of(component.point, is_read)) continue; // not in this step
+        if (component.point.size() > 1 && !component.name.ends_with(":mag")) {
+            Result<Field> whole = gather_components(grid.point_fields, component.name, component.point);
+            if (!whole) return whole.error();
+            fields.point.push_back(*std::move(whole));
+            continue;
+        }
         const Result<PointField> found = find_field(grid, component.name, {}, run);
         if (!found) return found.error();
         fields.point.push_back({component.name, found->values});

@@ -28,8 +28,9 @@ struct ExtractPlan {
     std::optional<ReadActiveCells> active_cells; ///< where others need not be read
 };
 
-/// Errors   invalid_argument: OUT, a field, a step or a combination of options is wrong
-Result<ExtractPlan> plan_extract(const ExtractJob& job, GridSource& source, Caller& caller);
+/// Where no field is named, the job has the one that was chosen afterwards.
+/// Errors   invalid_argument: OUT, a field, a step or a combination of options is wrong; invalid_data: no field varies
+Result<ExtractPlan> plan_extract(ExtractJob& job, GridSource& source, Caller& caller);
 
 /// Looks the fields of the plan up in what `source` was looked at for.
 /// Errors   invalid_argument: a field is not there

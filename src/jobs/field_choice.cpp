@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include <isotet/field_statistics.hpp>
+#include <isotet/first_view.hpp>
 #include <isotet/linear_cells.hpp>
 
 #include "jobs/refuse.hpp"
@@ -123,13 +123,13 @@ Result<PointField> read_field(const GridSource& source, std::size_t step, const 
     if (!all) return all.error();
     grid = *std::move(all);
     if (name.empty()) {
-        name = default_field(grid).name;
+        name = first_view(grid, source.info().fields).field;
         if (name.empty())
             return Error{ErrorCode::invalid_data,
                          fmt::format("none of the {} fields has two different values: there is nothing to contour; "
                                      "`field` x, y or z contours a coordinate",
                                      fields)};
-        caller.note(fmt::format("no field was named: '{}', which varies most, was taken; `field` names another", name));
+        caller.note(fmt::format("no field was named: '{}' was taken; `field` names another", name));
     }
     return find_chosen(grid, name, choice, caller);
 }

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <mutex>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -247,7 +249,56 @@ std::vector<std::string> GridSource::names(Association association) const {
     return names;
 }
 
+struct GridSource::Kept {
+    std::mutex mutex;
+    std::optional<Grid> grid;
+    FieldsToRead fields;
+    std::size_t step = 0;
+
+    std::optional<Grid> take(const FieldsToRead& wanted, std::size_t wanted_step);
+    bool is_there() {
+        const std::lock_guard lock(mutex);
+        return grid.has_value();
+    }
+};
+
+namespace {
+
+using Names = std::optional<std::vector<std::string>>; // nothing: all
+
+bool holds_all(const Names& there, const Names& wanted) {
+    if (!there) return true;
+    return wanted && std::ranges::all_of(*wanted, [&](const std::string& name) {
+        return std::ranges::find(*there, name) != there->end();
+    });
+}
+
+void leave(std::vector<Field>& fields, const Names& wanted) {
+    if (!wanted) return;
+    std::erase_if(fields, [&](const Field& field) { return std::ranges::find(*wanted, field.name) == wanted->end(); });
+}
+
+} // namespace
+
+std::optional<Grid> GridSource::Kept::take(const FieldsToRead& wanted, std::size_t wanted_step) {
+    const std::lock_guard lock(mutex);
+    if (!grid || step != wanted_step || !holds_all(fields.point, wanted.point) || !holds_all(fields.cell, wanted.cell))
+        return std::nullopt;
+    leave(grid->point_fields, wanted.point);
+    leave(grid->cell_fields, wanted.cell);
+    return std::exchange(grid, std::nullopt);
+}
+
+void GridSource::keep(Grid grid, const FieldsToRead& fields, std::size_t step) {
+    kept_ = std::make_shared<Kept>();
+    kept_->grid = std::move(grid);
+    kept_->fields = fields;
+    kept_->step = step;
+}
+
 Result<Grid> GridSource::read(const FieldsToRead& fields, std::size_t step, Caller& caller, const Run& run) const {
+    if (kept_)
+        if (auto kept = kept_->take(fields, step)) return *std::move(kept);
     Grid grid;
     if (made_) {
         MakeOptions made = *made_;
@@ -268,7 +319,7 @@ Result<Grid> GridSource::read(const FieldsToRead& fields, std::size_t step, Call
 
 Result<ReadResult> GridSource::read_active(const FieldsToRead& fields, std::size_t step, const ReadActiveCells& active,
                                            Caller& caller) const {
-    if (made_ || options_.merge_points) {
+    if (made_ || options_.merge_points || (kept_ && kept_->is_there())) {
         Result<Grid> grid = read(fields, step, caller);
         if (!grid) return grid.error();
         ReadResult result;

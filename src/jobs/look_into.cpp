@@ -2,6 +2,7 @@
 #include <isotet/jobs/look_into.hpp>
 
 #include <isotet/grid_counts.hpp>
+#include <isotet/jobs/first_choice.hpp>
 #include <isotet/jobs/output_names.hpp>
 #include <isotet/refine.hpp>
 
@@ -22,6 +23,15 @@ Result<std::vector<FieldSummary>> summarize(const Grid& grid, const Run& run) {
     return summaries;
 }
 
+std::vector<VectorSummary> vectors_of(const Grid& grid) {
+    std::vector<VectorSummary> vectors;
+    for (const auto& [fields, association] :
+         {std::pair{&grid.point_fields, Association::point}, {&grid.cell_fields, Association::cell}})
+        for (ComponentGroup& group : component_groups(scalar_names(*fields)))
+            vectors.push_back({std::move(group), association});
+    return vectors;
+}
+
 Result<CurvedSummary> look_at_curved_cells(const Grid& grid, const std::vector<FieldSummary>& summaries,
                                            const Run& run) {
     CurvedSummary found;
@@ -40,10 +50,11 @@ Result<CurvedSummary> look_at_curved_cells(const Grid& grid, const std::vector<F
     return found;
 }
 
-Result<std::optional<FieldChart>> make_chart(const InfoJob& job, const Grid& grid, Caller& caller) {
+Result<std::optional<FieldChart>> make_chart(const InfoJob& job, const Grid& grid, const FirstView& first,
+                                             Caller& caller) {
     if (!job.chart) return std::optional<FieldChart>();
     std::string name = job.field.name;
-    if (name.empty()) name = default_field(grid).name;
+    if (name.empty()) name = first.field;
     if (name.empty())
         return Error{
             ErrorCode::invalid_data,
@@ -59,14 +70,15 @@ Result<std::optional<FieldChart>> make_chart(const InfoJob& job, const Grid& gri
 
 Result<GridSummary> look_into(const InfoJob& job, Caller& caller) {
     if (auto paths = check_output_paths({job.grid.file}, job.other_outputs); !paths) return paths.error();
-    const Result<GridSource> source = GridSource::open(job.grid, caller);
+    Result<GridSource> source = GridSource::open(job.grid, caller);
     if (!source) return source.error();
     if (auto paths = check_output_paths(source->info().files, job.other_outputs); !paths) return paths.error();
-    const auto steps = choose_steps(source->info(), job.grid, Steps::one, caller);
-    if (!steps) return steps.error();
+    const ChoiceWish wish{Steps::one, {}, {}, false};
+    const Result<FirstChoice> choice = choose_first(*source, job.grid, wish, caller, caller.run());
+    if (!choice) return choice.error();
     GridSummary summary;
     summary.file = source->info();
-    summary.step = steps->front();
+    summary.step = choice->steps.front();
     const Result<Grid> grid = source->read({}, summary.step, caller);
     if (!grid) return grid.error();
     summary.point_type = grid->points.type();
@@ -82,10 +94,12 @@ Result<GridSummary> look_into(const InfoJob& job, Caller& caller) {
     Result<std::vector<FieldSummary>> fields = summarize(*grid, caller.run());
     if (!fields) return fields.error();
     summary.fields = *std::move(fields);
+    summary.vectors = vectors_of(*grid);
+    summary.first = first_view(*grid, source->info().fields);
     Result<CurvedSummary> curved = look_at_curved_cells(*grid, summary.fields, caller.run());
     if (!curved) return curved.error();
     summary.curved = *std::move(curved);
-    Result<std::optional<FieldChart>> chart = make_chart(job, *grid, caller);
+    Result<std::optional<FieldChart>> chart = make_chart(job, *grid, summary.first, caller);
     if (!chart) return chart.error();
     summary.chart = *std::move(chart);
     return summary;

@@ -10,6 +10,7 @@
 #include <isotet/color_field.hpp>
 #include <isotet/field_statistics.hpp>
 #include <isotet/jobs/field_choice.hpp>
+#include <isotet/jobs/first_choice.hpp>
 #include <isotet/jobs/output_names.hpp>
 #include <isotet/levels.hpp>
 
@@ -90,11 +91,42 @@ Result<PictureSource> PictureSource::open(const DrawJob& job, Caller& caller) {
     if (!grid) return grid.error();
     if (auto paths = check_output_paths(grid->info().files, job.other_outputs); !paths) return paths.error();
     source.source_ = *std::move(grid);
-    auto steps = choose_steps(source.source_->info(), job.grid, job.all_steps ? Steps::all : Steps::one, caller);
-    if (!steps) return steps.error();
-    source.steps_ = *std::move(steps);
+    if (auto chosen = source.choose_steps_and_view(caller); !chosen) return chosen.error();
     if (auto kept = source.keep_steps_with_fields(caller); !kept) return kept.error();
     return source;
+}
+
+/// Whether isosurfaces are drawn, as far as options say: else the boundary or slices.
+bool PictureSource::wants_surfaces() const {
+    return names_isovalues(job_) ||
+           (job_.slices.empty() && (job_.boundary_color_by.empty() || !job_.field.name.empty()));
+}
+
+/// The field that is needed by name: contoured, or else coloured by; empty: it is to be chosen.
+std::string PictureSource::needed_field() const {
+    if (wants_surfaces()) return job_.field.name;
+    if (!job_.color_by.empty()) return job_.color_by;
+    return job_.boundary_color_by.empty() ? job_.field.name : job_.boundary_color_by;
+}
+
+Result<void> PictureSource::choose_steps_and_view(Caller& caller) {
+    ChoiceWish wish{job_.all_steps ? Steps::all : Steps::one,
+                    {needed_field(), wants_surfaces() && job_.field.cell_field}};
+    for (const std::string& name : {job_.color_by, job_.boundary_color_by}) {
+        if (name.empty()) continue;
+        const Result<FoundField> found = choose_field(*source_, {name, false});
+        if (!found) continue; // told later, or in another step
+        add_names(*wish.also.point, found->point);
+        add_names(*wish.also.cell, found->cell);
+    }
+    Result<FirstChoice> choice = choose_first(*source_, job_.grid, wish, caller, caller.run());
+    if (!choice) return choice.error();
+    steps_ = std::move(choice->steps);
+    first_ = std::move(choice->view);
+    if (steps_.size() < 2 || !needed_field().empty() || first_.draw != FirstDraw::isosurfaces) return {};
+    caller.note(note_of(first_)); // of all steps: those without it are not drawn
+    (wants_surfaces() ? job_.field.name : job_.color_by) = first_.field;
+    return {};
 }
 
 /// Steps that lack a field that is named are not drawn.
@@ -223,22 +255,42 @@ void PictureSource::read_ahead(std::size_t step, Caller& caller) {
     });
 }
 
+/// What is drawn where no field is named: what first_view() says, unless isovalues or colours are asked for.
+Result<void> PictureSource::take_first_view(bool& contours, std::string& field, std::string& color, Contents& contents,
+                                            Caller& caller) const {
+    if (first_.field.empty() && names_isovalues(job_))
+        return Error{ErrorCode::invalid_data,
+                     fmt::format("none of the {} fields has two different values: there is nothing to contour; "
+                                 "`field` x, y or z contours a coordinate",
+                                 source_->info().fields.size())};
+    const bool as_model = contours && !names_isovalues(job_) && color.empty() && first_.draw != FirstDraw::isosurfaces;
+    caller.note(first_.field.empty() ? std::string("no field varies: the boundary of the grid is drawn")
+                                     : note_of(first_));
+    if (as_model) {
+        contours = false;
+        contents.model = true;
+        color = first_.field;
+    } else {
+        (contours ? field : color) = first_.field;
+        contours = contours && !field.empty();
+    }
+    return {};
+}
+
 /// Reads what the picture needs of a step, and decides what it shows.
 Result<PictureSource::Contents> PictureSource::read_contents(std::size_t step, Caller& caller) {
     Contents contents;
-    const bool asked = names_isovalues(job_);
     std::string color = job_.color_by.empty() ? job_.boundary_color_by : job_.color_by;
     std::string field = job_.field.name;
     contents.model = !job_.boundary_color_by.empty();
-    bool contours = asked || (job_.slices.empty() && (!contents.model || !field.empty()));
+    bool contours = wants_surfaces();
     if (!contours && color.empty()) color = field; // of slices
-    const bool unnamed = contours ? field.empty() : color.empty();
-    const std::size_t fields = source_->info().fields.size();
+    if (needed_field().empty())
+        if (auto taken = take_first_view(contours, field, color, contents, caller); !taken) return taken.error();
 
-    FieldsToRead read;
-    if (!unnamed || fields == 0) read = {std::vector<std::string>(), std::vector<std::string>()};
+    FieldsToRead read{std::vector<std::string>(), std::vector<std::string>()};
     for (const auto& [name, is_contoured] : {std::pair(field, true), std::pair(color, false)}) {
-        if (unnamed || name.empty() || (is_contoured && !contours)) continue;
+        if (name.empty() || (is_contoured && !contours)) continue;
         const Result<FoundField> found = choose_field(*source_, {name, is_contoured && job_.field.cell_field});
         if (!found) return found.error();
         add_names(*read.point, found->point);
@@ -247,30 +299,6 @@ Result<PictureSource::Contents> PictureSource::read_contents(std::size_t step, C
     Result<Grid> grid = read_grid(read, step, caller);
     if (!grid) return grid.error();
     contents.grid = *std::move(grid);
-    if (unnamed) {
-        const DefaultField chosen = default_field(contents.grid);
-        if (chosen.name.empty() && asked)
-            return Error{ErrorCode::invalid_data,
-                         fmt::format("none of the {} fields has two different values: there is nothing to contour; "
-                                     "`field` x, y or z contours a coordinate",
-                                     fields)};
-        const bool as_model = contours && !asked && color.empty() && (chosen.name.empty() || chosen.whole_numbers);
-        if (as_model) {
-            contours = false;
-            contents.model = true;
-            color = chosen.name;
-            caller.note(
-                chosen.name.empty()
-                    ? std::string("no field varies: the boundary of the grid is drawn")
-                    : fmt::format("no field was named: '{}', whole numbers, colours the boundary; `field` contours a "
-                                  "field",
-                                  chosen.name));
-        } else {
-            (contours ? field : color) = chosen.name;
-            caller.note(fmt::format("no field was named: '{}', which varies most, was taken; `field` names another",
-                                    chosen.name));
-        }
-    }
     if (contours) {
         Result<PointField> found = find_chosen(contents.grid, field, job_.field, caller);
         if (!found) return found.error();

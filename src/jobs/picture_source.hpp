@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <isotet/jobs/draw_files.hpp>
+#include <isotet/jobs/first_choice.hpp>
 
 namespace isotet::jobs {
 
@@ -32,6 +33,11 @@ private:
     struct Contents; ///< of one step
     explicit PictureSource(const DrawJob& job) : job_(job) {}
     Result<DrawInput> take_surface(const std::optional<Device>& device, Caller& caller);
+    bool wants_surfaces() const;
+    std::string needed_field() const;
+    Result<void> choose_steps_and_view(Caller& caller);
+    Result<void> take_first_view(bool& contours, std::string& field, std::string& color, Contents& contents,
+                                 Caller& caller) const;
     Result<void> keep_steps_with_fields(Caller& caller);
     Result<Contents> read_contents(std::size_t step, Caller& caller);
     Result<void> widen_range(const std::string& color, Caller& caller);
@@ -46,6 +52,7 @@ private:
     double surface_seconds_ = 0;
     std::optional<GridSource> source_;
     std::vector<std::size_t> steps_;
+    FirstView first_; ///< where no field is named
 
     FieldsToRead last_read_;          ///< of the last step
     std::future<Result<Grid>> ahead_; ///< the next step, with the same fields

@@ -19,10 +19,6 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-Field field(std::string name, std::vector<double> values, std::size_t components = 1) {
-    return {std::move(name), Array::own(std::move(values), components)};
-}
-
 TEST(Statistics, AreOfEachComponentAndOfFiniteValues) {
     const Array values = Array::own(std::vector<double>{1, nan, -4, INFINITY, 2.5, nan}, 2);
     const auto all = statistics_of(values).value();
@@ -54,21 +50,6 @@ TEST(TypicalRange, LeavesOutRareValues) {
     EXPECT_EQ(two.upper, 7);
     const ValueRange none = typical_range(Array::own(std::vector<double>{nan}));
     EXPECT_GT(none.lower, none.upper);
-}
-
-TEST(DefaultField, IsSpreadAndNoConstant) {
-    Grid grid;
-    EXPECT_EQ(default_field(grid).name, "");
-    grid.point_fields = {field("constant", {1, 1, 1, 1, 1, 1}), field("ids", {0, 1, 2, 3, 4, 5})};
-    EXPECT_EQ(default_field(grid).name, "ids");
-    EXPECT_TRUE(default_field(grid).whole_numbers);
-    grid.point_fields.push_back(field("p", {0.1, 0.1, 0.1, 0.1, 4.1, 4.1}));
-    EXPECT_EQ(default_field(grid).name, "p") << "measured values come before whole numbers, however these vary";
-    EXPECT_FALSE(default_field(grid).whole_numbers);
-    std::swap(grid.point_fields[1], grid.point_fields[2]);
-    EXPECT_EQ(default_field(grid).name, "p") << "in either order";
-    grid.point_fields = {field("v", {1, 0, 0, 0, 2, 0, 0, 0, 3.5}, 3)};
-    EXPECT_EQ(default_field(grid).name, "v:mag");
 }
 
 TEST(CellCounts, AreByType) {

@@ -273,3 +273,30 @@ def test_checking_against_a_grid_says_what_the_surface_lacks(sphere):
     assert isotet.check(sphere.contour(0.5, "sphere", edge_ends=True), grid=sphere).sound
     for isovalue in (99, []):
         assert isotet.check(sphere.contour(isovalue, "sphere"), grid=sphere).sound
+
+
+def test_components_are_a_vector(tet):
+    points, cells, values = tet
+    grid = isotet.Grid(points, cells, fields={"VelocityX": 2 * values, "VelocityY": 3 * values, "VelocityZ": 6 * values})
+    assert np.array_equal(grid.contour(3.5, "Velocity:mag").points, isotet.contour(points, cells, values, 0.5).points)
+    with pytest.raises(ValueError, match="3 components"):
+        grid.contour(1, "Velocity")
+
+
+def test_without_a_name_the_field_that_is_shown_first_is_taken(tet):
+    points, cells, values = tet
+    grid = isotet.Grid(points, cells, fields={"ids": values + np.arange(4), "foo": 7 * values + 0.1, "T": values})
+    assert grid.first_view == {"field": "T", "draw": "isosurfaces", "cell_field": False, "why": "its name"}
+    assert np.array_equal(grid.contour(0.5).points, isotet.contour(points, cells, values, 0.5).points)
+    assert isotet.Grid(points, cells).first_view["field"] is None
+
+
+def test_a_field_that_the_file_marks_comes_first(tet, tmp_path):
+    points, cells, values = tet
+    path = tmp_path / "a.vtu"
+    grid = isotet.Grid(points, cells, fields={"T": values, "foo": 0.5 * values})
+    grid.write(path)
+    text = path.read_bytes().replace(b"<PointData>", b'<PointData Scalars="foo">')
+    assert b'Scalars="foo"' in text
+    path.write_bytes(text)
+    assert isotet.read(path).first_view["field"] == "foo"

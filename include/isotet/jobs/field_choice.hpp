@@ -50,8 +50,8 @@ void add_names(std::vector<std::string>& names, const std::vector<std::string>& 
 /// Errors   as find_field(); invalid_argument: own values of centres are asked for of a point field
 Result<PointField> find_chosen(const Grid& grid, const std::string& name, const FieldChoice& choice, Caller& caller);
 
-/// Reads a time step into `grid`: what the field needs, and `beside`; all fields where none is named, of which the one
-/// that varies most is taken, with a note.
+/// Reads a time step into `grid`: what the field needs, and `beside`; all fields where none is named, of which that of
+/// first_view() is taken, with a note.
 ///
 /// `beside`   the name of another field, or empty
 /// Errors     as choose_field() and find_field(); invalid_data when none is named and none varies

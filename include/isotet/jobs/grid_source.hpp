@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -67,6 +68,9 @@ public:
     /// The error for a name that is no field's: those that there are, nearest first.
     Error no_such_field(const std::string& name) const;
 
+    /// A step that was read is given out by the next read() of the same step that asks for no more than `fields`.
+    void keep(Grid grid, const FieldsToRead& fields, std::size_t step);
+
     /// Reads one time step, merges points if asked to, and notes what the reader reports, and points that coincide.
     Result<Grid> read(const FieldsToRead& fields, std::size_t step, Caller& caller) const {
         return read(fields, step, caller, caller.run());
@@ -80,6 +84,7 @@ public:
     Result<Grid> read_the_rest(const FieldsToRead& fields, std::size_t step, const Run& run) const;
 
 private:
+    struct Kept;
     Result<ReadResult> read_file(const FieldsToRead& fields, std::size_t step, ReadOptions options,
                                  const Run& run) const;
 
@@ -91,6 +96,7 @@ private:
     std::optional<std::size_t> described_;                      ///< the step whose fields info_ has; nothing: of several
     std::map<std::size_t, std::vector<FieldInfo>> step_fields_; ///< of the steps that were looked at
     ReadOptions read_options_;
+    std::shared_ptr<Kept> kept_; ///< shared by copies: given out once
 };
 
 /// The steps that --time, --step or --all-steps ask for; the first, with a note, when none does and there are several.

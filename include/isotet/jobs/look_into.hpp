@@ -8,8 +8,10 @@
 #include <string>
 #include <vector>
 
+#include <isotet/component_groups.hpp>
 #include <isotet/contour_spectrum.hpp>
 #include <isotet/field_statistics.hpp>
+#include <isotet/first_view.hpp>
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
 
@@ -19,7 +21,7 @@ struct InfoJob {
     GridOptions grid;
     std::vector<std::string> other_outputs; ///< of the caller: no file of the grid may be one
     bool survey = false;                    ///< also what takes longer than reading
-    FieldChoice field;                      ///< of the chart; empty: the one that varies most
+    FieldChoice field;                      ///< of the chart; empty: that of first_view()
     std::optional<std::uint64_t> chart;     ///< steps; nothing: no chart
 };
 
@@ -28,6 +30,12 @@ struct FieldSummary {
     Association association = Association::point;
     ScalarType type = ScalarType::float32;
     std::vector<ComponentStatistics> components;
+};
+
+/// Scalar fields that are the components of one vector or tensor.
+struct VectorSummary {
+    ComponentGroup group;
+    Association association = Association::point;
 };
 
 /// What it costs to contour a field without refining curved cells.
@@ -56,6 +64,8 @@ struct GridSummary {
     bool surveyed = false; ///< whether faces and places were counted, too
     std::uint64_t hanging_points = 0; ///< if so: places in a face of a larger cell, where the surface is open
     std::vector<FieldSummary> fields;
+    std::vector<VectorSummary> vectors;
+    FirstView first; ///< what render and view show, and extract contours, where no field is named
     CurvedSummary curved;
     std::optional<FieldChart> chart;
 };

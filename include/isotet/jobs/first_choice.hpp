@@ -1,0 +1,40 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Which step of a file is shown, and which field where none is named: one rule for all commands.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <isotet/first_view.hpp>
+#include <isotet/jobs/field_choice.hpp>
+#include <isotet/jobs/grid_source.hpp>
+#include <isotet/result.hpp>
+
+namespace isotet::jobs {
+
+/// What a command shows.
+struct FirstChoice {
+    std::vector<std::size_t> steps; ///< one, or all of them
+    FirstView view; ///< of the first step that was looked at where no field is named; else only the name
+};
+
+/// What a choice is asked for.
+struct ChoiceWish {
+    Steps steps = Steps::one;
+    FieldChoice field;
+    FieldsToRead also{std::vector<std::string>(), std::vector<std::string>()}; ///< will be read in any case
+    bool needs_view = true;       ///< where no field is named; else it is not looked for
+    bool only_field_will_do = false; ///< the only field of a file is taken unseen
+};
+
+/// Chooses the step that the options ask for; else the first one, the second or the last, where a field varies, and
+/// notes which. What is read for that is kept by `source`; where step and field are known without it, nothing is read.
+///
+/// Errors   as choose_steps(), choose_field() and of reading
+Result<FirstChoice> choose_first(GridSource& source, const GridOptions& options, const ChoiceWish& wish, Caller& caller,
+                                 const Run& run);
+
+/// "no field was named: 'p', its name, ...": empty where nothing is to be said.
+std::string note_of(const FirstView& view);
+
+} // namespace isotet::jobs

@@ -1,0 +1,43 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Some cells of a grid, in runs, to tell fields from noise.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <isotet/array.hpp>
+#include <isotet/grid.hpp>
+
+namespace isotet::core {
+
+/// Runs of consecutive cells spread over a grid, with the points of each. Nothing is assumed of the grid: what does not
+/// fit is passed over.
+class CellCornersSample {
+public:
+    explicit CellCornersSample(const Grid& grid);
+
+    /// The variance of a scalar within cells (point fields), or around points (cell fields), as a share of that over
+    /// all: about 1 for noise, far less for what varies over many cells. Values are magnitudes of vectors. 0 where the
+    /// sample does not tell, or nothing varies.
+    double roughness(const Array& values, Association association) const;
+
+    /// The same of the coordinates, the largest of the three: what a linear field has on this grid.
+    double roughness_of_linear_fields() const { return linear_; }
+
+    /// Whether the grid is one cell thick along an axis, and many along the others.
+    bool is_one_cell_thick() const { return thin_; }
+
+private:
+    void measure_cells(const Array& points);
+
+    /// Group g has the items first_[g] to first_[g + 1].
+    struct Groups {
+        std::vector<std::uint64_t> items;
+        std::vector<std::size_t> first{0};
+    };
+    Groups points_of_cells_, cells_of_points_;
+    double linear_ = 0;
+    bool thin_ = false;
+};
+
+} // namespace isotet::core

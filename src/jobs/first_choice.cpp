@@ -1,0 +1,168 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/jobs/first_choice.hpp>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <isotet/jobs/number_text.hpp>
+
+namespace isotet::jobs {
+
+namespace {
+
+/// Looks at steps until a field varies.
+class FirstLook {
+public:
+    FirstLook(GridSource& source, const ChoiceWish& wish, Caller& caller, const Run& run)
+        : source_(source), wish_(wish), caller_(caller), run_(run) {}
+
+    /// Whether the field, or any field where none is named, varies at a step.
+    Result<bool> varies_at(std::size_t step) {
+        if (source_.info().times.size() > 1 && (step > 0 || has_looked_))
+            if (auto looked = source_.look_at_steps({step}, caller_); !looked) return looked.error();
+        has_looked_ = true;
+        return wish_.field.name.empty() ? look_for_view(step) : look_at_named(step);
+    }
+
+    const FirstView& view() const { return view_; }
+
+    /// The named field is in none of the steps.
+    const std::optional<Error>& missing() const { return missing_; }
+
+private:
+    Result<bool> look_at_named(std::size_t step) {
+        const Result<FoundField> found = choose_field(source_, wish_.field);
+        if (!found) {
+            if (!was_there_ && !missing_) missing_ = found.error();
+            return false;
+        }
+        was_there_ = true;
+        missing_.reset();
+        FieldsToRead read{found->point, found->cell};
+        const Result<Grid> grid = read_with_others(read, step);
+        if (!grid) return grid.error();
+        source_.keep(*grid, read, step);
+        return field_varies(*grid, found->name);
+    }
+
+    /// Names that are preferred are looked at first: most often one of them is taken.
+    Result<bool> look_for_view(std::size_t step) {
+        constexpr std::size_t most_at_first = 4;
+        const std::vector<FieldInfo>& fields = source_.info().fields;
+        FieldsToRead read{std::vector<std::string>(), std::vector<std::string>()};
+        std::size_t named = 0;
+        for (const FirstCandidate& candidate : first_candidates(fields)) {
+            if (candidate.reason == FirstReason::variation || named == most_at_first) break;
+            auto& names = candidate.association == Association::point ? read.point : read.cell;
+            add_names(*names, candidate.arrays);
+            ++named;
+        }
+        if (named > 0 && fields.size() > most_at_first) {
+            const Result<Grid> grid = read_with_others(read, step);
+            if (!grid) return grid.error();
+            view_ = first_view(*grid, fields);
+            if (!view_.rough && (view_.reason == FirstReason::marked || view_.reason == FirstReason::name)) {
+                source_.keep(*grid, read, step);
+                return true;
+            }
+        }
+        const Result<Grid> grid = source_.read({}, step, caller_, run_);
+        if (!grid) return grid.error();
+        view_ = first_view(*grid, fields);
+        source_.keep(*grid, {}, step);
+        return view_.draw == FirstDraw::isosurfaces || view_.draw == FirstDraw::field_on_boundary;
+    }
+
+    Result<Grid> read_with_others(FieldsToRead& read, std::size_t step) {
+        for (const auto& [names, more] : {std::pair(&read.point, &wish_.also.point), {&read.cell, &wish_.also.cell}}) {
+            if (!*more) names->reset();
+            else if (*names) add_names(**names, **more);
+        }
+        return source_.read(read, step, caller_, run_);
+    }
+
+    GridSource& source_;
+    const ChoiceWish& wish_;
+    Caller& caller_;
+    const Run& run_;
+    FirstView view_;
+    bool has_looked_ = false, was_there_ = false;
+    std::optional<Error> missing_;
+};
+
+bool may_look_on(const Error& error) {
+    return error.code != ErrorCode::cancelled && error.code != ErrorCode::out_of_memory;
+}
+
+/// What needs no reading: the name that was given, or that of the only field.
+std::string known_name(const GridSource& source, const ChoiceWish& wish) {
+    if (!wish.field.name.empty()) return wish.field.name;
+    const std::vector<FieldInfo>& fields = source.info().fields;
+    if (fields.size() != 1 || !wish.only_field_will_do) return {};
+    const std::vector<FirstCandidate> candidates = first_candidates(fields);
+    return candidates.empty() ? fields[0].name : candidates[0].name;
+}
+
+} // namespace
+
+std::string note_of(const FirstView& view) {
+    if (view.field.empty()) return {};
+    if (view.draw == FirstDraw::regions_on_boundary)
+        return fmt::format("no field was named, and none varies: '{}', numbers of regions, colours the boundary; "
+                           "`field` contours a field",
+                           view.field);
+    const char* how = view.draw != FirstDraw::field_on_boundary ? ""
+                      : view.rough ? ", and colours the boundary, for it jumps from cell to cell"
+                                   : ", and colours the boundary, for the grid is one cell thick";
+    return fmt::format("no field was named: '{}' was taken ({}){}; `field` names another", view.field,
+                       text_of(view.reason), how);
+}
+
+Result<FirstChoice> choose_first(GridSource& source, const GridOptions& options, const ChoiceWish& wish, Caller& caller,
+                                 const Run& run) {
+    const std::size_t count = std::max<std::size_t>(source.info().times.size(), 1);
+    const bool is_open = count > 1 && wish.steps == Steps::one && !options.time && !options.step;
+    FirstChoice choice;
+    if (!is_open) {
+        auto steps = choose_steps(source.info(), options, wish.steps, caller);
+        if (!steps) return steps.error();
+        choice.steps = *std::move(steps);
+    }
+    const std::string known = known_name(source, wish);
+    if (!known.empty()) choice.view = {FirstDraw::isosurfaces, known, Association::point, FirstReason::only, false};
+    const bool needs_view = known.empty() && wish.needs_view && !source.info().fields.empty();
+    if (!needs_view && !is_open) return choice;
+    std::vector<std::size_t> steps{0};
+    if (!is_open && wish.steps == Steps::one) steps = choice.steps;
+    else if (count > 1) steps = count > 2 ? std::vector<std::size_t>{0, 1, count - 1} : std::vector<std::size_t>{0, 1};
+    FirstLook look(source, wish, caller, run);
+    std::size_t taken = steps.front();
+    bool varies = false;
+    for (std::size_t i = 0; i < steps.size() && !varies; ++i) {
+        const Result<bool> found = look.varies_at(steps[i]);
+        if (!found && (i == 0 || !may_look_on(found.error()))) return found.error();
+        varies = found && *found;
+        if (varies) taken = steps[i];
+    }
+    if (!varies && steps.size() > 1) { // as the first step is
+        const Result<bool> found = look.varies_at(steps.front());
+        if (!found) return found.error();
+    }
+    if (look.missing()) return *look.missing();
+    if (needs_view) choice.view = look.view();
+    if (!is_open) return choice;
+    choice.steps = {taken};
+    const std::string& name = wish.field.name;
+    const std::string why = taken == 0     ? std::string()
+                            : name.empty() ? std::string(", and no field varies at step 0")
+                                           : fmt::format(", and '{}' does not vary at step 0", name);
+    caller.note(fmt::format("the file has {} time steps{}: step {}, time {}, was taken; `time` and `step` choose "
+                            "another",
+                            count, why, taken, shortest(source.info().times[taken])));
+    return choice;
+}
+
+} // namespace isotet::jobs
