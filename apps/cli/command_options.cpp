@@ -1,8 +1,10 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "command_options.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <memory>
 
 #include <fmt/format.h>
 
@@ -190,6 +192,7 @@ void add_machine_and_input(const Command& command, DeviceChoice& device, GridOpt
 void add_info(const Command& program, InfoCommand& info) {
     const Command command = program.add_command("info", "Show what is in a grid file");
     command.add_file("FILE", info.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]").required();
+    add_more_files(command, info.grid);
     add_time(command, info.grid);
     add_reading(command, info.grid, "--format");
     command.add_flag(
@@ -205,7 +208,7 @@ void add_info(const Command& program, InfoCommand& info) {
 }
 
 void add_levels(const Command& command, ExtractCommand& extract) {
-    const Option isovalues = add_isovalues(command, extract.isovalues, extract.shares);
+    const Option isovalues = add_isovalues(command, extract.isovalues, extract.shares, &extract.decimal_comma);
     command
         .add_count(
             "--levels", {1, 1'000'000}, [&](std::uint64_t n) { extract.levels = n; }, "N",
@@ -339,7 +342,8 @@ void add_render(const Command& program, RenderCommand& render) {
 void add_view(const Command& program, ViewCommand& view) {
     const Command command = program.add_command("view", "Look at isosurfaces in the browser, with a slider");
     command.add_file("FILE", view.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]").required();
-    add_field(command, view.field, "The field to begin with; default: the one that varies most");
+    add_more_files(command, view.grid);
+    add_field(command, view.field, "The field to begin with; default: the one that info says is shown first");
     add_isovalues(command, view.isovalues);
     command.add_text("--color-by", view.color_by, "FIELD", "Colour by this point or cell field to begin with");
     command.add_count(
@@ -473,10 +477,93 @@ void add_centre(const Command& command, FieldChoice& field) {
         "its points (mean, the default), or the cell's own (own): sharper, and beyond the values around");
 }
 
+namespace {
+
+constexpr const char* more_files_text = "Files of further time steps, taken in the order of the numbers in their names";
+
+/// "run2" before "run10".
+bool comes_before(std::string_view a, std::string_view b) {
+    const auto number_at = [](std::string_view text) {
+        return text.substr(0, std::min(text.find_first_not_of("0123456789"), text.size()));
+    };
+    while (!a.empty() && !b.empty()) {
+        std::string_view x = number_at(a), y = number_at(b);
+        if (x.empty() || y.empty()) {
+            if (a[0] != b[0]) return a[0] < b[0];
+            x = a.substr(0, 1);
+            y = b.substr(0, 1);
+        }
+        a.remove_prefix(x.size());
+        b.remove_prefix(y.size());
+        x.remove_prefix(std::min(x.find_first_not_of('0'), x.size() - 1));
+        y.remove_prefix(std::min(y.find_first_not_of('0'), y.size() - 1));
+        if (x != y) return x.size() != y.size() ? x.size() < y.size() : x < y;
+    }
+    return a.size() < b.size();
+}
+
+void add_step(const std::string& option, const std::string& name, GridOptions& grid) {
+    if (name.empty()) refuse_value(option, name, "the name of a file");
+    grid.more_files.push_back(name);
+    if (comes_before(name, grid.file)) std::swap(grid.more_files.back(), grid.file);
+    std::ranges::stable_sort(grid.more_files, comes_before);
+}
+
+/// Whether a name can be one of a grid only.
+bool is_of_grid(const std::string& name) {
+    const FileKinds kinds = kinds_of(name);
+    return kinds.grid && !kinds.surface;
+}
+
+} // namespace
+
+void add_more_files(const Command& command, GridOptions& grid) {
+    command.add_texts(
+        "MORE",
+        [&grid](const std::vector<std::string>& names) {
+            for (const std::string& name : names) {
+                refuse_loose_number(name);
+                add_step("MORE", name, grid);
+            }
+        },
+        "FILES", more_files_text);
+}
+
+void add_out_and_more_files(const Command& command, GridOptions& grid, std::string& out, const std::string& what) {
+    const auto by_place = std::make_shared<bool>(false); // OUT was given by its place
+    const auto take = [&grid, &out, by_place](const std::string& option, const std::string& name) {
+        if (name.empty()) refuse_value(option, name, "the name of a file");
+        if (is_of_grid(name)) return add_step(option, name, grid);
+        if (!out.empty() && !*by_place)
+            refuse_value(option, name, "nothing beside -o but grids of further time steps");
+        if (*by_place) add_step(option, out, grid); // the last one is OUT
+        out = name;
+        *by_place = true;
+    };
+    command.add_value("OUT", [take](const std::string& name) { take("OUT", name); }, "OUT_FILE", what);
+    command.add_texts(
+        "MORE",
+        [take](const std::vector<std::string>& names) {
+            for (const std::string& name : names) {
+                refuse_loose_number(name);
+                take("MORE", name);
+            }
+        },
+        "FILES", std::string(more_files_text) + "; OUT is then the last name");
+}
+
 Option add_isovalues(const Command& command, std::vector<double>& isovalues) {
     return command.add_numbers("-i,--isovalue", isovalues, "V[,W...]",
                                "Isovalues, separated by commas, or @NAME: from that file, separated by blanks, commas "
                                "or line ends, # begins a comment; may be repeated");
+}
+
+/// "0,2" as 0.2; nothing for other text.
+std::optional<double> with_decimal_comma(std::string text) {
+    const std::size_t comma = text.find(',');
+    if (comma == std::string::npos || text.find_first_not_of("-0123456789,") != std::string::npos) return {};
+    text[comma] = '.';
+    return parse_number(text);
 }
 
 /// "90%v" and "p95"; nothing for other words.
@@ -496,7 +583,8 @@ std::optional<IsovalueShare> parse_share(std::string_view word) {
     return share;
 }
 
-Option add_isovalues(const Command& command, std::vector<double>& isovalues, std::vector<IsovalueShare>& shares) {
+Option add_isovalues(const Command& command, std::vector<double>& isovalues, std::vector<IsovalueShare>& shares,
+                     std::optional<double>* decimal_comma) {
     return command.add_numbers(
         "-i,--isovalue", isovalues, "V[,W...]",
         "Isovalues, separated by commas: numbers, 90%v for the one with 90 % of the grid's volume below, p95 for the "
@@ -507,7 +595,10 @@ Option add_isovalues(const Command& command, std::vector<double>& isovalues, std
              if (share) shares.push_back(*share);
              return share.has_value();
          },
-         "finite numbers, or shares such as 90%v or p95"});
+         "finite numbers, or shares such as 90%v or p95",
+         [decimal_comma](const std::vector<std::string>& lists) {
+             if (decimal_comma && lists.size() == 1) *decimal_comma = with_decimal_comma(lists.front());
+         }});
 }
 
 void add_device(const Command& command, DeviceChoice& choice) {
@@ -589,8 +680,8 @@ void add_common(const Command& command, CommonOptions& common) {
 
 void add_grid_and_surface(const Command& command, ExtractJob& job) {
     command.add_file("FILE", job.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]").required();
-    const Option out = command.add_file("OUT", job.out, "OUT_FILE", "The surface, as -o");
-    command.add_file("-o,--output", job.out, "OUT_FILE", "The surface; the ending says the format").excludes(out);
+    command.add_file("-o,--output", job.out, "OUT_FILE", "The surface; the ending says the format");
+    add_out_and_more_files(command, job.grid, job.out, "The surface, as -o");
 }
 
 void add_surface_options(const Command& command, ExtractJob& job, const std::string& solids) {
@@ -624,6 +715,11 @@ void add_surface_options(const Command& command, ExtractJob& job, const std::str
                      "Tell the volume of the grid where the field is below each isovalue, and where it is above");
     command.add_flag("--fail-if-empty", job.fail_if_empty,
                      "An empty surface is an error, exit status 3, and is not written");
+    command
+        .add_flag("--allow-empty", job.allow_empty,
+                  "Write empty surfaces also where all isovalues are outside the range of the field, which else is an "
+                  "error, exit status 3")
+        .excludes(command.option("--fail-if-empty"));
     command.add_text("--color-by", job.colors.by, "FIELD",
                      "Colour vertices by this point field: vertex colours in .glb, .ply and .usda, a field rgb in .vtp "
                      "and .vtk");

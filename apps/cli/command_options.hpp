@@ -2,7 +2,9 @@
 // The options of every command, written into the option tree once.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "option_tree.hpp"
 #include "options.hpp"
@@ -23,9 +25,18 @@ Command add_bench_command(const Command& program, BenchCommand& bench);
 // Options that several commands have.
 Option add_field(const Command& command, FieldChoice& field, const std::string& description);
 void add_centre(const Command& command, FieldChoice& field);
+/// Grids behind FILE, which are further time steps.
+void add_more_files(const Command& command, GridOptions& grid);
+
+/// The same, and OUT among them: the last name that is not one of a grid only. -o is there already.
+void add_out_and_more_files(const Command& command, GridOptions& grid, std::string& out, const std::string& what);
+
 Option add_isovalues(const Command& command, std::vector<double>& isovalues);
 /// Takes shares, too.
-Option add_isovalues(const Command& command, std::vector<double>& isovalues, std::vector<IsovalueShare>& shares);
+///
+/// `decimal_comma`   becomes what two isovalues are with a comma for a decimal sign; may be null
+Option add_isovalues(const Command& command, std::vector<double>& isovalues, std::vector<IsovalueShare>& shares,
+                     std::optional<double>* decimal_comma = nullptr);
 /// `asked`   becomes true with any of the options; may be null
 void add_refinement(const Command& command, RefineChoice& refine, bool* asked = nullptr);
 void add_color_scale(const Command& command, ColorScale& scale, std::vector<double>& range);

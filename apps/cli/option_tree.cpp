@@ -154,11 +154,14 @@ std::string unknown_option(const CLI::App& program, const CommandText& command) 
     return {};
 }
 
+std::string one_word_too_many(std::string_view number) {
+    return fmt::format("'{}' is one word too many; several numbers stand in a list, such as -i 0.1,0.2", number);
+}
+
 /// For numbers that follow a list after a space: "0.2 is one word too many; ...". Empty where it is something else.
 std::string number_too_many(const CLI::App& program) {
     for (const std::string& word : program.remaining(true))
-        if (parse_number(word))
-            return fmt::format("'{}' is one word too many; several numbers stand in a list, such as -i 0.1,0.2", word);
+        if (parse_number(word)) return one_word_too_many(word);
     return {};
 }
 
@@ -173,6 +176,10 @@ bool has_short_option(const CLI::App& app, char c) {
 }
 
 } // namespace
+
+void refuse_loose_number(std::string_view word) {
+    if (parse_number(word)) throw CLI::ValidationError(one_word_too_many(word));
+}
 
 void refuse_value(const std::string& names, std::string_view given, std::string_view rule) {
     const std::string name = names.substr(names.rfind(',') + 1); // npos + 1 is 0
@@ -256,6 +263,7 @@ Option Command::add_numbers(const std::string& names, std::vector<double>& targe
     return add_texts(
         names,
         [&target, &files = *number_files_, names, other](const std::vector<std::string>& lists) {
+            if (other.see) other.see(lists);
             for (const std::string& list : lists) {
                 if (list.starts_with('@')) {
                     append_numbers_of_file(list.substr(1), target, other);

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -24,6 +25,9 @@ class Option;
 namespace isotet::cli {
 
 struct CommandLine;
+
+/// Refuses a number where the name of a file is expected: it belongs to a list before it.
+void refuse_loose_number(std::string_view word);
 
 /// Refuses a value during parsing: "--side got 'x', but it takes a whole number". `names` is the option's, the long one
 /// last.
@@ -98,6 +102,7 @@ public:
     struct OtherWords {
         std::function<bool(std::string_view word)> take = {}; ///< false: the word is none
         const char* rule = "a finite number";                 ///< what an item of the list may be
+        std::function<void(const std::vector<std::string>& lists)> see = {}; ///< sees them before they are taken apart
     };
     Option add_numbers(const std::string& names, std::vector<double>& target, const std::string& type,
                        const std::string& description, OtherWords other) const;

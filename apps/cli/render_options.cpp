@@ -176,10 +176,9 @@ Command add_render_command(const Command& program, RenderCommand& render) {
     const Command command = program.add_command("render", "Draw isosurfaces, or a surface, into a picture");
     command.add_file("FILE", render.grid.file, "FILE", "A grid or a surface: a file, or make:SHAPE:SIDE[:FIELDS]")
         .required();
-    const Option out = command.add_file("OUT", render.out, "OUT_FILE", "The picture, as -o");
-    command.add_file("-o,--output", render.out, "OUT_FILE", "The picture, .png; many: {frame} in the name, or .webp")
-        .excludes(out);
-    add_field(command, render.field, "The field to contour; default: the one that varies most");
+    command.add_file("-o,--output", render.out, "OUT_FILE", "The picture, .png; many: {frame} in the name, or .webp");
+    add_out_and_more_files(command, render.grid, render.out, "The picture, as -o");
+    add_field(command, render.field, "The field to contour; default: the one that info says is shown first");
     add_centre(command, render.field);
     const Option isovalues = add_isovalues(command, render.isovalues, render.shares);
     command

@@ -137,6 +137,43 @@ std::string_view utf_16_order(std::string_view bytes) {
     return {};
 }
 
+/// What of a folder could be read: index files before others, by name. A few of many.
+std::vector<std::string> grids_in(const std::string& folder) {
+    constexpr std::size_t most_looked_at = 10'000;
+    const auto is_index = [](const std::string& name) {
+        constexpr std::array<std::string_view, 8> endings{".pvd",  ".series", ".case", ".xdmf",
+                                                          ".xmf", ".foam",   ".pvtu", ".vtm"};
+        return std::ranges::find(endings, extension_of(name)) != endings.end();
+    };
+    std::vector<std::string> names;
+    std::error_code failed;
+    std::size_t looked_at = 0;
+    for (std::filesystem::directory_iterator entry(folder, failed), end; !failed && entry != end;
+         entry.increment(failed)) {
+        if (++looked_at > most_looked_at) break;
+        const std::string name = entry->path().filename().string(), extension = extension_of(name);
+        const auto reads = [&](const GridReader* reader) {
+            return std::ranges::find(reader->format.extensions, extension) != reader->format.extensions.end();
+        };
+        if (!extension.empty() && std::ranges::any_of(grid_readers(), reads)) names.push_back(name);
+    }
+    std::ranges::sort(names, {}, [&](const std::string& name) { return std::pair(!is_index(name), name); });
+    return names;
+}
+
+Error not_a_case(const std::string& folder) {
+    constexpr std::size_t most_named = 6;
+    std::vector<std::string> names = grids_in(folder);
+    const std::string what = fmt::format("{} is a folder, but no case of OpenFOAM", folder);
+    if (names.empty()) return {ErrorCode::file, what + ", and no grid is in it"};
+    const std::size_t more = names.size() - std::min(names.size(), most_named);
+    names.resize(names.size() - more);
+    for (std::string& name : names) name = in_quotes(name);
+    return {ErrorCode::file, fmt::format("{}; in it {} {}{}", what, names.size() + more == 1 ? "is" : "are",
+                                         fmt::join(names, ", "),
+                                         more > 0 ? fmt::format(" and {} more", more) : std::string())};
+}
+
 /// What a file is that holds no grid itself: a packed one, or a pointer to one. Empty if none.
 std::string_view wrapping_of(std::string_view head) {
     struct Wrapping {
@@ -215,6 +252,7 @@ Result<const GridReader*> choose_reader(const std::string& path, const ReadOptio
     const std::string_view text =
         std::string_view(head->bytes).substr(head->bytes.starts_with(utf_8_mark) ? utf_8_mark.size() : 0);
     const bool is_case = head->folder && is_openfoam_case(path);
+    if (head->folder && !is_case && options.format.empty()) return not_a_case(path);
     const GridReader* best = nullptr;
     int best_score = 0;
     for (const GridReader* reader : readers) {

@@ -242,6 +242,69 @@ Result<ReadResult> read_checked(const std::string& path, const ReadOptions& opti
     return result;
 }
 
+/// The file of a step, where each step has one, and the options to read it with.
+struct FileOfStep {
+    std::string path;
+    ReadOptions options;
+    std::vector<std::string> all;
+};
+
+Result<FileOfStep> file_of_step(const std::string& path, const ReadOptions& options) {
+    FileOfStep found{path, options, {path}};
+    found.all.insert(found.all.end(), options.more_files.begin(), options.more_files.end());
+    const std::size_t step = options.step.value_or(0);
+    if (step >= found.all.size())
+        return Error{ErrorCode::invalid_argument,
+                     fmt::format("step {} is not there, but there are {} files, a step each, counted from 0", step,
+                                 found.all.size())};
+    found.path = found.all[step];
+    found.options.more_files.clear();
+    found.options.step.reset();
+    return found;
+}
+
+/// Steps are numbered; a file of several steps is none of a series.
+Result<void> number_steps(const FileOfStep& file, FileInfo& info) {
+    if (info.times.size() > 1)
+        return Error{ErrorCode::invalid_argument, fmt::format("several files are a time step each, but {} has {} steps",
+                                                              file.path, info.times.size())};
+    info.times.clear();
+    for (std::size_t i = 0; i < file.all.size(); ++i) info.times.push_back(static_cast<double>(i));
+    for (const std::string& other : file.all)
+        if (std::ranges::find(info.files, other) == info.files.end()) info.files.push_back(other);
+    return {};
+}
+
+Result<FileInfo> inspect_one(const std::string& path, const ReadOptions& options, const Progress& progress) {
+    const auto reader = choose_reader(path, options);
+    if (!reader) return reader.error();
+    auto info = (*reader)->inspect(path, options, progress);
+    if (!info) return info;
+    if (auto known = check_blocks(*info, options); !known) return known.error();
+    return info;
+}
+
+Result<FileInfo> inspect_step(const std::string& path, const ReadOptions& options, const Progress& progress) {
+    if (options.more_files.empty()) return inspect_one(path, options, progress);
+    const auto file = file_of_step(path, options);
+    if (!file) return file.error();
+    auto info = inspect_one(file->path, file->options, progress);
+    if (!info) return info;
+    if (auto numbered = number_steps(*file, *info); !numbered) return numbered.error();
+    return info;
+}
+
+Result<ReadResult> read_step(const std::string& path, const ReadOptions& options, const Progress& progress) {
+    if (options.more_files.empty()) return read_checked(path, options, progress);
+    const auto file = file_of_step(path, options);
+    if (!file) return file.error();
+    auto result = read_checked(file->path, file->options, progress);
+    if (!result) return result;
+    if (auto numbered = number_steps(*file, result->info); !numbered) return numbered.error();
+    result->step = options.step.value_or(0);
+    return result;
+}
+
 /// The only place where a failed allocation of a reader becomes an error.
 template <class Value, class Work>
 Result<Value> without_exceptions(const std::string& path, const Run& run, const Work& work) {
@@ -265,19 +328,13 @@ Result<Value> without_exceptions(const std::string& path, const Run& run, const 
 } // namespace io
 
 Result<FileInfo> inspect(const std::string& path, const ReadOptions& options, const Run& run) {
-    return io::without_exceptions<FileInfo>(path, run, [&](const Progress& progress) -> Result<FileInfo> {
-        const auto reader = io::choose_reader(path, options);
-        if (!reader) return reader.error();
-        auto info = (*reader)->inspect(path, options, progress);
-        if (!info) return info;
-        if (auto known = io::check_blocks(*info, options); !known) return known.error();
-        return info;
-    });
+    return io::without_exceptions<FileInfo>(
+        path, run, [&](const Progress& progress) { return io::inspect_step(path, options, progress); });
 }
 
 Result<ReadResult> read(const std::string& path, const ReadOptions& options, const Run& run) {
     return io::without_exceptions<ReadResult>(
-        path, run, [&](const Progress& progress) { return io::read_checked(path, options, progress); });
+        path, run, [&](const Progress& progress) { return io::read_step(path, options, progress); });
 }
 
 } // namespace isotet

@@ -54,6 +54,7 @@ private:
     Result<void> choose_values(std::size_t step);
     Result<void> extract_step(std::size_t step);
     std::vector<Field> field_data_of(const Surface& surface) const;
+    Result<void> check_that_some_meet(const ContourResult& result) const;
     Result<std::vector<Surface>> extract_pass(std::span<const double> isovalues, std::size_t step);
     Result<std::vector<Surface>> extract_solid(double isovalue, std::size_t step);
     Result<FieldReport> range_of_field();
@@ -364,6 +365,25 @@ OutputKey ExtractRun::key(double isovalue, std::size_t step) const {
     return {isovalue, time_of(source_->info(), step), step, std::max<std::size_t>(source_->info().times.size(), 1)};
 }
 
+/// Isovalues that are all outside the range of the field were not meant.
+Result<void> ExtractRun::check_that_some_meet(const ContourResult& result) const {
+    const bool is_asked = !job_.isovalues.empty() && !job_.allow_empty && !job_.fail_if_empty;
+    const bool has_range = result.field.lower <= result.field.upper;
+    if (!is_asked || !has_range || job_.piece || job_.field.shape || plan_.steps.size() > 1) return {};
+    const auto is_outside = [&](double value) { return !(value >= result.field.lower && value <= result.field.upper); };
+    const auto is_lowest = [&](double value) { return value == result.field.lower; };
+    const auto is_empty = [](const auto& one) { return one.surface.triangle_count() == 0; };
+    if (!std::ranges::all_of(isovalues_, [&](double value) { return is_outside(value) || is_lowest(value); }) ||
+        std::ranges::none_of(isovalues_, is_outside) || !std::ranges::all_of(result.surfaces, is_empty))
+        return {};
+    std::string sentence = why_empty(result.field, isovalues_.front());
+    if (isovalues_.size() == 2) sentence += ", and so is the other one";
+    if (isovalues_.size() > 2) sentence += fmt::format(", and so are the other {}", isovalues_.size() - 1);
+    if (job_.decimal_comma && !is_outside(*job_.decimal_comma))
+        sentence += fmt::format("; did you mean {}? Commas separate isovalues", shortest(*job_.decimal_comma));
+    return Error{ErrorCode::invalid_data, sentence + "; `allow_empty` writes it nevertheless"};
+}
+
 Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> isovalues, std::size_t step) {
     for (const double isovalue : isovalues) caller_.detail("extracting " + shortest(isovalue));
     Result<ContourResult> result = contour_->extract(isovalues, caller_.run());
@@ -378,6 +398,7 @@ Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> is
     if (const auto packed = contour_->packed()) numbers_.pack = packed->report();
     coarse_tets_ += result->coarse_tets;
     numbers_.refinement = result->refinement;
+    if (Result<void> met = check_that_some_meet(*result); !met) return met.error();
     std::vector<Surface> surfaces;
     for (std::size_t i = 0; i < isovalues.size(); ++i) {
         Surface& surface = surfaces.emplace_back(std::move(result->surfaces[i].surface));

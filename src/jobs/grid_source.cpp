@@ -136,6 +136,9 @@ Result<GridSource> GridSource::open(const GridOptions& options, Caller& caller) 
     GridSource source;
     source.options_ = options;
     if (options.file.starts_with(made_prefix)) {
+        if (!options.more_files.empty())
+            return refusal("'{}' would be a further time step, but '{}' is made", options.more_files.front(),
+                           options.file);
         if (!options.blocks.empty())
             return Error{ErrorCode::invalid_argument,
                          fmt::format("`block` {}: a made grid has no blocks", options.blocks.front())};
@@ -152,6 +155,7 @@ Result<GridSource> GridSource::open(const GridOptions& options, Caller& caller) 
     read_options.allow_outside = options.allow_outside;
     read_options.displace = options.displace;
     read_options.blocks = options.blocks;
+    read_options.more_files = options.more_files;
     read_options.step = options.step;
     Result<FileInfo> info = inspect(options.file, read_options, caller.run());
     if (!info && options.step) { // choose_steps() refuses a step that is not there

@@ -242,7 +242,7 @@ TEST_F(Program, ExtractTakesNegativeValuesAndExponents) {
 
 TEST_F(Program, ExtractMakesAValidEmptyFileOutsideTheRange) {
     for (const char* name : {"e.vtp", "e.ply", "e.stl", "e.obj", "e.vtk", "e.ts"}) {
-        const RunResult run = isotet({"extract", "make:kuhn:4:sphere", path(name), "-i", "99"});
+        const RunResult run = isotet({"extract", "make:kuhn:4:sphere", path(name), "-i", "99", "--allow-empty"});
         EXPECT_EQ(run.status, 0) << run.err;
         EXPECT_NE(run.err.find("isotet: note: isovalue 99 is outside the range"), std::string::npos) << run.err;
         EXPECT_NE(run.err.find("0 to 1.732"), std::string::npos) << run.err;
@@ -331,7 +331,7 @@ TEST_F(Program, ExtractKeepsDegenerateTrianglesWhenAsked) {
 }
 
 TEST_F(Program, ExtractSaysNothingWithQuiet) {
-    const RunResult run = isotet({"extract", "make:kuhn:4:sphere", "-i", "99", "-q"});
+    const RunResult run = isotet({"extract", "make:kuhn:4:sphere", "-i", "99", "-q", "--allow-empty"});
     EXPECT_EQ(run.status, 0);
     EXPECT_EQ(run.out + run.err, "");
 }
@@ -384,6 +384,50 @@ TEST_F(Program, ExtractFailsIfEmptyWhenAskedTo) {
     EXPECT_EQ(isotet({"extract", "make:kuhn:4:sphere", path("s.vtp"), "-i", "0.5", "--fail-if-empty"}).status, 0);
 }
 
+TEST_F(Program, ExtractRefusesIsovaluesThatAreAllOutsideTheRange) {
+    const RunResult run = isotet({"extract", "make:kuhn:4:sphere", path("s.vtp"), "-i", "99,-3"});
+    EXPECT_EQ(run.status, 3);
+    EXPECT_NE(run.err.find("isovalue 99 is outside the range of 'sphere'"), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find("--allow-empty"), std::string::npos) << run.err;
+    EXPECT_EQ(folder.entries(), 0u);
+    EXPECT_EQ(isotet({"extract", "make:kuhn:4:sphere", path("s.vtp"), "-i", "99,0.5"}).status, 0) << "one is inside";
+}
+
+TEST_F(Program, ExtractAsksWhetherACommaWasADecimalSign) {
+    put_content(path("g.msh"), small_grid({{"p", {0, 0.1, 0.2, 0.3, 0.5}}}));
+    const RunResult run = isotet({"extract", path("g.msh"), path("s.vtp"), "-f", "p", "-i", "0,2"});
+    EXPECT_EQ(run.status, 3);
+    EXPECT_NE(run.err.find("did you mean 0.2? Commas separate isovalues"), std::string::npos) << run.err;
+    EXPECT_EQ(isotet({"extract", path("g.msh"), "-f", "p", "-i", "0,7"}).err.find("did you mean"), std::string::npos)
+        << "0.7 is outside, too";
+}
+
+TEST_F(Program, SeveralFilesAreStepsInTheOrderOfTheirNumbers) {
+    for (const char* name : {"g10.vtk", "g2.vtk", "g1.vtk"}) {
+        const std::string side = name[1] == '2' ? "3" : "2";
+        ASSERT_EQ(isotet({"make", "kuhn", "--side", side, "--fields", "sphere", "-o", path(name)}).status, 0);
+    }
+    const json report = json_of({"extract", path("g1.vtk"), path("g10.vtk"), path("g2.vtk"), path("s-{step}.vtp"),
+                                 "-i", "0.5", "--all-steps"});
+    ASSERT_EQ(report["surfaces"].size(), 3u);
+    const auto triangles_of = [&](int step) { return report["surfaces"][step]["triangles"]; };
+    EXPECT_EQ(triangles_of(0), triangles_of(2));
+    EXPECT_NE(triangles_of(0), triangles_of(1)) << "g2 comes before g10";
+    EXPECT_EQ(report["surfaces"][2]["time"], 2);
+    const json info = json_of({"info", path("g1.vtk"), path("g2.vtk")});
+    EXPECT_EQ(info["times"], (std::vector<double>{0, 1}));
+}
+
+TEST_F(Program, AFolderThatIsNoCaseIsRefusedWithWhatIsInIt) {
+    put_content(path("b.vtu"), "<VTKFile>");
+    put_content(path("run.pvd"), "<VTKFile>");
+    put_content(path("notes.txt"), "");
+    const RunResult run = isotet({"info", folder.path().string()});
+    EXPECT_EQ(run.status, 3);
+    EXPECT_NE(run.err.find("is a folder, but no case of OpenFOAM; in it are 'run.pvd', 'b.vtu'"), std::string::npos)
+        << run.err;
+}
+
 TEST_F(Program, ExtractExplainsAnIsovalueAtTheMinimum) {
     put_content(path("g.msh"), small_grid({{"p", {0, 1, 2, 3, 4}}}));
     const RunResult run = isotet({"extract", path("g.msh"), "-f", "p", "-i", "0"});
@@ -395,9 +439,9 @@ TEST_F(Program, ExtractExplainsAnIsovalueAtTheMinimum) {
 
 TEST_F(Program, ExtractSaysWhenAnEmptySurfaceReplacesAFile) {
     put_content(path("s.vtp"), "old");
-    const RunResult run = isotet({"extract", "make:kuhn:4:sphere", path("s.vtp"), "-i", "99"});
+    const RunResult run = isotet({"extract", "make:kuhn:4:sphere", path("s.vtp"), "-i", "99", "--allow-empty"});
     EXPECT_NE(run.err.find("s.vtp' was replaced by an empty surface"), std::string::npos) << run.err;
-    const RunResult fresh = isotet({"extract", "make:kuhn:4:sphere", path("t.vtp"), "-i", "99"});
+    const RunResult fresh = isotet({"extract", "make:kuhn:4:sphere", path("t.vtp"), "-i", "99", "--allow-empty"});
     EXPECT_EQ(fresh.err.find("replaced"), std::string::npos) << fresh.err;
 }
 

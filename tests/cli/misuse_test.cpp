@@ -30,7 +30,7 @@ const Misuse misuses[] = {
     {{"help", "extrct"}, "'extrct' is no command; commands are info, extract"},
     {{"extract", "make:kuhn:2:sphere", "-i", "1", "s-{val}.vtp"},
      "has {val}, but here only {value} and {time} and {step} can stand for something"},
-    {{"extract", "make:kuhn:2", "a.vtp", "-o", "b.vtp", "-i", "1"}, "excludes"},
+    {{"extract", "make:kuhn:2", "a.vtp", "-o", "b.vtp", "-i", "1"}, "OUT got 'a.vtp'"},
     {{"extract", "", "-i", "1"}, "FILE got '', but it takes the name of a file"},
     {{"extract", "make:kuhn:2:sphere", "", "-i", "1"}, "OUT got ''"},
     {{"extract", "make:kuhn:2:sphere", "-o", "", "-i", "1"}, "--output got ''"},

@@ -59,6 +59,7 @@ struct ExtractJob {
     std::vector<std::string> other_outputs; ///< of the caller: no surface may overwrite them
     FieldChoice field;
     std::vector<double> isovalues;
+    std::optional<double> decimal_comma; ///< what two isovalues mean if their comma is a decimal sign
     std::vector<IsovalueShare> shares; ///< more isovalues, after the others: of each time step its own
     std::uint64_t levels = 0;          ///< 0: `isovalues` and `shares` say it
     bool volumes = false;              ///< the volume on both sides of each isovalue: SurfaceNumbers::volumes
@@ -67,6 +68,7 @@ struct ExtractJob {
     std::optional<std::vector<std::string>> with; ///< nothing: all point fields that the format can hold
     bool keep_degenerate = false;
     bool fail_if_empty = false;
+    bool allow_empty = false; ///< also where all isovalues are outside the field's range, which else is an error
     bool edge_ends = false;
     bool source_cells = false;
     bool split_cells = false;

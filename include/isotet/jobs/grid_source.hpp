@@ -30,6 +30,7 @@ struct GridOptions {
     bool allow_outside = false;
     std::string displace;
     std::vector<std::string> blocks;       ///< names or numbers; empty: all
+    std::vector<std::string> more_files;   ///< of further time steps
     std::vector<std::string> other_inputs; ///< files that the caller read: no output may be one
 };
 
