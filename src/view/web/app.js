@@ -11,6 +11,7 @@ const [token, ...rest] = location.hash.slice(1).split('&');
 export const app = {
   token, state: fromAddress(rest.join('&')), camera: new Camera(),
   grid: null, maps: null, frame: null, // as the server sent them
+  made: null,                          // what the last frame took that brought a surface
   scene: null,                         // null: the server draws
   link: null, slider: null, cuts: null, time: null, save: null,
   number: 0, sent: null, sentAt: new Map(), // wishes: the last number, what it asked for, and when each went

@@ -10,7 +10,7 @@ export class Link {
     this.delay = 300;
     this.refused = ''; // why there is nothing to come back to: token, pages or file
     this.ready = false;
-    this.heard = performance.now();
+    this.heard = this.listened = performance.now();
     this.connect();
     setInterval(() => this.listen(), 1000);
     // A page that is closed says so; one that the browser shows again connects anew.
@@ -49,8 +49,11 @@ export class Link {
 
   /** The server tells every 4 seconds that it is there; while something large comes nothing else can be heard. */
   listen() {
+    const now = performance.now(), slept = now - this.listened > 3000;
+    this.listened = now;
+    if (slept) this.heard = now; // what came while the page was busy, or the machine asleep, is not taken yet
     const limit = Number(document.body.dataset.silence) || (this.on.waits() ? 60000 : 12000);
-    if (!this.ready || performance.now() - this.heard < limit) return;
+    if (!this.ready || now - this.heard < limit) return;
     const {socket} = this;
     socket.onclose = socket.onmessage = null; // it may take long to end
     socket.close();

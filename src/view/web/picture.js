@@ -147,9 +147,9 @@ function tellFacts() {
   id('shown').textContent = first ? `${format.short(first.isovalue)} shown` : 'No surface';
   const parts = [`${format.grouped(triangles)} triangles` + (app.frame.preview && !app.frame.picture ? `, preview of ${format.rough(drawn)}` : '')];
   if (triangles === 0 && first) parts[0] = ['no triangles at this value', outside(first.isovalue)].filter(Boolean).join(': ');
-  const {picture} = app.frame;
+  const {picture} = app.frame, made = picture ? app.frame : app.made || app.frame;
   if (picture) parts.push(`drawn by the server (${serverDraws() || 'until now'}): ${picture.type === 'image/png' ? 'exact' : 'while it moves'}, ${picture.width} × ${picture.height}`);
-  parts.push(`extract ${format.duration(app.frame.extract_ms)}`, `${picture ? 'draw and encode' : 'encode'} ${format.duration(app.frame.mesh_ms)}`, format.bytes(app.frame.bytes),
+  parts.push(`extract ${format.duration(made.extract_ms)}`, `${picture ? 'draw and encode' : 'encode'} ${format.duration(made.mesh_ms)}`, format.bytes(made.bytes),
     `${picture ? 'show' : 'draw'} ${format.duration(app.frame.draw_ms)}`, `${format.duration(app.frame.age_ms)} in all`);
   if (app.frame.field_bound != null) parts.push(`curved cells refined: within ${format.short(app.frame.field_bound)} of the field`);
   else if (app.grid.refines && !picture) parts.push('curved cells split at their nodes');
@@ -210,6 +210,7 @@ export function takeFrame(buffer) {
   for (const key of [...app.scene.meshes.keys()]) if (!keep.has(key)) app.scene.remove(key);
   for (const {key, mesh} of next.surfaces) if (mesh) app.scene.add(key, mesh);
   app.frame = next;
+  if (next.surfaces.some(({kind, mesh}) => kind === 'surface' && mesh)) app.made = {extract_ms: next.extract_ms, mesh_ms: next.mesh_ms, bytes: next.bytes};
   if (next.number >= app.number) stopWaiting();
   showNotes(next);
   checkPicked();
