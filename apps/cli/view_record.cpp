@@ -70,6 +70,8 @@ Json read_records() {
     return whole;
 }
 
+bool is_of(const Json& record, const std::string& file) { return record["file"].get_ref<const std::string&>() == file; }
+
 /// Takes the place of the file before, at once.
 void write_own_file(const fs::path& path, std::string_view text) {
     const std::string part = path.string() + "." + std::to_string(::getpid());
@@ -84,7 +86,7 @@ void write_own_file(const fs::path& path, std::string_view text) {
 std::optional<ViewRecord> recall_view(const std::string& file) {
     const std::string name = name_of_file(file);
     for (const Json& one : read_records())
-        if (one["file"] == name) return ViewRecord{one["token"].get<std::string>(), one["port"].get<std::uint16_t>()};
+        if (is_of(one, name)) return ViewRecord{one["token"].get<std::string>(), one["port"].get<std::uint16_t>()};
     return std::nullopt;
 }
 
@@ -94,7 +96,7 @@ void remember_view(const std::string& file, const ViewRecord& record) {
     const std::string name = name_of_file(file);
     Json records = Json::array({{{"file", name}, {"token", record.token}, {"port", record.port}}});
     for (const Json& one : read_records())
-        if (one["file"] != name && records.size() < max_records) records.push_back(one);
+        if (!is_of(one, name) && records.size() < max_records) records.push_back(one);
     std::error_code ignored;
     fs::create_directories(path.parent_path().parent_path(), ignored);
     ::mkdir(path.parent_path().c_str(), 0700);

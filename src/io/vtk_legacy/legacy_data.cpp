@@ -277,8 +277,10 @@ Result<void> LegacyData::read_array(const Header& header) {
         leave_out_array(header, values.error().message);
         return go_on_behind(header.left_in_field, values.error());
     }
-    if (of_file) file_.field_data.push_back({name, *std::move(values)});
-    if (data_ == Data::none) return {};
+    if (data_ == Data::none) {
+        if (of_file) file_.field_data.push_back({name, *std::move(values)});
+        return {};
+    }
     if (is_wanted && header.colors) *values = bytes_of_colors(*values);
     const ScalarType stored = header.colors ? ScalarType::uint8 : type->widened ? ScalarType::int64 : type->type;
     found_.push_back({association(),
