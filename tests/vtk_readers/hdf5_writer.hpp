@@ -10,6 +10,8 @@
 
 #include <hdf5.h>
 
+#include <isotet/array.hpp>
+
 namespace isotet::test {
 
 class Hdf5Writer {
@@ -175,6 +177,14 @@ inline void write_one_cell(Hdf5Writer& file, std::uint8_t type, const std::vecto
     file.data<std::int64_t>("/VTKHDF/Connectivity", connectivity, {rows});
     file.data<std::int64_t>("/VTKHDF/Offsets", {0, count}, {2});
     file.data<double>("/VTKHDF/PointData/f", values, {rows});
+}
+
+/// All scalars of an array, tuple by tuple.
+inline std::vector<double> numbers_of(const Array& array) {
+    std::vector<double> numbers;
+    for (std::size_t i = 0; i < array.tuples(); ++i)
+        for (std::size_t k = 0; k < array.components(); ++k) numbers.push_back(array.at(i, k));
+    return numbers;
 }
 
 } // namespace isotet::test

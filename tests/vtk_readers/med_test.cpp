@@ -38,13 +38,6 @@ protected:
     TemporaryFolder folder_;
 };
 
-std::vector<double> numbers_of(const Array& array) {
-    std::vector<double> numbers;
-    for (std::size_t i = 0; i < array.tuples(); ++i)
-        for (std::size_t c = 0; c < array.components(); ++c) numbers.push_back(array.at(i, c));
-    return numbers;
-}
-
 /// NaN where the text has "-".
 std::string text_of(const Array& array) {
     std::string text;

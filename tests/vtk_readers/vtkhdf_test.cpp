@@ -31,13 +31,6 @@ void write_counts(Hdf5Writer& file, const std::vector<std::int64_t>& points, con
     file.data<std::int64_t>("/VTKHDF/NumberOfConnectivityIds", corners, {corners.size()});
 }
 
-std::vector<double> numbers_of(const Array& array) {
-    std::vector<double> out;
-    for (std::size_t i = 0; i < array.tuples(); ++i)
-        for (std::size_t k = 0; k < array.components(); ++k) out.push_back(array.at(i, k));
-    return out;
-}
-
 /// A strip of tets: tet i has the points i to i + 3.
 struct Strip {
     std::vector<double> points, values;
