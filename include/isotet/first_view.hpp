@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// What to show of a grid when nobody has said: which field, and as what.
+// What to show of a grid where no field is named: which one, and as what.
 #pragma once
 
 #include <cstdint>

@@ -114,7 +114,7 @@ TEST_F(Program, FormatsListsWhatCanBeWritten) {
         if (format["writes_surface"].get<bool>()) surfaces.push_back(format["name"]);
     }
     std::sort(surfaces.begin(), surfaces.end());
-    EXPECT_EQ(surfaces, (std::vector<std::string>{"obj", "ply", "stl", "ts", "vtk", "vtp"}));
+    EXPECT_EQ(surfaces, (std::vector<std::string>{"3mf", "glb", "obj", "ply", "stl", "ts", "usda", "vtk", "vtp"}));
     EXPECT_NE(isotet({"formats"}).out.find(".vtp"), std::string::npos);
 }
 

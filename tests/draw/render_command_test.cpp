@@ -79,7 +79,7 @@ TEST_F(RenderOnCpu, ColoursTheBoundaryInClassesOrByAScale) {
     put_content(path("g.msh"), small_grid({{.name = "region", .values = {7, 9}, .on_cells = true}}));
     RunResult run = isotet({"render", path("g.msh"), "-o", path("g.png"), "--size", "400x300"});
     EXPECT_EQ(run.status, 0) << run.err;
-    EXPECT_NE(run.err.find("'region', whole numbers, colours the boundary"), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find("'region', numbers of regions, colours the boundary"), std::string::npos) << run.err;
     const auto report = json_of(command("a.png", {"--boundary-color-by", "gyroid"}));
     EXPECT_EQ(report["color_by"], "gyroid");
     EXPECT_TRUE(report["field"].is_null());

@@ -695,7 +695,9 @@ def test_notes_stay(browser, viewer):
             type_value(browser, '0.5')
             at_rest(browser, 0.5)
             check('coincide' in browser.value('document.getElementById("notes-list").textContent'), 'the note is there')
-            check(browser.value('document.getElementById("notes-title").textContent') == '1 note', 'and counted')
+            count = browser.value('document.getElementById("notes-list").childElementCount')
+            title = browser.value('document.getElementById("notes-title").textContent')
+            check(title == f'{count} note' + ('s' if count > 1 else ''), 'and counted')
             check(browser.value('document.getElementById("message").hidden'), 'no message covers the picture')
             browser.call('Page.navigate', url='about:blank')
 
