@@ -108,8 +108,8 @@ def test_fields_are_named_or_given(sphere):
         sphere.contour(0.5, "sphere", fields=["pressure"])
     with pytest.raises(ValueError, match="sphere"):
         sphere.contour(0.5, "spere")
-    with pytest.raises(ValueError):
-        sphere.contour(0.5)  # two fields: which?
+    unnamed, named = sphere.contour(0.5), sphere.contour(0.5, sphere.first_view["field"])
+    assert np.array_equal(unnamed.points, named.points)
 
 
 def test_components_and_cell_fields_are_contoured(sphere):
