@@ -1,9 +1,9 @@
 # Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 """Isosurfaces of a grid that several ranks share, into one PVTP:
 
-    pvbatch cluster.py make  grid.vtu                          a grid to try it with
-    mpirun -np 4 pvbatch cluster.py contour grid.vtu RTData 150 surface.pvtp
-    pvbatch cluster.py contour grid.vtu RTData 150 alone.pvtp  on one rank
+    mpirun -np 4 pvbatch cluster.py make grid.pvtu             a grid to try it with, in four pieces
+    mpirun -np 4 pvbatch cluster.py contour grid.pvtu RTData 150 surface.pvtp
+    pvbatch cluster.py contour grid.pvtu RTData 150 alone.pvtp on one rank
     pvbatch cluster.py compare surface.pvtp alone.pvtp         the same surface, bit for bit?
 
 ISOTET_PLUGIN is the plugin, Isotet.so; leave it empty where ParaView loads it by itself. Files that are cut into pieces
