@@ -11,9 +11,9 @@
 namespace isotet::test {
 namespace {
 
-using io::vtk::find_reader;
-using io::vtk::reader_candidates;
-using io::vtk::ReaderPlaces;
+using io::confined::find_reader;
+using io::confined::reader_candidates;
+using io::confined::ReaderPlaces;
 
 using Paths = std::vector<std::string>;
 
@@ -82,7 +82,7 @@ TEST_F(FoundReader, ThatIsNowhereIsAnErrorThatSaysWhatToDo) {
 }
 
 TEST(ReaderPlacesOfThisProcess, AreThoseOfTheProgram) {
-    const ReaderPlaces places = io::vtk::reader_places();
+    const ReaderPlaces places = io::confined::reader_places();
     EXPECT_EQ(places.program, std::filesystem::canonical("/proc/self/exe"));
     EXPECT_TRUE(std::filesystem::exists(places.library)) << places.library;
     EXPECT_FALSE(places.to_programs.empty());

@@ -6,7 +6,7 @@
 
 #include "io/pieces/join.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 /// One tetrahedron on the unit square's corners, moved by x; its first three points have the numbers 0, 1, 2 if x is 0.
@@ -170,4 +170,4 @@ TEST(Join, OfGhostsOnlyIsAGridWithoutCells) {
 }
 
 } // namespace
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -9,7 +9,7 @@
 
 #include "io/process/messages.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 ReadResult made_result() {
@@ -158,4 +158,4 @@ TEST(Request, CutShortIsAnError) {
 }
 
 } // namespace
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

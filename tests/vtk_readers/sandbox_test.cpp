@@ -33,7 +33,7 @@ protected:
         const pid_t child = ::fork();
         if (child == 0) {
             const std::string readable[] = {folder_.file("case")};
-            io::vtk::confine(readable);
+            io::confined::confine(readable);
             ::_exit(attempt() ? 0 : errno);
         }
         int status = 0;

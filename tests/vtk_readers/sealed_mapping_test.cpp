@@ -19,7 +19,7 @@ namespace isotet::test {
 namespace {
 
 using io::Descriptor;
-using io::vtk::map_sealed;
+using io::confined::map_sealed;
 
 Descriptor memory_file(const std::string& content) {
     Descriptor file(::memfd_create("isotet-test", MFD_CLOEXEC | MFD_ALLOW_SEALING));

@@ -143,8 +143,8 @@ std::vector<std::string> digest(vtkDataSet* data) {
     const auto add_fields = [&](vtkDataSetAttributes* attributes, std::string_view kind) {
         for (int i = 0; i < attributes->GetNumberOfArrays(); ++i)
             if (vtkDataArray* values = attributes->GetArray(i))
-                if (values->GetName() && !io::vtk::is_ghost_array(values->GetName()))
-                    lines.push_back(line_of(kind, values->GetName(), io::vtk::shared_array(values)));
+                if (values->GetName() && !io::confined::is_ghost_array(values->GetName()))
+                    lines.push_back(line_of(kind, values->GetName(), io::confined::shared_array(values)));
     };
     add_fields(data->GetPointData(), "point field");
     if (unstructured || count > 0) add_fields(data->GetCellData(), "cell field");
@@ -152,16 +152,16 @@ std::vector<std::string> digest(vtkDataSet* data) {
 }
 
 std::vector<std::string> read_with_vtk(const std::string& path) {
-    static const bool collects = (io::vtk::collect_vtk_messages(), true);
+    static const bool collects = (io::confined::collect_vtk_messages(), true);
     (void)collects;
-    (void)io::vtk::take_vtk_error();
+    (void)io::confined::take_vtk_error();
     vtkSmartPointer<vtkDataSet> data;
     if (path.ends_with(".vtu")) data = output_of<vtkXMLUnstructuredGridReader>(path);
     else if (path.ends_with(".vti")) data = output_of<vtkXMLImageDataReader>(path);
     else if (path.ends_with(".vtr")) data = output_of<vtkXMLRectilinearGridReader>(path);
     else if (path.ends_with(".vts")) data = output_of<vtkXMLStructuredGridReader>(path);
     else data = output_of<vtkDataSetReader>(path);
-    if (io::vtk::take_vtk_error() || !data) return {};
+    if (io::confined::take_vtk_error() || !data) return {};
     return digest(data);
 }
 

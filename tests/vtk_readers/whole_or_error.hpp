@@ -41,9 +41,9 @@ inline Result<ReadResult> whole(Result<ReadResult> result) {
 
 /// The same of the check that precedes reading.
 inline Result<void> check_case(const std::string& path, std::size_t step) {
-    const auto found = io::vtk::read_case(path);
+    const auto found = io::confined::read_case(path);
     if (!found) return found.error();
-    const auto checked = io::vtk::check_ensight(path, *found, step, std::vector<bool>(found->variables.size(), true));
+    const auto checked = io::confined::check_ensight(path, *found, step, std::vector<bool>(found->variables.size(), true));
     if (!checked) return checked.error();
     for (const auto& variable : checked->variables)
         if (!variable.problem.empty()) return Error{ErrorCode::invalid_data, variable.problem};

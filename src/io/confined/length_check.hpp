@@ -6,7 +6,7 @@
 
 #include <isotet/result.hpp>
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// netCDF classic, 64-bit offset and 64-bit data files (Exodus): the file is as long as its header needs. Files of
 /// other kinds (HDF5, which checks itself) pass.
@@ -18,4 +18,4 @@ Result<void> check_hdf5_length(const std::string& path);
 /// ADF (CGNS): the end of file that the header states is there. Other files pass.
 Result<void> check_adf_length(const std::string& path);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -9,7 +9,7 @@
 #include "io/files/plain_file.hpp"
 #include "io/pieces/loaded.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 namespace {
 
@@ -47,4 +47,4 @@ Result<void> check_adf_length(const std::string& path) {
     return {};
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

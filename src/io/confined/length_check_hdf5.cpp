@@ -6,7 +6,7 @@
 #include "io/pieces/loaded.hpp"
 #include "io/confined/mapped_file.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 Result<void> check_hdf5_length(const std::string& path) {
     auto file = MappedFile::open(path);
@@ -27,4 +27,4 @@ Result<void> check_hdf5_length(const std::string& path) {
     return {};
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

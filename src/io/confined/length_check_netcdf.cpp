@@ -12,7 +12,7 @@
 #include "io/pieces/loaded.hpp"
 #include "io/confined/mapped_file.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 constexpr std::uint64_t enough = std::uint64_t(1) << 60;
@@ -159,4 +159,4 @@ Result<void> check_netcdf_length(const std::string& path) {
     return {};
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

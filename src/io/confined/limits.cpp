@@ -16,7 +16,7 @@
 #include "base/memory.hpp"
 #include "io/confined/exodus/exodus_parts.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 namespace fs = std::filesystem;
@@ -143,4 +143,4 @@ void forbid_file_growth() {
 
 void allow_file_growth() { set_soft(RLIMIT_FSIZE, inherited_file_size()); }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -6,7 +6,7 @@
 
 #include "io/process/messages.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// Limits the address space to what is mapped already and `limit` bytes; 0: what is free. `ran_out` is called when an
 /// allocation fails, which then throws std::bad_alloc.
@@ -21,4 +21,4 @@ void limit_processor_time(const Request& request, void (*ran_out)());
 void forbid_file_growth();
 void allow_file_growth();
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -1,7 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "io/confined/loaders.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 Load loader_of(std::string_view format) {
     struct Named {
@@ -18,4 +18,4 @@ Load loader_of(std::string_view format) {
     return nullptr;
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

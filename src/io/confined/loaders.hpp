@@ -4,7 +4,7 @@
 
 #include "io/pieces/loaded.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// One format, in the reader process.
 using Load = Result<Loaded> (*)(const std::string& path, const ReadOptions& options, Depth depth);
@@ -20,4 +20,4 @@ Result<Loaded> load_ensight(const std::string& path, const ReadOptions& options,
 Result<Loaded> load_ucd(const std::string& path, const ReadOptions& options, Depth depth);
 Result<Loaded> load_xdmf(const std::string& path, const ReadOptions& options, Depth depth);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -2,4 +2,4 @@
 // The program isotet-reader, which isotet starts to read formats that VTK reads.
 #include "io/confined/serve.hpp"
 
-int main() { return isotet::io::vtk::serve(); }
+int main() { return isotet::io::confined::serve(); }

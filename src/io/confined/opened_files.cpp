@@ -15,7 +15,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 std::atomic<bool> watching = false;
@@ -76,7 +76,7 @@ std::vector<std::string> take_opened_files() {
     return std::exchange(opened().paths, {});
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined
 
 // Declared under other names: the C library's headers may define these as inline functions.
 #define ISOTET_STANDS_BEFORE(name) __asm__(name) __attribute__((visibility("default"), used))
@@ -96,18 +96,18 @@ std::FILE* isotet_fopen64(const char* path, const char* mode) ISOTET_STANDS_BEFO
         va_start(rest, flags);                                                                                         \
         const auto mode = static_cast<mode_t>((flags & O_CREAT) ? va_arg(rest, int) : 0);                              \
         va_end(rest);                                                                                                  \
-        return isotet::io::vtk::open_watched(path, flags, mode);                                                       \
+        return isotet::io::confined::open_watched(path, flags, mode);                                                       \
     }
 ISOTET_OPEN(isotet_open)
 ISOTET_OPEN(isotet_open64)
 
-int isotet_open_2(const char* path, int flags) { return isotet::io::vtk::open_watched(path, flags, 0); }
-int isotet_open64_2(const char* path, int flags) { return isotet::io::vtk::open_watched(path, flags, 0); }
+int isotet_open_2(const char* path, int flags) { return isotet::io::confined::open_watched(path, flags, 0); }
+int isotet_open64_2(const char* path, int flags) { return isotet::io::confined::open_watched(path, flags, 0); }
 std::FILE* isotet_fopen(const char* path, const char* mode) {
-    return isotet::io::vtk::fopen_watched<isotet::io::vtk::FileOpen>("fopen", path, mode);
+    return isotet::io::confined::fopen_watched<isotet::io::confined::FileOpen>("fopen", path, mode);
 }
 std::FILE* isotet_fopen64(const char* path, const char* mode) {
-    return isotet::io::vtk::fopen_watched<isotet::io::vtk::FileOpen>("fopen64", path, mode);
+    return isotet::io::confined::fopen_watched<isotet::io::confined::FileOpen>("fopen64", path, mode);
 }
 
 } // extern "C"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// From here on only plain files and folders are opened (a pipe would wait for ever, a device can do something), and
 /// what is opened is listed.
@@ -14,4 +14,4 @@ void watch_opened_files();
 /// The files that were opened since the last call, absolute, each once.
 std::vector<std::string> take_opened_files();
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

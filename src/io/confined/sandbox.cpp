@@ -19,7 +19,7 @@
 
 #include "io/files/file_kind.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 void allow_reading(int ruleset, const std::string& path) {
@@ -228,4 +228,4 @@ void confine(std::span<const std::string> readable) {
     confine_calls();
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

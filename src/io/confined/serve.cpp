@@ -31,7 +31,7 @@
 #include "io/process/channel.hpp"
 #include "io/process/messages.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 constexpr int idle_milliseconds = 10000;
@@ -158,4 +158,4 @@ int serve() {
     return EXIT_SUCCESS;
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

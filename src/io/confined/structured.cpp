@@ -9,7 +9,7 @@
 #include "io/confined/vtk_grid.hpp"
 #include "io/vtk_xml/load.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 Array implied_points(vtkDataSet* data) {
@@ -44,4 +44,4 @@ Result<std::optional<Grid>> hexahedra_of(vtkDataSet* data, std::vector<std::stri
     return std::optional(std::move(grid));
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

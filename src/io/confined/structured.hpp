@@ -10,7 +10,7 @@
 
 class vtkDataSet;
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// A structured, rectilinear or image grid as hexahedra, with a note that says so; nothing for other data sets. A flat
 /// one has no hexahedra.
@@ -18,4 +18,4 @@ namespace isotet::io::vtk {
 /// Errors   out_of_memory
 Result<std::optional<Grid>> hexahedra_of(vtkDataSet* data, std::vector<std::string>& notes);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

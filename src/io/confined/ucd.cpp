@@ -20,7 +20,7 @@
 #include "io/confined/loaders.hpp"
 #include "io/confined/mapped_file.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 struct Element {
@@ -242,4 +242,4 @@ Result<Loaded> load_ucd(const std::string& path, const ReadOptions& options, Dep
     return loaded;
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

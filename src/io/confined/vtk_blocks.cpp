@@ -20,7 +20,7 @@
 #include "io/confined/vtk_log.hpp"
 #include "io/reader.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 void announce_attributes(vtkDataSetAttributes* attributes, Association association, FileInfo& info) {
@@ -136,4 +136,4 @@ Result<void> update(vtkAlgorithm& reader, const std::string& path, const std::ve
     return verdict(path, worked && reader.GetErrorCode() == 0);
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -19,7 +19,7 @@
 #include "io/confined/structured.hpp"
 #include "io/confined/vtk_grid.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 /// The array of global numbers: the one marked so in the file, or one of a well-known name.
@@ -191,4 +191,4 @@ Result<Piece> piece_of(vtkDataSet* data, const ReadOptions& options, std::string
     return piece;
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

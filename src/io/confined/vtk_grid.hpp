@@ -15,7 +15,7 @@ class vtkDataObject;
 class vtkDataSet;
 class vtkInformation;
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// The array, sharing its memory.
 Array shared_array(vtkDataArray* values);
@@ -48,4 +48,4 @@ Result<void> update(vtkAlgorithm& reader, const std::string& path, const std::ve
 /// True for arrays that describe the grid (ghost marks), which are no fields.
 bool is_ghost_array(std::string_view name);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

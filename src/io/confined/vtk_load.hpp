@@ -7,7 +7,7 @@
 #include "io/pieces/loaded.hpp"
 #include "io/confined/vtk_grid.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// Switches on the arrays that the options want; for a description all of them, since these readers tell an array's
 /// type only when they have read it.
@@ -58,4 +58,4 @@ Result<Loaded> load_with(Reader& reader, const std::string& path, const ReadOpti
     return loaded;
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -13,7 +13,7 @@
 #include "io/confined/vtk_log.hpp"
 #include "io/files/escape.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 struct Collected {
@@ -96,4 +96,4 @@ void follow_progress(vtkAlgorithm* algorithm) {
     algorithm->AddObserver(vtkCommand::ProgressEvent, command);
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

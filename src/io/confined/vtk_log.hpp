@@ -7,7 +7,7 @@
 
 class vtkAlgorithm;
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// Takes over what VTK's classes print: errors are kept, and printed to stderr too (the parent keeps the last lines in
 /// case of a crash).
@@ -23,4 +23,4 @@ void report_progress(double fraction);
 /// Passes on the progress of a VTK reader.
 void follow_progress(vtkAlgorithm* algorithm);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

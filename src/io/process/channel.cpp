@@ -6,7 +6,7 @@
 #include <sys/socket.h>
 #include <sys/uio.h>
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 /// A packet of one byte, with room for two descriptors.
@@ -55,4 +55,4 @@ std::optional<Parcel> receive_parcel(int channel) {
     return Parcel{Descriptor(files[0]), Descriptor(files[1])};
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -9,7 +9,7 @@
 
 #include "io/files/file_kind.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// What a reader process finds open besides 0 (/dev/null), 1 and 2 (both collected); all others are closed.
 constexpr int channel_descriptor = 3;
@@ -30,4 +30,4 @@ bool send_parcel(int channel, int request, int reply);
 /// Waits for a parcel; nothing when the other end is closed.
 ISOTET_API std::optional<Parcel> receive_parcel(int channel);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -6,7 +6,7 @@
 #include <unistd.h>
 #include <vector>
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 constexpr std::size_t max_idle = 4;
@@ -61,4 +61,4 @@ void keep_idle_child(std::string key, std::unique_ptr<ReaderChild> child) {
     idle.push_back({std::move(key), std::move(child)});
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -7,7 +7,7 @@
 
 #include "io/process/child_process.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// A process that has answered before, and was started by the same key; null where there is none.
 std::unique_ptr<ReaderChild> take_idle_child(const std::string& key);
@@ -16,4 +16,4 @@ std::unique_ptr<ReaderChild> take_idle_child(const std::string& key);
 /// than a few wait.
 void keep_idle_child(std::string key, std::unique_ptr<ReaderChild> child);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -22,7 +22,7 @@
 
 extern char** environ;
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 constexpr std::size_t max_output = 4096;
@@ -202,4 +202,4 @@ void ReaderChild::kill(ChildOutcome& outcome, ChildOutcome::End why) {
     outcome.end = why;
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -13,7 +13,7 @@
 #include "io/files/file_kind.hpp"
 #include "io/process/process_handle.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 struct ChildOutcome {
     /// `not_known`: it has ended, but this program ignores SIGCHLD, or waits for all its children elsewhere.
@@ -61,4 +61,4 @@ private:
     bool running_ = true;
 };
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -14,7 +14,7 @@
 
 #include "io/files/escape.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 namespace fs = std::filesystem;
@@ -89,4 +89,4 @@ Result<std::string> find_reader(const ReaderPlaces& places) {
                     fmt::join(shown, ", "))};
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -7,7 +7,7 @@
 
 #include <isotet/result.hpp>
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// What tells where the reader program may be. Empty parts are passed over.
 struct ReaderPlaces {
@@ -31,4 +31,4 @@ std::vector<std::string> reader_candidates(const ReaderPlaces& places);
 /// Errors   machine, with what was looked for, and the option that names one
 Result<std::string> find_reader(const ReaderPlaces& places);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

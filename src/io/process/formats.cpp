@@ -9,8 +9,8 @@
 namespace isotet::io {
 namespace {
 
-using vtk::Request;
-using vtk::Task;
+using confined::Request;
+using confined::Task;
 
 using Head = std::string_view;
 
@@ -82,7 +82,7 @@ Format grid_format(std::string name, std::string title, std::vector<std::string>
 template <class T>
 Result<T> ask(Task task, std::string format, const std::string& path, const ReadOptions& options,
               const Progress& progress) {
-    auto reply = vtk::ask_reader_process(Request{task, std::move(format), path, options, {}}, progress);
+    auto reply = confined::ask_reader_process(Request{task, std::move(format), path, options, {}}, progress);
     if (!reply) return reply.error();
     if (auto* content = std::get_if<T>(&*reply)) return std::move(*content);
     return Error{ErrorCode::internal, path + ": the reader process answered another question"};

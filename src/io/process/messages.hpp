@@ -12,7 +12,7 @@
 #include <isotet/read.hpp>
 #include <isotet/result.hpp>
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 enum class Task : std::uint8_t { inspect, read };
 
@@ -44,4 +44,4 @@ ISOTET_API Result<void> write_reply(int descriptor, Reply reply);
 /// Errors       internal when there is no complete reply in the file; system when it cannot be sealed or mapped
 Result<Reply> map_reply(int descriptor);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

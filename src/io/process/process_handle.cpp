@@ -6,7 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 constexpr auto by_descriptor = static_cast<idtype_t>(3); // P_PIDFD; older C libraries do not name it
 
@@ -32,4 +32,4 @@ void ProcessHandle::kill() {
     else ::kill(number_, SIGKILL);
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -6,7 +6,7 @@
 
 #include "io/files/file_kind.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// A child by a descriptor, which stays its own: as soon as another part of this program has waited for the child (a handler
 /// of SIGCHLD, say), its number may be another process's. Before Linux 5.4 there is the number alone.
@@ -30,4 +30,4 @@ private:
     Descriptor descriptor_;
 };
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

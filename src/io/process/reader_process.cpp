@@ -16,7 +16,7 @@
 #include "io/process/child_pool.hpp"
 #include "io/process/find_reader.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 namespace fs = std::filesystem;
@@ -149,4 +149,4 @@ Result<Reply> ask_reader_process(Request request, const Progress& progress) {
     return reply;
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -7,7 +7,7 @@
 
 #include "io/process/messages.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// Sends a request to a new reader process and takes its reply.
 ///
@@ -15,4 +15,4 @@ namespace isotet::io::vtk {
 ///          it hit its limit; machine when it cannot be started or took longer than ReadOptions::time_limit; cancelled
 Result<Reply> ask_reader_process(Request request, const Progress& progress);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

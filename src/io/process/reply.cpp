@@ -17,7 +17,7 @@
 #include "io/process/sealed_mapping.hpp"
 #include "io/process/wire.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 constexpr std::uint64_t magic = 0x3430795f74657469; // "itet_y04", and the byte order with it
@@ -277,4 +277,4 @@ Result<Reply> map_reply(int descriptor) {
     return reply;
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

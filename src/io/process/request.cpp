@@ -8,7 +8,7 @@
 #include "io/process/messages.hpp"
 #include "io/process/wire.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 constexpr std::uint32_t request_version = 0x69730005;
@@ -138,4 +138,4 @@ Result<Request> decode_request(std::string_view bytes) {
     return request;
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

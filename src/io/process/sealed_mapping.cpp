@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 Result<SealedMapping> map_sealed(int descriptor) {
     if (::fcntl(descriptor, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL) != 0)
@@ -29,4 +29,4 @@ Result<SealedMapping> map_sealed(int descriptor) {
     return SealedMapping{{static_cast<const std::byte*>(begin), size}, std::move(owner)};
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

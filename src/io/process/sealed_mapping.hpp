@@ -8,7 +8,7 @@
 
 #include <isotet/result.hpp>
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 struct SealedMapping {
     std::span<const std::byte> bytes;
@@ -23,4 +23,4 @@ struct SealedMapping {
 /// Errors        machine: it cannot be sealed (no memory file, or mapped for writing) or mapped
 Result<SealedMapping> map_sealed(int descriptor);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

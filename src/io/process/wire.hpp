@@ -9,7 +9,7 @@
 #include <string_view>
 #include <type_traits>
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 class Encoder {
 public:
@@ -79,4 +79,4 @@ private:
     bool good_ = true;
 };
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -16,7 +16,7 @@
 #include "io/reader.hpp"
 #include "io/vtk_xml/load.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 struct CgnsBase {
@@ -179,4 +179,4 @@ Result<Loaded> load_cgns(const std::string& path, const ReadOptions& options, De
     return CgnsFile(path, *tree).load(options, depth);
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

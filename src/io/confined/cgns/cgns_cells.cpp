@@ -19,7 +19,7 @@
 #include "io/pieces/cell_list.hpp"
 #include "io/pieces/shared_faces.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 using Numbers = std::vector<std::int64_t>;
@@ -439,4 +439,4 @@ Result<CgnsCounts> count_cgns_cells(const CgnsTree& tree, const CgnsZone& zone) 
     return CellsReader(tree, zone).count();
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -5,7 +5,7 @@
 
 #include "grid/cell/node_order.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 using core::CellKind;
@@ -97,4 +97,4 @@ const CgnsElement* cgns_element(std::int64_t number) {
     return element.nodes == 0 ? nullptr : &element;
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

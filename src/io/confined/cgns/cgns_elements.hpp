@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 struct CgnsElement {
     std::string_view name;
@@ -21,4 +21,4 @@ inline constexpr std::int64_t cgns_mixed = 20, cgns_ngon = 22, cgns_nface = 23;
 /// Nothing for numbers that have no nodes of their own (mixed, faces) or are unknown.
 const CgnsElement* cgns_element(std::int64_t number);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

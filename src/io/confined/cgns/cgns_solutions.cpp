@@ -12,7 +12,7 @@
 #include "io/files/escape.hpp"
 #include "io/reader.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 /// Values of elements of all dimensions: those of the cells.
@@ -162,4 +162,4 @@ void CgnsSolutions::read(const ReadOptions& options, std::size_t step, const Cgn
     }
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

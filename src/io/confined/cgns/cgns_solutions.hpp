@@ -8,7 +8,7 @@
 
 #include "io/confined/cgns/cgns_zone.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 class CgnsSolutions {
 public:
@@ -57,4 +57,4 @@ private:
     std::vector<std::string> coordinates_;
 };
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

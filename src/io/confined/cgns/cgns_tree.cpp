@@ -15,7 +15,7 @@
 #include <vtk_cgns.h> // last: its macros rename common words
 #include VTK_CGNS(cgns_io.h)
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 std::optional<ScalarType> scalar_type_of_cgns(std::string_view type) {
@@ -155,4 +155,4 @@ std::vector<std::string> CgnsTree::texts(const CgnsNode& node, std::size_t lette
     return texts;
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

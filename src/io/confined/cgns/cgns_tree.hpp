@@ -12,7 +12,7 @@
 #include <isotet/array.hpp>
 #include <isotet/result.hpp>
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 struct CgnsNode {
     double id = 0;
@@ -65,4 +65,4 @@ private:
     double root_ = 0;
 };
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

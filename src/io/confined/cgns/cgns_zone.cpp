@@ -14,7 +14,7 @@
 #include "base/errors.hpp"
 #include "io/files/escape.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 constexpr std::uint64_t max_zone_size = std::uint64_t{1} << 48U;
@@ -163,4 +163,4 @@ Result<Array> cgns_points(const CgnsTree& tree, const CgnsZone& zone, const std:
     return Array::own(std::move(places), 3);
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

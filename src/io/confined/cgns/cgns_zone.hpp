@@ -13,7 +13,7 @@
 #include "io/confined/cgns/cgns_tree.hpp"
 #include "io/pieces/loaded.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// A zone as its node tells of it.
 struct CgnsZone {
@@ -83,4 +83,4 @@ Result<CgnsCells> cgns_cells(const CgnsTree& tree, const CgnsZone& zone, std::ve
 /// Their number, without reading more than sections of mixed elements.
 Result<CgnsCounts> count_cgns_cells(const CgnsTree& tree, const CgnsZone& zone);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -22,7 +22,7 @@
 #include "io/pieces/block_choice.hpp"
 #include "io/reader.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 /// One of VTK's four readers, without its reading of the case.
@@ -223,4 +223,4 @@ Result<Loaded> load_ensight(const std::string& path, const ReadOptions& options,
     return EnsightLoad(path, *found).load(options, depth);
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 NodeNumbers::NodeNumbers(std::string_view line) {
     const auto words = words_of(line);
@@ -40,4 +40,4 @@ std::int64_t NodeNumbers::place(std::int64_t number) const {
     return are_given() ? places_[static_cast<std::size_t>(number) - 1] : number;
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -8,7 +8,7 @@
 
 #include "io/confined/ensight/ensight_file.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// Listed where the file says "node id given" or "ignore"; used where it says "given", else nodes are numbered from 1.
 class NodeNumbers {
@@ -34,4 +34,4 @@ private:
     std::vector<std::uint32_t> places_; ///< of each number, from 1; 0: none
 };
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -8,7 +8,7 @@
 #include "io/confined/ensight/ensight_walk.hpp"
 #include "io/files/text_scanner.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 constexpr std::size_t binary_line_bytes = 80;
@@ -148,4 +148,4 @@ void expect_no_elements_behind(EnsightFile& file) {
     }
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -10,7 +10,7 @@
 #include "io/confined/ensight/ensight_walk.hpp"
 #include "io/files/text_scanner.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 constexpr std::size_t text_column = 12, text_integer_width = 8, floats_on_line = 6;
@@ -216,4 +216,4 @@ void walk_6_text_variable(EnsightFile& file, const EnsightCase::Variable& variab
     else walk_text_values_of_elements(file, variable, grid);
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

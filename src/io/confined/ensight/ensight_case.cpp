@@ -9,7 +9,7 @@
 #include "io/confined/ensight/ensight_file.hpp"
 #include "io/files/text_scanner.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 using Words = std::vector<std::string_view>;
@@ -325,4 +325,4 @@ EnsightTime::Found EnsightTime::place_of(const EnsightCase::File& file, std::siz
     return {place, {}};
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

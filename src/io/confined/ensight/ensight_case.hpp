@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 struct EnsightCase {
     /// A file and the sets it follows. In its name stars stand for the digits of a step or file.
@@ -83,4 +83,4 @@ private:
     std::size_t model_step_ = 1;
 };
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -12,7 +12,7 @@
 #include "io/files/escape.hpp"
 #include "io/pieces/loaded.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 MappedFile opened(const std::string& path) {
@@ -191,4 +191,4 @@ Result<EnsightFound> check_ensight(const std::string& case_file, const EnsightCa
     }
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

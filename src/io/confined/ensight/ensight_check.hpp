@@ -12,7 +12,7 @@
 #include "io/confined/ensight/ensight_case.hpp"
 #include "io/confined/ensight/ensight_file.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// What of a case is read at a step.
 struct EnsightFound {
@@ -44,4 +44,4 @@ Result<EnsightFound> check_ensight(const std::string& case_file, const EnsightCa
 /// Errors   invalid_data: a line that stands where it may not, no geometry
 Result<EnsightCase> read_case(const std::string& case_file);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

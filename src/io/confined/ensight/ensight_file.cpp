@@ -11,7 +11,7 @@
 #include "io/files/text_scanner.hpp"
 #include "io/pieces/loaded.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 constexpr std::size_t line_bytes = 80;
@@ -268,4 +268,4 @@ std::int64_t EnsightFile::integer(const char* what) {
     return value;
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

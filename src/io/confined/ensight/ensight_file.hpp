@@ -12,7 +12,7 @@
 
 #include <isotet/result.hpp>
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// Ends a walk through a file. Stays within the check of a case.
 class EnsightError : public std::exception {
@@ -123,4 +123,4 @@ std::vector<std::string_view> words_of(std::string_view line);
 /// Integers that text has room for, in a line; false where a word is none, or does not fit into 32 bits.
 bool integers_of(std::string_view line, std::vector<std::int64_t>& values);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

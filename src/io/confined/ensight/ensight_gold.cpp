@@ -8,7 +8,7 @@
 #include "io/confined/ensight/ensight_walk.hpp"
 #include "io/files/text_scanner.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 constexpr std::size_t gold_integer_width = 10;
@@ -230,4 +230,4 @@ void check_gold_index(EnsightFile& file, std::size_t step, const std::vector<std
         file.wrong(fmt::format("its index says that step {} begins at byte {}, which is wrong", nearest + 1, found));
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

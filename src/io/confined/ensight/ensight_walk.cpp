@@ -7,7 +7,7 @@
 
 #include "io/files/text_scanner.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 EnsightPart& EnsightGrid::add(const EnsightFile& file, std::uint64_t number) {
     const std::size_t before = parts.size();
@@ -127,4 +127,4 @@ void expect_whole_last_line(const EnsightFile& file, std::size_t integer_width) 
         file.wrong(fmt::format("the last line, {}, is not ended: the file may be cut short", in_quotes(line)));
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

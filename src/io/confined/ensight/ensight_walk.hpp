@@ -11,7 +11,7 @@
 #include "io/confined/ensight/ensight_case.hpp"
 #include "io/confined/ensight/ensight_file.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 struct EnsightPart {
     std::uint64_t nodes = 0, cells = 0; ///< nodes of unstructured parts of EnSight 6: none, the grid has them
@@ -90,4 +90,4 @@ void check_gold_index(EnsightFile& file, std::size_t step, const std::vector<std
 /// In a binary geometry of EnSight 6, behind END TIME STEP: VTK's reader does not end there.
 void expect_no_elements_behind(EnsightFile& file);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

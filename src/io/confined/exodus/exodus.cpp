@@ -19,7 +19,7 @@
 #include "io/confined/loaders.hpp"
 #include "io/confined/vtk_log.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 FileInfo describe(const ExodusFile& file) {
@@ -336,4 +336,4 @@ Result<Loaded> load_exodus(const std::string& path, const ReadOptions& options, 
     return loaded;
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

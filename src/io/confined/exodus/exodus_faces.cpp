@@ -9,7 +9,7 @@
 #include "io/confined/exodus/exodus_file.hpp"
 #include "io/files/escape.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 Result<ExodusFile::Ragged> ExodusFile::read_ragged(int entity, std::int64_t id, std::uint64_t count,
                                                    std::uint64_t size) const {
@@ -63,4 +63,4 @@ Result<ExodusFile::Ragged> ExodusFile::faces_of(const Block& block) {
     return read_ragged(EX_ELEM_BLOCK, block.id, block.cells, block.faces);
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -8,7 +8,7 @@
 #include "io/confined/exodus/exodus_file.hpp"
 #include "io/files/escape.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 constexpr int max_name = 4096;
@@ -321,4 +321,4 @@ ExodusElement exodus_element(std::string_view topology, std::uint64_t nodes) {
     return {}; // an empty cell, left out
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

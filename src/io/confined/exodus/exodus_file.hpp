@@ -10,7 +10,7 @@
 #include <isotet/array.hpp>
 #include <isotet/result.hpp>
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 class ExodusFile {
 public:
@@ -106,4 +106,4 @@ struct ExodusElement {
 /// An element with so many nodes.
 ExodusElement exodus_element(std::string_view topology, std::uint64_t nodes);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

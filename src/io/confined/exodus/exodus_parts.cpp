@@ -8,7 +8,7 @@
 #include "io/confined/exodus/exodus_parts.hpp"
 #include "io/files/escape.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 std::optional<unsigned> whole_number(std::string_view text) {
@@ -44,4 +44,4 @@ Result<std::vector<std::string>> exodus_parts(const std::string& path) {
                                               escaped(path), *count, missing.size(), escaped(missing.front()))};
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -6,7 +6,7 @@
 
 #include <isotet/result.hpp>
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// All files of a grid in parts: of "run.e.4.1" the files "run.e.4.0" to "run.e.4.3"; of any other name the one file.
 /// Numbers may have leading zeros ("run.e.16.03"). A file alone under such a name is one file.
@@ -14,4 +14,4 @@ namespace isotet::io::vtk {
 /// Errors   file when some parts are there and others are not
 Result<std::vector<std::string>> exodus_parts(const std::string& path);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

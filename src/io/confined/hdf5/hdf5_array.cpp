@@ -13,7 +13,7 @@
 #include "io/confined/length_check.hpp"
 #include "io/pieces/loaded.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 constexpr std::uint64_t too_many = std::uint64_t(1) << 50;
@@ -188,4 +188,4 @@ std::string text_attribute(const std::string& file, const std::string& group, co
     return H5Aread(attribute, type, text) < 0 ? "" : text;
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

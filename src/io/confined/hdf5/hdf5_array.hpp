@@ -11,7 +11,7 @@
 
 #include "io/pieces/loaded.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// A box in a data set, one entry a dimension; all empty: the whole data set.
 struct Box {
@@ -45,4 +45,4 @@ std::optional<std::int64_t> integer_attribute(const std::string& file, const std
 /// A text attribute of a group; empty where there is none.
 std::string text_attribute(const std::string& file, const std::string& group, const char* name);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

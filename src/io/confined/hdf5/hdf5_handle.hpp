@@ -9,7 +9,7 @@
 
 #include <isotet/array.hpp>
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// An identifier of the HDF5 library, closed by its own function.
 class Handle {
@@ -41,4 +41,4 @@ hid_t native_type() {
     else return std::is_signed_v<T> ? H5T_NATIVE_INT64 : H5T_NATIVE_UINT64;
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -22,7 +22,7 @@
 #include "io/pieces/narrow_indices.hpp"
 #include "io/vtk_xml/codec.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 constexpr std::uint64_t max_chunk_bytes = std::uint64_t{1} << 28; ///< of larger ones HDF5 reads parts
@@ -372,4 +372,4 @@ Result<Array> Hdf5Rows::read(const std::string& name) const {
     return read(name, 0, whole ? whole->rows : 0);
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

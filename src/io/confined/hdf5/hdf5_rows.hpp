@@ -12,7 +12,7 @@
 #include <isotet/array.hpp>
 #include <isotet/result.hpp>
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 struct RowsShape {
     std::uint64_t rows = 0;
@@ -65,4 +65,4 @@ private:
     std::unique_ptr<File> file_;
 };
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -7,7 +7,7 @@
 
 #include "io/confined/hdf5/hdf5_handle.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 bool has_all_chunks(hid_t data, hid_t creation) {
@@ -50,4 +50,4 @@ HdfRead read_written(hid_t data, hid_t type, hid_t memory, hid_t space, std::spa
     return std::memcmp(to.data(), other.data(), to.size()) == 0 ? HdfRead::done : HdfRead::unwritten;
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -7,7 +7,7 @@
 
 #include <hdf5.h>
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// False where all values are stored, or those that are not have a value that the file states.
 bool may_be_unwritten(hid_t data);
@@ -18,4 +18,4 @@ enum class HdfRead { done, failed, unwritten };
 /// afterwards was not read.
 HdfRead read_written(hid_t data, hid_t type, hid_t memory, hid_t space, std::span<std::byte> to);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

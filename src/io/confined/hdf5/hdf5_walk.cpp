@@ -12,7 +12,7 @@
 #include "io/files/index_file.hpp"
 #include "io/pieces/loaded.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 constexpr std::size_t max_objects = 1000000, max_files = 1000;
@@ -145,4 +145,4 @@ Result<void> check_hdf5_names(const std::string& path, bool allow_outside) {
     return Walk(path, allow_outside).all_files();
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

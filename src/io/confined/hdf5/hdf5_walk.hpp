@@ -5,7 +5,7 @@
 
 #include <isotet/result.hpp>
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// Goes over the names in an HDF5 file, without their data, before anybody reads it: links and data in other files must
 /// be files that the index rules allow (check_name(), named_file()), which are gone over, too; no group may contain
@@ -15,4 +15,4 @@ namespace isotet::io::vtk {
 /// Errors   invalid_data: the name that breaks a rule; it cannot be opened
 Result<void> check_hdf5_names(const std::string& path, bool allow_outside);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -17,7 +17,7 @@
 #include "io/files/escape.hpp"
 #include "io/pieces/block_choice.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 /// A file of one grid.
@@ -123,4 +123,4 @@ Result<Loaded> load_vtkhdf(const std::string& path, const ReadOptions& options, 
     return load_grid(path, options, depth);
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -17,7 +17,7 @@
 #include "io/pieces/uniform_cells.hpp"
 #include "io/vtk_xml/columns.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 const char* kind_of_field(Association association) {
@@ -352,4 +352,4 @@ Result<void> HdfGrid::load(const ReadOptions& options, std::size_t step, const s
     return {};
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -12,7 +12,7 @@
 #include "io/pieces/loaded.hpp"
 #include "io/reader.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// What a partition has, and where it begins in the data sets.
 struct HdfPartition {
@@ -73,4 +73,4 @@ private:
     std::string group_;
 };
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -16,7 +16,7 @@
 #include "io/pieces/block_choice.hpp"
 #include "io/reader.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 constexpr const char* family_name = "med:family";
@@ -200,4 +200,4 @@ Result<Loaded> load_med(const std::string& path, const ReadOptions& options, Dep
     return MedLoader(*file, options).load(depth);
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 /// MED goes around the base of a cell the other way than VTK: corners, and with them the middles of edges and faces,
@@ -49,4 +49,4 @@ bool is_flat_med_element(std::string_view name) {
     return std::ranges::find(flat, name) != flat.end();
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 struct MedElement {
     std::string_view name;
@@ -23,4 +23,4 @@ const MedElement* med_element(std::string_view name);
 /// Points, lines and faces, of which nothing is read.
 bool is_flat_med_element(std::string_view name);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

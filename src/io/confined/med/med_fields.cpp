@@ -14,7 +14,7 @@
 #include "io/pieces/common_type.hpp"
 #include "io/pieces/node_means.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 constexpr std::string_view no_profile = "MED_NO_PROFILE_INTERNAL";
@@ -294,4 +294,4 @@ Result<void> MedFields::read(const ReadOptions& options, std::size_t step, const
     return {};
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -12,7 +12,7 @@
 #include "io/pieces/loaded.hpp"
 #include "io/reader.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 class MedFields {
 public:
@@ -83,4 +83,4 @@ private:
     std::vector<MedStep> steps_;
 };
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

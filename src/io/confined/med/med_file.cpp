@@ -9,7 +9,7 @@
 
 #include "io/files/escape.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 constexpr std::size_t letters_of_group_name = 80, max_attribute_bytes = 1 << 20, max_group_names = 1 << 20;
@@ -125,4 +125,4 @@ std::vector<MedStep> med_steps(const MedFile& file, const std::string& group) {
     return steps;
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

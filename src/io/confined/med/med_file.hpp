@@ -17,7 +17,7 @@
 #include "io/confined/hdf5/hdf5_rows.hpp"
 #include "io/pieces/loaded.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// An open file. Links are followed: check_hdf5_names() first.
 /// Threads   one call at a time: HDF5 is not safe from several
@@ -70,4 +70,4 @@ struct MedStep {
 /// The steps in a group, ascending.
 std::vector<MedStep> med_steps(const MedFile& file, const std::string& group);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

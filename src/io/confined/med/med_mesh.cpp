@@ -14,7 +14,7 @@
 #include "io/pieces/shared_faces.hpp"
 #include "io/pieces/uniform_cells.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 constexpr std::size_t cells_at_once = std::size_t{1} << 14, space_axes = 3;
@@ -248,4 +248,4 @@ std::map<std::int64_t, std::vector<std::string>> MedMesh::groups_of_families() c
     return result;
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -14,7 +14,7 @@
 #include "io/confined/med/med_elements.hpp"
 #include "io/confined/med/med_file.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// Cells of one type, one after another in the grid.
 struct MedCellRun {
@@ -77,4 +77,4 @@ private:
     std::vector<MedStep> steps_;
 };
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

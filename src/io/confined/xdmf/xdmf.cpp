@@ -16,7 +16,7 @@
 #include "io/pieces/block_choice.hpp"
 #include "io/reader.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 class XdmfLoader {
@@ -149,4 +149,4 @@ Result<Loaded> load_xdmf(const std::string& path, const ReadOptions& options, De
     return XdmfLoader({path, *document, data}, *steps, options, depth).load();
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -10,7 +10,7 @@
 #include "io/files/escape.hpp"
 #include "io/pieces/loaded.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 constexpr std::size_t long_text = 256;
@@ -87,4 +87,4 @@ Result<XdmfBlocks> blocks_of(const XdmfFile& file, const XdmfSteps& steps, const
     return solid;
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -13,7 +13,7 @@
 #include "io/confined/xdmf/xdmf_mesh.hpp"
 #include "io/confined/xdmf/xdmf_steps.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// Grids whose Topology and Geometry name the same data.
 struct XdmfBlock {
@@ -34,4 +34,4 @@ struct XdmfBlocks {
 /// Errors   invalid_data: no grid is left
 Result<XdmfBlocks> blocks_of(const XdmfFile& file, const XdmfSteps& steps, const XdmfStep& step);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -10,7 +10,7 @@
 #include "io/confined/xdmf/xdmf_document.hpp"
 #include "io/pieces/shared_faces.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 constexpr XdmfElement xdmf_elements[] = {
@@ -194,4 +194,4 @@ Result<Cells> polyhedral_elements(const Array& values, std::optional<std::uint64
     return coded ? std::move(coded) : std::move(plain);
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -11,7 +11,7 @@
 #include <isotet/grid.hpp>
 #include <isotet/result.hpp>
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// A type of elements of XDMF.
 struct XdmfElement {
@@ -48,4 +48,4 @@ Result<Cells> mixed_elements(const Array& values, std::optional<std::uint64_t> c
 Result<Cells> polyhedral_elements(const Array& values, std::optional<std::uint64_t> count, std::uint64_t points,
                                   std::int64_t base);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

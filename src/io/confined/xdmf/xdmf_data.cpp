@@ -17,7 +17,7 @@
 #include "io/confined/xdmf/xdmf_function.hpp"
 #include "io/confined/xdmf/xdmf_heavy.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 constexpr int deepest_item = 16;
@@ -302,4 +302,4 @@ Result<ShapedValues> XdmfData::read_function(pugi::xml_node item, Depth depth, i
     return result;
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -15,7 +15,7 @@
 #include "io/confined/hdf5/hdf5_array.hpp"
 #include "io/confined/xdmf/xdmf_document.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// Whole numbers of an attribute: Dimensions="10 3". Nothing where there are none, or something else.
 std::optional<std::vector<std::uint64_t>> whole_numbers(std::string_view text);
@@ -44,4 +44,4 @@ private:
     bool allow_outside_;
 };
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -15,7 +15,7 @@
 #include "io/confined/xdmf/xdmf_document.hpp"
 #include "io/confined/xdmf/xdmf_pointer.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 constexpr int deepest = 16; ///< references to references, includes of includes
@@ -258,4 +258,4 @@ pugi::xml_node XdmfDocument::resolve(pugi::xml_node node) const {
     return {};
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

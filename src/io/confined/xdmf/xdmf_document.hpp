@@ -14,7 +14,7 @@
 
 #include <isotet/result.hpp>
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// Names in XDMF are the same in upper and lower case.
 bool same_word(std::string_view a, std::string_view b);
@@ -65,4 +65,4 @@ private:
     mutable std::map<std::string, pugi::xml_node, std::less<>> found_; ///< what references named before
 };
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

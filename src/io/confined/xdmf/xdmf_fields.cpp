@@ -12,7 +12,7 @@
 #include "io/files/text_scanner.hpp"
 #include "io/reader.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 std::string without_time(std::string name, std::optional<double> time) {
@@ -100,4 +100,4 @@ Result<void> XdmfFieldReader::read_values(const XdmfField& field, XdmfMesh& mesh
     return {};
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -14,7 +14,7 @@
 #include "io/confined/xdmf/xdmf_mesh.hpp"
 #include "io/pieces/loaded.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// An Attribute of a grid, before its values are read.
 struct XdmfField {
@@ -44,4 +44,4 @@ private:
     const ReadOptions& options_;
 };
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

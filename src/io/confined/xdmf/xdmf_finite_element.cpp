@@ -15,7 +15,7 @@
 
 #include "io/files/escape.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 /// How a cell's numbers are arranged: of each component first those of the corners.
@@ -196,4 +196,4 @@ Result<FunctionValues> read_function_values(const XdmfFile& file, pugi::xml_node
                                     : values_of_points(rows, *element, mesh, found.components);
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

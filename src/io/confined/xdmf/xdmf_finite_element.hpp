@@ -14,7 +14,7 @@
 #include "io/confined/xdmf/xdmf_mesh.hpp"
 #include "io/pieces/loaded.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 bool is_finite_element_function(pugi::xml_node attribute);
 
@@ -36,4 +36,4 @@ struct FunctionValues {
 Result<FunctionValues> read_function_values(const XdmfFile& file, pugi::xml_node attribute, const XdmfMesh& mesh,
                                             Depth depth);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

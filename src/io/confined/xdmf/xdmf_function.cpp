@@ -12,7 +12,7 @@
 #include "io/files/escape.hpp"
 #include "io/files/text_scanner.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 using Values = std::vector<double>;
@@ -179,4 +179,4 @@ Result<std::vector<double>> evaluate_function(std::string_view expression, const
     return Expression(expression, items).evaluate();
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -13,7 +13,7 @@
 #include "io/files/text_scanner.hpp"
 #include "io/pieces/loaded.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 constexpr std::size_t max_parts = 10000;
@@ -132,4 +132,4 @@ Result<ShapedValues> read_heavy(const std::string& index, std::string_view text,
     return one_after_another(values);
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -9,7 +9,7 @@
 
 #include "io/confined/hdf5/hdf5_array.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// Reads "file.h5:/group/data set", or a part of it, "file.h5:/data set|start:stride:count:size" with a number for each
 /// dimension in each of the four, or several of these between bars, one after another.
@@ -19,4 +19,4 @@ namespace isotet::io::vtk {
 Result<ShapedValues> read_heavy(const std::string& index, std::string_view text, const Box& box, Depth depth,
                                 bool allow_outside);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

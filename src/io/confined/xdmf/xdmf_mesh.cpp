@@ -14,7 +14,7 @@
 #include "io/pieces/loaded.hpp"
 #include "io/vtk_xml/load.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 using vtk_xml::GridSize;
@@ -258,4 +258,4 @@ bool is_flat(pugi::xml_node topology) {
                                [&](const char* name) { return same_word(type, name); });
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

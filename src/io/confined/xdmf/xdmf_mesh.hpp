@@ -16,7 +16,7 @@
 #include "io/confined/xdmf/xdmf_data.hpp"
 #include "io/confined/xdmf/xdmf_document.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// An attribute that has an older name, too.
 std::string_view attribute_of(pugi::xml_node node, const char* name, const char* older_name);
@@ -42,4 +42,4 @@ Result<XdmfMesh> read_mesh(const XdmfFile& file, pugi::xml_node geometry, pugi::
 /// True for a topology of points, lines and surfaces alone.
 bool is_flat(pugi::xml_node topology);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -9,7 +9,7 @@
 
 #include "io/files/text_scanner.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 constexpr std::size_t longest_path = 1000, most_alternatives = 8;
@@ -161,4 +161,4 @@ std::vector<pugi::xml_node> elements_at(const pugi::xml_node& document, std::str
     return {};
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -7,7 +7,7 @@
 
 #include <pugixml.hpp>
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// The elements on a path: /Xdmf/Domain/Grid[@Name="a"][1]/*[self::Topology or self::Geometry], alternatives between
 /// bars. Each alternative may go over the document once only: none where one has more than one "//", or a path within
@@ -18,4 +18,4 @@ std::vector<pugi::xml_node> elements_on_path(const pugi::xml_node& document, std
 /// parts those of the first that names any. Empty where there are none.
 std::vector<pugi::xml_node> elements_at(const pugi::xml_node& document, std::string_view xpointer);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

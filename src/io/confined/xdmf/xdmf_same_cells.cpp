@@ -12,7 +12,7 @@
 
 #include "io/files/escape.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 constexpr std::size_t corners_of_uniform_cells[] = {4, 8, 8, 6, 5}; // tetrahedron, voxel, hexahedron, wedge, pyramid
@@ -135,4 +135,4 @@ void take_fields_of_same_cells(std::vector<NamedPiece>& pieces, std::vector<std:
     }
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -7,7 +7,7 @@
 
 #include "io/pieces/loaded.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// A piece, and what it is.
 struct NamedPiece {
@@ -20,4 +20,4 @@ struct NamedPiece {
 /// lacks has NaN.
 void take_fields_of_same_cells(std::vector<NamedPiece>& pieces, std::vector<std::string>& notes);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

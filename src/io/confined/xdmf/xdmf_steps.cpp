@@ -11,7 +11,7 @@
 #include "io/files/text_scanner.hpp"
 #include "io/pieces/loaded.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 namespace {
 
 constexpr int deepest_grid = 16;                     ///< collections in collections
@@ -217,4 +217,4 @@ Result<XdmfSteps> sort_by_time(const std::string& path, const XdmfDocument& docu
     return StepSorter(path, document, data).sort();
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined

@@ -16,7 +16,7 @@
 #include "io/confined/xdmf/xdmf_data.hpp"
 #include "io/confined/xdmf/xdmf_document.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io::confined {
 
 /// A uniform grid of the file.
 struct XdmfGrid {
@@ -42,4 +42,4 @@ struct XdmfSteps {
 /// Errors   invalid_data: no grid, grids nested without end, references to nothing
 Result<XdmfSteps> sort_by_time(const std::string& path, const XdmfDocument& document, const XdmfData& data);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io::confined
