@@ -25,6 +25,7 @@
 #include "io/confined/loaders.hpp"
 #include "io/confined/opened_files.hpp"
 #include "io/confined/sandbox.hpp"
+#include "io/confined/progress.hpp"
 #include "io/confined/vtk_log.hpp"
 #include "io/files/escape.hpp"
 #include "io/pieces/join.hpp"

@@ -10,6 +10,7 @@
 #include <vtkObjectFactory.h>
 #include <vtkOutputWindow.h>
 
+#include "io/confined/progress.hpp"
 #include "io/confined/vtk_log.hpp"
 #include "io/files/escape.hpp"
 
@@ -19,7 +20,6 @@ namespace {
 struct Collected {
     std::mutex mutex;
     std::optional<std::string> error;
-    std::function<void(double)> progress;
 };
 
 Collected& collected() {
@@ -80,12 +80,6 @@ void collect_vtk_messages() {
 std::optional<std::string> take_vtk_error() {
     const std::scoped_lock lock(collected().mutex);
     return std::exchange(collected().error, std::nullopt);
-}
-
-void on_progress(std::function<void(double)> listener) { collected().progress = std::move(listener); }
-
-void report_progress(double fraction) {
-    if (collected().progress) collected().progress(fraction);
 }
 
 void follow_progress(vtkAlgorithm* algorithm) {

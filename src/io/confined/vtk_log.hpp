@@ -1,7 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 
@@ -15,10 +14,6 @@ void collect_vtk_messages();
 
 /// The first error VTK has printed since the last call, without its source position; nothing if there was none.
 std::optional<std::string> take_vtk_error();
-
-/// Told of progress, 0 to 1.
-void on_progress(std::function<void(double)> listener);
-void report_progress(double fraction);
 
 /// Passes on the progress of a VTK reader.
 void follow_progress(vtkAlgorithm* algorithm);

@@ -10,7 +10,7 @@
 #include "io/confined/hdf5/hdf5_walk.hpp"
 #include "io/confined/length_check.hpp"
 #include "io/confined/loaders.hpp"
-#include "io/confined/vtk_log.hpp"
+#include "io/confined/progress.hpp"
 #include "io/files/escape.hpp"
 #include "io/pieces/block_choice.hpp"
 #include "io/reader.hpp"

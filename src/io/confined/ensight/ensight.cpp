@@ -16,6 +16,7 @@
 #include "io/confined/ensight/ensight_check.hpp"
 #include "io/confined/loaders.hpp"
 #include "io/confined/vtk_grid.hpp"
+#include "io/confined/progress.hpp"
 #include "io/confined/vtk_log.hpp"
 #include "io/files/escape.hpp"
 #include "io/files/index_file.hpp"

@@ -17,7 +17,7 @@
 #include "io/confined/hdf5/hdf5_walk.hpp"
 #include "io/confined/length_check.hpp"
 #include "io/confined/loaders.hpp"
-#include "io/confined/vtk_log.hpp"
+#include "io/confined/progress.hpp"
 
 namespace isotet::io::confined {
 namespace {

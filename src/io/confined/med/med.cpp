@@ -11,7 +11,7 @@
 #include "io/confined/med/med_fields.hpp"
 #include "io/confined/med/med_file.hpp"
 #include "io/confined/med/med_mesh.hpp"
-#include "io/confined/vtk_log.hpp"
+#include "io/confined/progress.hpp"
 #include "io/files/escape.hpp"
 #include "io/pieces/block_choice.hpp"
 #include "io/reader.hpp"

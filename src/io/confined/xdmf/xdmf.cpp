@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "io/confined/loaders.hpp"
-#include "io/confined/vtk_log.hpp"
+#include "io/confined/progress.hpp"
 #include "io/confined/xdmf/xdmf_blocks.hpp"
 #include "io/confined/xdmf/xdmf_fields.hpp"
 #include "io/confined/xdmf/xdmf_same_cells.hpp"
