@@ -65,6 +65,9 @@ struct ContourOptions {
     /// linear, unless something needs the others (gradients, edge ends, a frame, integers, values that are scaled when they
     /// are stored). The surfaces are the same. Another isovalue makes all linear.
     std::vector<double> expected_isovalues = {};
+    /// What is packed has gradients and the cells of tets, so that normals and cell fields that are asked for later do not
+    /// pack again: 4 bytes a point and 4 a tet.
+    bool pack_all = false;
 };
 
 /// What set() had to do.

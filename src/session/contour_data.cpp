@@ -212,9 +212,9 @@ Result<void> Contour::Data::pack_grid(const Run& run) {
     packed.reset(); // the old one goes before the new one comes
     PackOptions pack_options;
     pack_options.precision = options.precision;
-    pack_options.source_cells = needs_source_cells(options, input);
+    pack_options.source_cells = options.pack_all || needs_source_cells(options, input);
     pack_options.split_cells = options.split_cells;
-    pack_options.gradients = options.normals == Normals::gradient;
+    pack_options.gradients = options.pack_all || options.normals == Normals::gradient;
     pack_options.frame = options.frame;
     Result<PackedGrid> made = pack(input.grid, input.field, pack_options, run);
     if (!made) return made.error();
