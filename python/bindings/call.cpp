@@ -33,10 +33,27 @@ public:
         wake_.notify_one();
     }
 
-    /// Whether the work is done.
+    /// Whether the work is done. What the work asks for meanwhile is done here.
     bool wait(std::chrono::milliseconds time) {
         std::unique_lock lock(mutex_);
-        return done_.wait_for(lock, time, [&] { return !work_; });
+        done_.wait_for(lock, time, [&] { return !work_ || asked_; });
+        if (asked_) {
+            const std::function<void()>* const asked = asked_;
+            lock.unlock();
+            (*asked)();
+            lock.lock();
+            asked_ = nullptr;
+            answered_.notify_one();
+        }
+        return !work_;
+    }
+
+    /// Called by the work: has something done by the thread that waits for it, and waits until it is.
+    void ask(const std::function<void()>& something) {
+        std::unique_lock lock(mutex_);
+        asked_ = &something;
+        done_.notify_one();
+        while (asked_) answered_.wait_for(lock, 1h);
     }
 
 private:
@@ -54,8 +71,9 @@ private:
     }
 
     std::mutex mutex_;
-    std::condition_variable wake_, done_;
+    std::condition_variable wake_, done_, answered_;
     const std::function<void()>* work_ = nullptr;
+    const std::function<void()>* asked_ = nullptr;
 };
 
 Worker* worker = nullptr; // never deleted: its thread may outlive everything
@@ -117,7 +135,7 @@ void Call::stop(nb::python_error&& error) {
     cancel_ = true;
 }
 
-void Call::report(std::string_view step, double fraction) {
+void Call::tell(std::string_view step, double fraction) {
     const nb::gil_scoped_acquire held;
     if (cancel_) return;
     try {
@@ -127,8 +145,14 @@ void Call::report(std::string_view step, double fraction) {
     }
 }
 
+void Call::report(std::string_view step, double fraction) {
+    if (!waiting_) return tell(step, fraction);
+    worker->ask([&] { tell(step, fraction); });
+}
+
 void Call::wait_for_worker(const std::function<void()>& work) {
     worker_is_busy = true;
+    waiting_ = true;
     if (!worker) worker = new Worker;
     {
         const nb::gil_scoped_release released;

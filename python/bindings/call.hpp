@@ -44,12 +44,14 @@ public:
 
 private:
     void report(std::string_view step, double fraction);
+    void tell(std::string_view step, double fraction);
     void stop(nb::python_error&& error);
     void wait_for_worker(const std::function<void()>& work);
 
     nb::object progress_;
     Run run_;
     std::atomic<bool> cancel_ = false;
+    bool waiting_ = false; ///< the calling thread waits for the worker, and calls the progress function
     std::mutex mutex_; ///< of stopped_
     std::optional<nb::python_error> stopped_;
 };
