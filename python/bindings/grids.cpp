@@ -11,10 +11,12 @@
 #include <string>
 #include <vector>
 
+#include <isotet/contour.hpp>
 #include <isotet/contour_spectrum.hpp>
 #include <isotet/first_view.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/isovalue_shares.hpp>
+#include <isotet/linear_cells.hpp>
 #include <isotet/make.hpp>
 #include <isotet/read.hpp>
 #include <isotet/slice.hpp>
@@ -124,6 +126,9 @@ void add_grids(nb::module_& module) {
             "face_offsets"_a.none() = nb::none())
         .def("__len__", &Cells::count)
         .def("arrays", &cells_out);
+
+    module.def(
+        "contours_cell", [](std::uint8_t type) { return Contour::contours(type) || is_curved(type); }, "type"_a);
 
     nb::class_<Grid>(module, "Grid")
         .def(

@@ -191,13 +191,13 @@ class Surface:
         """The surface as pyvista.PolyData, with its normals and fields. The arrays are copies."""
         import pyvista
 
-        from .vtk import to_polydata
+        from ._vtk_data import to_polydata
 
         return pyvista.wrap(to_polydata(self))
 
     def to_vtk(self):
         """The surface as vtkPolyData, with its normals and fields. The arrays are copies."""
-        from .vtk import to_polydata
+        from ._vtk_data import to_polydata
 
         return to_polydata(self)
 

@@ -1,13 +1,14 @@
 # Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 """isotet in PyVista, found by entry points: no import of this is needed.
 
-``grid.isotet.contour(...)`` for UnstructuredGrid, the structured ones and MultiBlock, ``plotter.isotet.add_isovalue(...)``.
+``mesh.isotet.contour(...)`` for all grids, PolyData and MultiBlock; ``plotter.isotet.add_isovalue(...)``.
 """
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import pyvista
@@ -16,10 +17,18 @@ from vtkmodules.util.numpy_support import numpy_to_vtk
 from . import _isotet
 from ._arrays import direction_in, isovalues_in, place_in, tolerances_in
 from ._call import call_options
-from .vtk import IsotetContour, _arrays_of, _fill, _finish, _levels, _points_of, _says_nothing_to_contour, _Session
+from ._grid import Grid, Solids
+from ._surface import Surface, parts
+from ._vtk_data import Scalars, arrays_of, cells_of, fill, points_of, scalars_of, some_cells, other_cells, surface_of, to_polydata
+from ._vtk_fallback import REASON, Wishes, append, append_other_cells, contour_by_vtk
+from ._vtk_session import Session, finish, levels, says_nothing_to_contour
 
 _STRUCTURED = (pyvista.StructuredGrid, pyvista.ExplicitStructuredGrid, pyvista.RectilinearGrid, pyvista.ImageData)
-_MANY = 1 << 20  # surfaces that a slider may ask for
+MANY = 1 << 20  # surfaces that a slider may ask for
+
+
+class MissingArrayError(TypeError, KeyError):
+    """There is no such array: a TypeError as PyVista's, and a KeyError."""
 
 
 def _check_method(method: str) -> None:
@@ -29,20 +38,49 @@ def _check_method(method: str) -> None:
         warnings.warn(f"isotet has a method of its own: method='{method}' is ignored", stacklevel=4)
 
 
-def _scalars_name(grid, scalars) -> str:
+def _scalars_name(mesh, scalars) -> str:
     """The name of the array to contour; an array is stored as "Contour Data", as pyvista does."""
     if isinstance(scalars, str):
         return scalars
     if scalars is None:
-        if grid.active_scalars_name is None:
+        if mesh.active_scalars_name is None:
             from pyvista.core.utilities.arrays import set_default_active_scalars
 
-            set_default_active_scalars(grid)
-        return grid.active_scalars_name
+            set_default_active_scalars(mesh)
+        return mesh.active_scalars_name
     if isinstance(scalars, (Sequence, np.ndarray)):
-        grid["Contour Data"] = scalars
+        mesh["Contour Data"] = scalars
         return "Contour Data"
     raise TypeError(f"Invalid type for `scalars` ({type(scalars)}). Should be either a numpy.ndarray, a string, or None.")
+
+
+def find_scalars(mesh, scalars, preference: str) -> tuple[str, bool]:
+    """The name of an array, or of a component as "v:x" or "v:mag", and whether it is one of cells. These are taken where
+    `preference` is "cell"."""
+    if preference not in ("point", "cell"):
+        raise ValueError(f"preference is {preference!r}, but must be 'point' or 'cell'")
+    if mesh.n_arrays < 1 and not isinstance(scalars, (Sequence, np.ndarray)):
+        raise ValueError("Input dataset for the contour filter must have scalar.")
+    name = _scalars_name(mesh, scalars)
+    for found in (name, name.rpartition(":")[0]):
+        if preference == "cell" and found in mesh.cell_data:
+            return name, True
+        if found in mesh.point_data:
+            return name, False
+        if found in mesh.cell_data:
+            raise TypeError(f"Contour filter only works on point data. '{found}' is cell data: with preference='cell' it is averaged to the points.")
+    if ":" in name:  # of a vector that is stored as several arrays
+        return name, preference == "cell"
+    raise MissingArrayError(f"there is no array '{name}': the mesh has {', '.join(mesh.array_names) or 'none'}")
+
+
+def _component(mesh, cells, name: str, of_cells: bool) -> Scalars:
+    arrays = arrays_of(mesh.GetCellData() if of_cells else mesh.GetPointData())
+    grid = _isotet.Grid(points_of(cells), cells_of(cells), *(([], arrays) if of_cells else (arrays, [])))
+    values = _isotet.find_field(grid, name, False, False, call_options(0, None)).values
+    array = numpy_to_vtk(values)
+    array.SetName(name)
+    return Scalars(name, array, values)
 
 
 def _isovalues(isosurfaces, rng, range_of_data) -> list[float]:
@@ -51,16 +89,18 @@ def _isovalues(isosurfaces, rng, range_of_data) -> list[float]:
     ends = [float(end) for end in range_of_data()] if rng is None else _ends_of(rng)
     if not np.isfinite(ends).all():
         raise ValueError(f"the field has values from {ends[0]} to {ends[1]}: give isovalues, or rng")
-    return _levels(ends[0], ends[1], int(isosurfaces))
+    return levels(ends[0], ends[1], int(isosurfaces))
 
 
 def _ends_of(rng) -> list[float]:
     array = np.asarray(rng)
-    if array.shape != (2,) or array.dtype.kind not in "iuf":
+    if array.dtype.kind not in "iuf":
         raise TypeError(f"rng is {rng!r}, but must be two numbers")
+    if array.shape != (2,):
+        raise ValueError(f"rng has shape {array.shape} which is not allowed: it must be two numbers")
     lower, upper = array.tolist()
     if not lower <= upper:
-        raise ValueError(f"rng is {lower} to {upper}, but must ascend")
+        raise ValueError(f"rng is {lower} to {upper}, but must be sorted: it must ascend")
     return [float(lower), float(upper)]
 
 
@@ -69,23 +109,30 @@ class GridAccessor:
 
     def __init__(self, grid: pyvista.UnstructuredGrid):
         self._grid = grid
-        self._session = _Session()
+        self._session = Session()
         self._expected = 0
-        self._blank = 0  # cells that are hidden
+
+    def __repr__(self) -> str:
+        return f"<isotet of a {type(self._grid).__name__}: {self._session!r}>"
 
     def _unstructured(self) -> pyvista.UnstructuredGrid:
         """Its cells and points; arrays are taken from `_grid`."""
         return self._grid
 
-    def _scalars(self, scalars, preference: str):
-        grid = self._grid
-        if grid.n_arrays < 1 and not isinstance(scalars, (Sequence, np.ndarray)):
-            raise ValueError("Input dataset for the contour filter must have scalar.")
-        name = _scalars_name(grid, scalars)
-        association = grid.get_array_association(name, preference=preference)
-        if association != pyvista.FieldAssociation.POINT:
-            raise TypeError("Contour filter only works on point data.")
-        return grid.GetPointData().GetArray(name)
+    def _scalars(self, scalars, preference: str) -> tuple[Scalars, bool]:
+        name, of_cells = find_scalars(self._grid, scalars, preference)
+        data = self._grid.GetCellData() if of_cells else self._grid.GetPointData()
+        array, cells = data.GetArray(name), self._unstructured()
+        if array is None:
+            return _component(self._grid, cells, name, of_cells), False
+        return scalars_of(cells, array, of_cells), of_cells
+
+    def _range_of(self, scalars: Scalars) -> tuple[float, float]:
+        name = scalars.array.GetName()
+        if scalars.replaced is None and name:  # a vector: the range of all components, as PyVista's
+            return self._grid.get_data_range(name, preference="point")
+        values = scalars.values[~np.isnan(scalars.values)] if scalars.values.dtype.kind == "f" else scalars.values
+        return (values.min(), values.max()) if len(values) else (np.nan, np.nan)
 
     def contour(self, isosurfaces: int | Sequence[float] = 10, scalars=None, compute_normals: bool = False,
                 compute_gradients: bool = False, compute_scalars: bool = True, rng=None, preference: str = "point",
@@ -96,7 +143,8 @@ class GridAccessor:
         isosurfaces
             How many, evenly over the range with both ends; or isovalues.
         scalars
-            A name of point data, or one value a point, which is stored as "Contour Data"; else the active scalars.
+            The name of an array, or of a component of it, as "v:x", "v:2" or "v:mag", without which a vector's first is
+            taken; or one value a point, which is stored as "Contour Data"; else the active scalars.
         compute_normals
             Normals of the field's gradient, one a vertex, as "Normals".
         compute_scalars
@@ -104,41 +152,67 @@ class GridAccessor:
         rng
             The range for a number of isosurfaces; else that of the data.
         preference
-            "point" or "cell" where both have an array of that name; cells cannot be contoured.
+            "cell": a cell array is taken where there is one of that name, and averaged to the points by volumes.
         compute_gradients, progress_bar
             Accepted, without effect. `method` is, too, with a warning.
         tolerance, geometry_tolerance, distance
             Curved cells are refined for the isovalues, as by `isotet.Grid.contour`: 0.1 or "0.1%"; without it they are
             split at their nodes.
 
+        Cells that isotet does not contour VTK does, with a warning.
+
         The grid is packed when this pays; what was packed is kept, and used while cells and points are the same. After
         cells were changed in place through NumPy, call ``grid.Modified()`` of their arrays, as for VTK's filters.
 
-        Raises TypeError for cell data, ValueError for broken grids and isovalues that are not finite.
+        Raises TypeError for cell data without ``preference="cell"`` and for arrays that are not there, ValueError for broken
+        grids and isovalues that are not finite.
         """
         _check_method(method)
-        grid = self._grid
-        array = self._scalars(scalars, preference)
-        values = _isovalues(isosurfaces, rng, lambda: grid.get_data_range(array.GetName(), preference="point"))
+        chosen, of_cells = self._scalars(scalars, preference)
+        values = _isovalues(isosurfaces, rng, lambda: self._range_of(chosen))
         out = pyvista.PolyData()
-        if grid.n_cells == 0 or not values:
+        if self._grid.n_cells == 0 or not values:
             return out
-        cell_fields = _arrays_of(grid.GetCellData())
-        try:
-            surface = self._session.contour(
-                self._unstructured(), array, values, normals=compute_normals, surfaces=self._expected,
-                fields=_arrays_of(grid.GetPointData(), array.GetName()), cell_fields=cell_fields,
-                tolerances=tolerances_in(tolerance, geometry_tolerance, distance))  # fmt: skip
-        except ValueError as error:
-            if not _says_nothing_to_contour(error):
-                raise
-            self._warn_of_cells(grid.n_cells - self._blank)
-            out.GetFieldData().PassData(grid.GetFieldData())
-            return out
-        self._warn_of_cells(surface._how["cells_left_out"] - self._blank)
-        _finish(surface, values, array, compute_scalars, any(name == "isovalue" for name, _ in cell_fields), out)
-        out.GetFieldData().PassData(grid.GetFieldData())
+        self._extract(
+            chosen, values, out, compute_scalars, normals=compute_normals,
+            tolerances=tolerances_in(tolerance, geometry_tolerance, distance))  # fmt: skip
+        self._add_others(Wishes(values, compute_normals, compute_scalars), chosen, of_cells, out)
+        out.GetFieldData().PassData(self._grid.GetFieldData())
         return out
+
+    def _extract(self, scalars: Scalars, values: list[float], out, compute_scalars: bool, *, normals: bool, **how) -> None:
+        """What isotet contours of the grid."""
+        grid, cells = self._grid, self._unstructured()
+        if self._session.others_of(cells) == cells.n_cells:
+            return
+        fields, cell_fields = arrays_of(grid.GetPointData(), scalars.replaced), arrays_of(grid.GetCellData())
+        if normals:
+            fields = [named for named in fields if named[0] != "Normals"]
+        try:
+            surface = self._session.contour(cells, scalars, values, normals=normals, surfaces=self._expected, fields=fields,
+                                            cell_fields=cell_fields, **how)  # fmt: skip
+        except ValueError as error:
+            if not says_nothing_to_contour(error):
+                raise
+            self._warn_of_cells("leaves out", cells.n_cells)
+            return
+        hidden = int(np.count_nonzero(cells.celltypes == pyvista.CellType.EMPTY_CELL)) if surface._how["cells_left_out"] else 0
+        self._warn_of_cells("leaves out", surface._how["cells_left_out"] - self._session.others_of(cells) - hidden)
+        finish(surface, values, scalars, fields, compute_scalars, any(name == "isovalue" for name, _ in cell_fields), out)
+
+    def _add_others(self, wishes: Wishes, scalars: Scalars, of_cells: bool, out) -> None:
+        """What VTK contours of it."""
+        cells = self._unstructured()
+        others = self._session.others_of(cells)
+        if others and others == cells.n_cells:
+            append(contour_by_vtk(self._grid, scalars, of_cells, wishes), out)
+        elif others:
+            append_other_cells(self._grid, scalars, of_cells, wishes, out)
+        self._warn_of_cells("leaves to VTK", others)
+
+    def _warn_of_cells(self, what: str, count: int) -> None:
+        if count > 0:
+            warnings.warn(f"isotet {what} {count} of {self._grid.n_cells} cells: {REASON}", stacklevel=4)
 
     def slice(self, normal="x", origin=None, generate_triangles: bool = False, contour: bool = False,
               progress_bar: bool = False) -> pyvista.PolyData:  # fmt: skip
@@ -164,41 +238,74 @@ class GridAccessor:
             return out
         cells = self._unstructured()
         offset = direction[0] * point[0] + direction[1] * point[1] + direction[2] * point[2]
-        field = _isotet.plane_field(_points_of(cells), (0.0, 0.0, 0.0), direction, offset, call_options(0, None))
+        field = _isotet.plane_field(points_of(cells), (0.0, 0.0, 0.0), direction, offset, call_options(0, None))
         heights = numpy_to_vtk(field.values)
-        heights.SetName(field.name)
-        try:
-            surface = self._session.contour(
-                cells, heights, [offset], normals=False, surfaces=self._expected,
-                fields=_arrays_of(grid.GetPointData()), cell_fields=_arrays_of(grid.GetCellData()))  # fmt: skip
-        except ValueError as error:
-            if not _says_nothing_to_contour(error):
-                raise
-            self._warn_of_cells(grid.n_cells - self._blank)
-            return out
-        self._warn_of_cells(surface._how["cells_left_out"] - self._blank)
-        _fill(out, surface, copy=False)
+        self._extract(Scalars("", heights, field.values), [offset], out, False, normals=False)
+        if others := self._session.others_of(cells):
+            flat = grid if others == cells.n_cells else pyvista.wrap(some_cells(grid, other_cells(grid)))
+            append(flat.slice(direction, origin=point), out)
+            self._warn_of_cells("leaves to VTK", others)
         out.GetFieldData().PassData(grid.GetFieldData())
         if contour and grid.active_scalars_name in out.point_data:
             out.set_active_scalars(grid.active_scalars_name, preference="point")
         return out.contour() if contour else out
 
-    def _warn_of_cells(self, left_out: int) -> None:
-        if left_out:
-            warnings.warn(f"isotet leaves out {left_out} of {self._grid.n_cells} cells: it contours three-dimensional cells of "
-                          "degree 1 to 10, and polyhedra with faces", stacklevel=3)  # fmt: skip
+    def slice_orthogonal(self, x=None, y=None, z=None) -> pyvista.MultiBlock:
+        """Three slices, as of `pyvista.DataSet.slice_orthogonal`: blocks "YZ", "XZ" and "XY" through a point; else the centre."""
+        centre = self._grid.center
+        point = [centre[i] if place is None else float(place) for i, place in enumerate((x, y, z))]
+        return pyvista.MultiBlock({name: self.slice(axis, point) for name, axis in (("YZ", "x"), ("XZ", "y"), ("XY", "z"))})
 
-    def pack(self, scalars=None, *, compute_normals: bool = False) -> None:
-        """Packs the grid now, and keeps it packed for all contours to come, instead of when so many were asked for that it pays."""
-        self._expected = _MANY
-        array = self._scalars(scalars, "point")
-        cell_fields = _arrays_of(self._grid.GetCellData())
-        self._session.set(self._unstructured(), array, normals=compute_normals, surfaces=_MANY, fields=[], cell_fields=cell_fields)
+    def slice_along_axis(self, n: int = 5, axis: str = "x") -> pyvista.MultiBlock:
+        """`n` slices evenly along an axis, from end to end, as of `pyvista.DataSet.slice_along_axis`: blocks "slice0" and on."""
+        along = "xyz".index(axis)
+        bounds, centre = self._grid.bounds, list(self._grid.center)
+        ends = np.array(bounds[2 * along : 2 * along + 2], float)
+        ends += np.array([1, -1]) * (ends[1] - ends[0]) * 0.01  # as PyVista's: a cut in the boundary may be empty
+        out = pyvista.MultiBlock()
+        for i, place in enumerate(np.linspace(*ends, n)):
+            centre[along] = place
+            out.append(self.slice(axis, centre), f"slice{i}")
+        return out
+
+    def solid(self, scalars=None, *, above: float | None = None, below: float | None = None, preference: str = "point",
+              compute_normals: bool = False) -> pyvista.PolyData:  # fmt: skip
+        """The part of the grid where an array is at least `above` and less than `below`, as a closed surface whose triangles
+        face outwards; all arrays are carried. Its cell array "boundary" is 0 on isosurfaces and 1 on the boundary of the grid,
+        its field data "volume" that of the solid.
+
+        Raises ValueError where neither is given, and as `contour`.
+        """
+        chosen, _ = self._scalars(scalars, preference)
+        cells, grid = self._unstructured(), self._grid
+        fields, cell_fields = arrays_of(grid.GetPointData()), arrays_of(grid.GetCellData())
+        whole = Grid._of(_isotet.Grid(points_of(cells), cells_of(cells), fields, cell_fields))
+        solids = Solids(whole, chosen.values, fields=dict(fields), cell_fields=dict(cell_fields),
+                        normals="vertex" if compute_normals else "none")  # fmt: skip
+        surface = solids.solid(above=above, below=below)
+        out = pyvista.PolyData()
+        fill(out, surface, copy=False, kinds={name: values.dtype for name, values in fields})
+        out.GetFieldData().PassData(grid.GetFieldData())
+        out.field_data["volume"] = [surface.solid["volume"]] if surface.solid else [0.0]
+        return out
+
+    def pack(self, scalars=None, *, compute_normals: bool = False, preference: str = "point") -> None:
+        """Packs the grid now, and keeps it packed for all contours to come, instead of when so many were asked for that it pays.
+        Cell arrays and normals may come later."""
+        self._expected = MANY
+        chosen, _ = self._scalars(scalars, preference)
+        self._session.set(self._unstructured(), chosen, normals=compute_normals, surfaces=MANY, fields=[], cell_fields=[])
         self._session.prepare()
+
+    @property
+    def report(self) -> dict[str, Any]:
+        """Of the last surface: "update", what was found to differ from the one before ("nothing", "field", "points" or "grid");
+        "method", "direct" or "clusters"; "pack_seconds" and "extract_seconds"; and "packed_bytes", 0 where nothing is packed."""
+        return self._session.report
 
     def clear(self) -> None:
         """Frees what was packed."""
-        self._session, self._expected = _Session(), 0
+        self._session, self._expected = Session(), 0
 
 
 class StructuredAccessor(GridAccessor):
@@ -227,7 +334,6 @@ class StructuredAccessor(GridAccessor):
                 if array is not None:
                     data.AddArray(array)
             self._cells, self._shape = bare.cast_to_unstructured_grid(), shape
-            self._blank = np.count_nonzero(self._cells.celltypes == pyvista.CellType.EMPTY_CELL)
         if grid.IsA("vtkPointSet"):
             self._cells.SetPoints(grid.GetPoints())
         return self._cells
@@ -235,6 +341,40 @@ class StructuredAccessor(GridAccessor):
     def clear(self) -> None:
         super().clear()
         self._cells = None
+
+
+class PolyDataAccessor(GridAccessor):
+    """``mesh.isotet`` of a pyvista.PolyData: isolines by VTK, and what can be done with surfaces of triangles."""
+
+    def _unstructured(self) -> pyvista.UnstructuredGrid:
+        return self._grid.cast_to_unstructured_grid()
+
+    def _surface(self) -> Surface:
+        mesh = self._grid if self._grid.is_all_triangles else self._grid.triangulate()
+        return surface_of(mesh)
+
+    def _polydata(self, surface: Surface) -> pyvista.PolyData:
+        out = pyvista.wrap(to_polydata(surface))
+        out.GetFieldData().PassData(self._grid.GetFieldData())
+        return out
+
+    def decimate(self, target_reduction: float = 0.5, *, error: float | None = None) -> pyvista.PolyData:
+        """Fewer triangles, by the share `target_reduction`, as of `pyvista.PolyData.decimate`, by meshoptimizer: closed surfaces
+        stay closed, point arrays are kept. `error`: how far it may move, as of `isotet.Surface.reduce`."""
+        return self._polydata(self._surface().reduce(target_reduction, error))
+
+    def extract_largest(self) -> pyvista.PolyData:
+        """The connected part with the largest area, as of `pyvista.DataSet.extract_largest`."""
+        return self._polydata(self._surface().keep_parts(0))
+
+    def split_bodies(self) -> pyvista.MultiBlock:
+        """The connected parts, largest area first, as of `pyvista.DataSet.split_bodies`."""
+        surface = self._surface()
+        return pyvista.MultiBlock([self._polydata(surface.keep_parts(i)) for i in range(len(parts(surface)))])
+
+    def parts(self) -> list[dict[str, Any]]:
+        """The connected parts in numbers, as `isotet.parts` tells them."""
+        return parts(self._surface())
 
 
 class BlocksAccessor:
@@ -245,11 +385,11 @@ class BlocksAccessor:
 
     def contour(self, isosurfaces: int | Sequence[float] = 10, scalars: str | None = None, compute_normals: bool = False,
                 compute_gradients: bool = False, compute_scalars: bool = True, rng=None, preference: str = "point",
-                method: str = "contour", progress_bar: bool = False) -> pyvista.MultiBlock:  # fmt: skip
+                method: str = "contour", progress_bar: bool = False, **tolerances) -> pyvista.MultiBlock:  # fmt: skip
         """Isosurfaces of every block, in a MultiBlock of the same structure: the same isovalues for all of them.
 
         The parameters are those of `GridAccessor.contour`; `scalars` is a name. Blocks that are None, or do not have the
-        scalars as point data, give an empty pyvista.PolyData; blocks of other types than grids are converted.
+        scalars, give an empty pyvista.PolyData.
         """
         _check_method(method)
         blocks = [block for block in self._leaves(self._blocks) if block is not None]
@@ -257,16 +397,17 @@ class BlocksAccessor:
             scalars = next((block.active_scalars_name for block in blocks if block.active_scalars_name), None)
         if not isinstance(scalars, str):
             raise TypeError("scalars of a MultiBlock must be the name of an array")
-        have = [block for block in blocks if scalars in block.point_data]
+        have = [block for block in blocks if _has(block, scalars, preference)]
         if not have:
-            raise ValueError(f"no block has point data '{scalars}'")
+            raise ValueError(f"no block has {preference} data '{scalars}'")
 
         def range_of_data():
-            ranges = np.array([block.get_data_range(scalars, preference="point") for block in have], float)
+            ranges = np.array([_range_in(block, scalars, preference) for block in have], float)
             return np.nanmin(ranges[:, 0]), np.nanmax(ranges[:, 1])
 
         values = _isovalues(isosurfaces, rng, range_of_data)
-        return self._contour_all(self._blocks, values, scalars, compute_normals, compute_scalars)
+        how = {"compute_normals": compute_normals, "compute_scalars": compute_scalars, "preference": preference, **tolerances}
+        return self._contour_all(self._blocks, values, scalars, how)
 
     def _leaves(self, blocks):
         for block in blocks:
@@ -275,83 +416,33 @@ class BlocksAccessor:
             else:
                 yield block
 
-    def _contour_all(self, blocks, values, scalars, compute_normals, compute_scalars) -> pyvista.MultiBlock:
+    def _contour_all(self, blocks, values, scalars, how) -> pyvista.MultiBlock:
         out = pyvista.MultiBlock()
         for name, block in zip(blocks.keys(), blocks, strict=True):
             if isinstance(block, pyvista.MultiBlock):
-                surface = self._contour_all(block, values, scalars, compute_normals, compute_scalars)
-            elif block is None or scalars not in block.point_data:
+                surface = self._contour_all(block, values, scalars, how)
+            elif block is None or not _has(block, scalars, how["preference"]):
                 surface = pyvista.PolyData()
             else:
-                ours = isinstance(block, (pyvista.UnstructuredGrid, *_STRUCTURED))
-                grid = block if ours else block.cast_to_unstructured_grid()
-                surface = grid.isotet.contour(values, scalars, compute_normals=compute_normals, compute_scalars=compute_scalars)
+                surface = block.isotet.contour(values, scalars, **how)
             out.append(surface, name)
         return out
 
 
-class PlotterComponent:
-    """``plotter.isotet`` of a pyvista.Plotter."""
+def _has(block, scalars: str, preference: str) -> bool:
+    """Whether it can be contoured by these scalars."""
+    if not hasattr(block, "isotet") or block.n_cells == 0:
+        return False
+    data = block.cell_data if preference == "cell" else block.point_data
+    return scalars in data or scalars.rpartition(":")[0] in data or (preference == "cell" and scalars in block.point_data)
 
-    def __init__(self, plotter: pyvista.Plotter):
-        self._plotter = plotter
 
-    def add_isovalue(self, grid: pyvista.DataSet, scalars: str | None = None, compute_normals: bool = False,
-                     compute_scalars: bool = True, value: float | None = None, rng=None, color_by: str | None = None,
-                     title: str | None = None, pointa=(0.4, 0.9), pointb=(0.9, 0.9), widget_color=None,
-                     **kwargs):  # fmt: skip
-        """An isosurface and a slider for its isovalue, which it follows while the slider is dragged.
-
-        As `pyvista.Plotter.add_mesh_isovalue`; the grid is packed before the plot opens.
-
-        grid
-            A pyvista.UnstructuredGrid; others are converted once.
-        scalars
-            A name of point data; else the active scalars.
-        value
-            The isovalue at first; else the middle of the range.
-        rng
-            Both ends of the slider; else the range of the data.
-        color_by
-            Point data that colours the surface, over its range in the grid; else the scalars do.
-        kwargs
-            For `pyvista.Plotter.add_mesh`.
-
-        Returns the actor of the surface. Raises TypeError for other meshes and for cell data.
-        """
-        if not isinstance(grid, (pyvista.UnstructuredGrid, *_STRUCTURED)):
-            raise TypeError(f"the mesh is a {type(grid).__name__}, but must be a grid of cells, such as UnstructuredGrid")
-        name = _scalars_name(grid, scalars)
-        if grid.get_array_association(name, preference="point") != pyvista.FieldAssociation.POINT:
-            raise TypeError(f"Contour filter only works on Point data. Array ({name}) is in the Cell data.")
-        if not isinstance(grid, pyvista.UnstructuredGrid):
-            grid = grid.cast_to_unstructured_grid()
-        lower, upper = grid.get_data_range(name, preference="point") if rng is None else rng
-        contour = IsotetContour()
-        contour.SetExpectedSurfaces(_MANY)
-        contour.SetComputeNormals(compute_normals)
-        contour.SetComputeScalars(compute_scalars)
-        contour.SetInputDataObject(grid)
-        contour.SetInputArrayToProcess(0, 0, 0, 0, name)
-        contour.SetValue(0, (lower + upper) / 2 if value is None else value)
-        contour.Update()
-
-        def moved(value: float) -> None:
-            contour.SetValue(0, value)
-            contour.Update()
-
-        self._plotter.add_slider_widget(moved, [lower, upper], value=contour.GetValue(0), title=title or name,
-                                        pointa=pointa, pointb=pointb, color=widget_color, interaction_event="always")  # fmt: skip
-        if color_by is None:
-            kwargs.setdefault("clim", [lower, upper])
-        else:
-            kwargs.setdefault("clim", grid.get_data_range(color_by, preference="point"))
-            kwargs["scalars"] = color_by
-        return self._plotter.add_mesh(contour, **kwargs)
+def _range_in(block, scalars: str, preference: str) -> tuple[float, float]:
+    return block.isotet._range_of(block.isotet._scalars(scalars, preference)[0])
 
 
 pyvista.register_dataset_accessor("isotet", pyvista.UnstructuredGrid)(GridAccessor)
 for _kind in _STRUCTURED:
     pyvista.register_dataset_accessor("isotet", _kind)(StructuredAccessor)
+pyvista.register_dataset_accessor("isotet", pyvista.PolyData)(PolyDataAccessor)
 pyvista.register_dataset_accessor("isotet", pyvista.MultiBlock)(BlocksAccessor)
-pyvista.register_plotter_component("isotet")(PlotterComponent)

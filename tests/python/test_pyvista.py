@@ -9,6 +9,7 @@ import weakref
 import numpy as np
 import pytest
 import pyvista as pv
+from vtkmodules.vtkFiltersCore import vtkAppendFilter
 
 import isotet
 import isotet.vtk
@@ -113,25 +114,36 @@ def test_errors_are_those_of_pyvista(grid):
         assert grid.isotet.contour([2.0], "r", method="marching_cubes").n_cells > 0
 
 
-def test_cells_left_out_are_said():
+def test_cells_that_vtk_contours_are_appended_with_a_warning():
     triangle = pv.examples.cells.Triangle()
     mixed = cubes().triangulate().merge(triangle.translate((20, 0, 0)), merge_points=False)
     mixed["x"] = mixed.points[:, 0]
-    with pytest.warns(UserWarning, match="leaves out 1 of"):
-        mixed.isotet.contour([1.5], "x")
+    with pytest.warns(UserWarning, match="leaves to VTK 1 of"):
+        surface = mixed.isotet.contour([20.2], "x")
+    assert (surface.n_cells, surface.n_lines) == (1, 1)
+    with pytest.warns(UserWarning, match="leaves to VTK 1 of"):
+        surface = mixed.isotet.contour([1.5, 20.2], "x", compute_normals=True)
+    assert surface.n_lines == 1 and surface.n_cells > 1
+    assert set(surface.point_data) == {"x", "Normals"}
+    with pytest.warns(UserWarning, match="leaves to VTK 1 of"):
+        assert mixed.isotet.slice("x", (20.2, 0, 0)).n_lines == 1
 
 
-@pytest.mark.parametrize("cell", ["Triangle", "Quadrilateral", "Line", "PolyVertex", "TriangleStrip", "Pixel", "structured"])
-def test_grids_without_cells_to_contour_give_nothing_and_a_warning(cell):
+CELLS = ["Triangle", "Quadrilateral", "Line", "TriangleStrip", "Pixel", "ConvexPointSet", "structured"]
+
+
+@pytest.mark.parametrize("cell", [cell for cell in CELLS if cell == "structured" or hasattr(pv.examples.cells, cell)])
+def test_grids_of_other_cells_are_contoured_by_vtk_with_a_warning(cell):
     if cell == "structured":
         grid = pv.StructuredGrid(*np.meshgrid([0.0, 1.0], [0.0, 1.0], [0.0]))
     else:
         grid = getattr(pv.examples.cells, cell)()
     grid["x"] = grid.points[:, 0]
     grid.field_data["time"] = [2.5]
-    with pytest.warns(UserWarning, match="leaves out 1 of 1 cells"):
-        surface = grid.isotet.contour([0.5], "x")
-    assert surface.n_points == surface.n_cells == 0
+    with pytest.warns(UserWarning, match="leaves to VTK 1 of 1 cells"):
+        surface = grid.isotet.contour([0.4], "x")
+    theirs = grid.contour([0.4], "x")
+    assert (surface.n_points, surface.n_cells) == (theirs.n_points, theirs.n_cells) and surface.n_points > 0
     assert surface.field_data["time"].tolist() == [2.5]
 
 
@@ -139,8 +151,8 @@ def test_grids_without_cells_to_contour_give_nothing_and_a_warning(cell):
     ("error", "message", "how"),
     [
         (TypeError, "rng is {}, but must be two numbers", {"rng": {}}),
-        (TypeError, "rng is .1., but must be two numbers", {"rng": [1]}),
-        (ValueError, "rng is 2 to 1, but must ascend", {"rng": [2, 1]}),
+        (ValueError, "rng has shape .1,. which is not allowed", {"rng": [1]}),
+        (ValueError, "rng is 2 to 1, but must be sorted", {"rng": [2, 1]}),
         (TypeError, "isovalues is '3', but must be a number", {"isosurfaces": "3"}),
         (TypeError, "isovalues is None, but must be a number", {"isosurfaces": None}),
         (TypeError, "isovalues is True, but must be a number", {"isosurfaces": True}),
@@ -352,10 +364,141 @@ def test_a_slider_is_followed():
     actor = plotter.isotet.add_isovalue(image, "wave", value=2.1)
     assert area() == pytest.approx(image.contour([2.1], "wave").area, rel=1e-3)
     plotter.close()
-    with pytest.raises(TypeError, match="must be a grid of cells"):
-        pv.Plotter(off_screen=True).isotet.add_isovalue(pv.Sphere())
-    with pytest.raises(TypeError, match="Cell data"):
-        pv.Plotter(off_screen=True).isotet.add_isovalue(grid, "number")
+    with pytest.raises(TypeError, match="PointSets are 0-dimensional"):
+        pv.Plotter(off_screen=True).isotet.add_isovalue(pv.PointSet([[0.0, 0, 0]]))
+    with pytest.raises(TypeError, match="the mesh is a int"):
+        pv.Plotter(off_screen=True).isotet.add_isovalue(3)
+
+
+def test_a_slider_takes_what_pyvista_has():
+    grid = cubes()
+    sphere = pv.Sphere()
+    sphere["r"] = sphere.points[:, 2].copy()
+    source = vtkAppendFilter()
+    source.AddInputData(grid)
+    for mesh in (grid, pv.MultiBlock([grid, None, cubes(5)]), [grid, cubes(5)], source):
+        plotter = pv.Plotter(off_screen=True)
+        plotter.isotet.add_isovalue(mesh, "r", value=2.5)
+        (surface,) = plotter.widgets.isovalue_meshes
+        first = surface.combine() if isinstance(surface, pv.MultiBlock) else surface
+        assert first.n_cells > 0
+        plotter.widgets.slider_widgets[0].GetRepresentation().SetValue(1.5)
+        plotter.widgets.slider_widgets[0].InvokeEvent("InteractionEvent")
+        later = surface.combine() if isinstance(surface, pv.MultiBlock) else surface
+        assert 0 < later.n_cells < first.n_cells or later is first
+        plotter.close()
+    plotter = pv.Plotter(off_screen=True)
+    with pytest.warns(UserWarning, match="vtkPolyData is contoured by vtkContourFilter"):
+        plotter.isotet.add_isovalue(sphere, "r")
+    assert plotter.widgets.isovalue_meshes[0].n_lines > 0
+    plotter.isotet.add_isovalue(grid, "number", preference="cell")
+    assert plotter.widgets.isovalue_meshes[1].n_cells > 0
+    with pytest.raises(TypeError, match="only works on point data"):
+        plotter.isotet.add_isovalue(grid, "number")
+    plotter.close()
+
+
+def test_components_and_cell_arrays_are_contoured():
+    grid = cubes()
+    ours = grid.isotet.contour([5.0], "v")  # the first component; of grids VTK takes numbers in the order of memory
+    assert ours.area == pytest.approx(64) and ours.bounds[:2] == (2.5, 2.5)
+    assert set(ours.point_data) == set(grid.contour([5.0], "v").point_data), "without an array of isovalues"
+    for name, values in (("v:y", grid["v"][:, 1]), ("v:2", grid["v"][:, 2]), ("v:mag", np.linalg.norm(grid["v"], axis=1))):
+        surface = grid.isotet.contour([5.0], name)
+        assert surface.area == pytest.approx(grid.copy().contour([5.0], values).area, rel=0.01)
+        assert np.unique(surface[name]).tolist() == [5.0]
+    with pytest.raises(ValueError, match="component"):
+        grid.isotet.contour([5.0], "v:9")
+    averaged = grid.cell_data_to_point_data()
+    surface = grid.isotet.contour([300.0], "number", preference="cell")
+    assert surface.area == pytest.approx(averaged.contour([300.0], "number").area, rel=0.02)
+    assert surface.point_data["number"].tolist() == [300.0] * surface.n_points
+    grid.cell_data["w"] = grid.cell_centers().points
+    assert grid.isotet.contour([4.0], "w:y", preference="cell").area == pytest.approx(64, rel=0.01)
+    image = structured("image")
+    assert image.isotet.contour([500.0], "number", preference="cell").n_cells > 0
+    for name, place in (("vel_x", 0), ("vel_y", 1), ("vel_z", 2)):
+        grid[name] = grid["v"][:, place].copy()
+    assert grid.isotet.contour([5.0], "vel:mag").area == pytest.approx(grid.isotet.contour([5.0], "v:mag").area, rel=1e-3)
+
+
+@pytest.mark.parametrize("dtype", [np.int8, np.uint8, np.int32, np.int64, np.float32, np.float64])
+def test_carried_arrays_keep_their_type(dtype):
+    grid = cubes()
+    grid["carried"] = (np.arange(grid.n_points) % 100).astype(dtype)
+    ours, theirs = both(grid, [2.5], "r")
+    assert ours["carried"].dtype == theirs["carried"].dtype == dtype
+    assert ours["carried"].max() <= 99
+    ours, theirs = both(grid, [50], "carried")
+    assert ours["carried"].dtype == theirs["carried"].dtype == dtype
+    assert set(ours["carried"]) == {50}
+
+
+def test_cell_arrays_and_normals_do_not_pack_again():
+    grid = cubes()
+    grid.isotet.pack("r")
+    assert grid.isotet.contour([2.5], "r").n_cells > 0
+    grid.cell_data["more"] = np.arange(grid.n_cells)
+    assert "more" in grid.isotet.contour([2.5], "r").cell_data
+    assert "Normals" in grid.isotet.contour([2.5], "r", compute_normals=True).point_data
+    report = grid.isotet.report
+    assert (report["update"], report["method"]) == ("nothing", "clusters")
+    assert report["pack_seconds"] == 0 and report["packed_bytes"] > 0
+    assert repr(grid.isotet) == f"<isotet of a UnstructuredGrid: packed, {report['packed_bytes']} bytes>"
+
+
+def test_isolines_of_polydata():
+    sphere = pv.Sphere()
+    sphere["z"] = sphere.points[:, 2].copy()
+    with pytest.warns(UserWarning, match="leaves to VTK"):
+        lines = sphere.isotet.contour([0.1], "z")
+    assert (lines.n_lines, lines.n_points) == (sphere.contour([0.1], "z").n_lines, sphere.contour([0.1], "z").n_points)
+
+
+def test_surfaces_are_decimated_and_split():
+    grid = cubes(17)
+    grid["f"] = np.abs(grid.points[:, 0] - 8.0) + 0.05 * grid["r"]
+    both_sides = grid.isotet.contour([3.0], "f")
+    parts = both_sides.isotet.split_bodies()
+    assert len(parts) == len(both_sides.isotet.parts()) == 2
+    assert sum(part.n_cells for part in parts) == both_sides.n_cells
+    assert both_sides.isotet.extract_largest().n_cells == parts[0].n_cells
+    ball = grid.isotet.contour([5.0], "r")
+    fewer = ball.isotet.decimate(0.5)
+    assert 0.3 * ball.n_cells < fewer.n_cells < 0.6 * ball.n_cells
+    assert fewer.is_manifold and set(fewer.point_data) == set(ball.point_data)
+
+
+def test_solids_are_closed():
+    grid = cubes()
+    ball = grid.isotet.solid("r", below=3.0)
+    assert ball.is_manifold and ball.field_data["volume"][0] == pytest.approx(ball.volume, rel=1e-5)
+    assert set(ball.cell_data) == {"number", "boundary"} and {"x", "v", "r"} <= set(ball.point_data)
+    assert grid.isotet.solid("number", above=100.0, preference="cell").is_manifold
+    with pytest.raises(ValueError, match="above, below or both"):
+        grid.isotet.solid("r")
+
+
+def test_several_slices():
+    grid = cubes()
+    three = grid.isotet.slice_orthogonal()
+    assert three.keys() == grid.slice_orthogonal().keys()
+    assert [block.area for block in three] == pytest.approx([64] * 3)
+    some = grid.isotet.slice_along_axis(3, "y")
+    theirs = grid.slice_along_axis(3, "y")
+    assert some.keys() == theirs.keys()
+    assert [block.bounds[2] for block in some] == pytest.approx([block.bounds[2] for block in theirs])
+
+
+def test_the_accessor_does_not_import_plotting():
+    code = (
+        "import sys, pyvista as pv\n"
+        "g = pv.ImageData(dimensions=(5, 5, 5)).cast_to_unstructured_grid(); g['x'] = g.points[:, 0]\n"
+        "g.isotet.contour([1.5], 'x')\n"
+        "print([name for name in ('pyvista.plotting', 'matplotlib', 'vtkmodules.vtkRenderingCore') if name in sys.modules])\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=False)
+    assert done.stdout.strip() == "[]", done.stderr
 
 
 def test_grids_of_vtk_are_shared():

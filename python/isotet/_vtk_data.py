@@ -1,0 +1,255 @@
+# Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+"""Data sets of VTK and PyVista as isotet's grids, and surfaces as vtkPolyData."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.util.vtkConstants import VTK_ID_TYPE
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkUnstructuredGrid
+
+from . import _isotet
+from ._arrays import points_in, scalars_in, values_in
+from ._call import call_options
+from ._grid import Grid
+from ._surface import Surface
+
+_TETRAHEDRON, _POLYHEDRON = 10, 42
+_GHOSTS, _DUPLICATE = 57, 1  # marks of cells that are another piece's (1), refined, outside or hidden
+
+
+def types_of(grid):
+    """The array of cell types: its method has another name since VTK 9.6."""
+    types = grid.GetCellTypes() if hasattr(grid, "GetDistinctCellTypes") else grid.GetCellTypesArray()
+    return types if hasattr(types, "GetMTime") else grid.GetCellTypesArray()
+
+
+def cells_of(grid, marked: int = _GHOSTS) -> _isotet.Cells:
+    """The cells of a vtkUnstructuredGrid, shared, without those whose ghost marks have one of the bits `marked`."""
+    types = types_of(grid)
+    if grid.GetNumberOfCells() == 0 or types is None:
+        return _isotet.Cells(np.empty(0, np.int64), None, None, _TETRAHEDRON)
+    types = vtk_to_numpy(types)
+    if (ghosts := grid.GetCellGhostArray()) is not None:
+        types = np.where(vtk_to_numpy(ghosts) & marked, 0, types).astype(np.uint8)
+    cells = grid.GetCells()
+    connectivity = np.ascontiguousarray(vtk_to_numpy(cells.GetConnectivityArray()))
+    if types[0] == _TETRAHEDRON and (types == _TETRAHEDRON).all():
+        return _isotet.Cells(connectivity, None, None, _TETRAHEDRON)
+    offsets = np.ascontiguousarray(vtk_to_numpy(cells.GetOffsetsArray()))
+    return _isotet.Cells(connectivity, offsets, types, _TETRAHEDRON, *_faces_of(grid, types))
+
+
+def _parts_of(cells) -> tuple[np.ndarray, np.ndarray]:
+    """Corners and offsets of a vtkCellArray."""
+    return tuple(vtk_to_numpy(array) for array in (cells.GetConnectivityArray(), cells.GetOffsetsArray()))
+
+
+def _faces_of(grid, types: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Faces of polyhedra and where those of each cell begin; nothing where there are none."""
+    if not (types == _POLYHEDRON).any():
+        return ()
+    if not hasattr(grid, "GetPolyhedronFaces"):  # before VTK 9.4
+        faces, starts = grid.GetFaces(), grid.GetFaceLocations()
+        if faces is None or starts is None:
+            return ()
+        stream, starts = vtk_to_numpy(faces), vtk_to_numpy(starts)
+        ends = np.append(starts, len(stream))
+        for cell in range(len(starts) - 1, -1, -1):
+            if ends[cell] < 0:  # no polyhedron
+                ends[cell] = ends[cell + 1]
+        return np.ascontiguousarray(stream), ends
+    faces, of_cells = grid.GetPolyhedronFaces(), grid.GetPolyhedronFaceLocations()
+    if faces is None or of_cells is None:
+        return ()
+    points, first_point = (array.astype(np.int64) for array in _parts_of(faces))
+    order, first_face = (array.astype(np.int64) for array in _parts_of(of_cells))
+    sizes = np.diff(first_point)[order]
+    counts = np.diff(first_face)  # of faces, a cell
+    is_polyhedron = counts > 0
+    # Each polyhedron has an entry for its count of faces, each face one for its count of points.
+    before_face = np.cumsum(np.append(0, sizes + 1))
+    cell_of_face = np.repeat(np.arange(len(counts)), counts)
+    counts_before = np.cumsum(is_polyhedron)
+    offsets = before_face[first_face] + np.append(0, counts_before)
+    stream = np.empty(offsets[-1], np.int64)
+    stream[offsets[:-1][is_polyhedron]] = counts[is_polyhedron]
+    at_face = before_face[:-1] + counts_before[cell_of_face]
+    stream[at_face] = sizes
+    within = np.arange(sizes.sum()) - np.repeat(np.cumsum(sizes) - sizes, sizes)
+    stream[np.repeat(at_face + 1, sizes) + within] = points[np.repeat(first_point[order], sizes) + within]
+    return stream, offsets
+
+
+def points_of(grid) -> np.ndarray:
+    points = grid.GetPoints()
+    return np.empty((0, 3), np.float32) if points is None else points_in(vtk_to_numpy(points.GetData()))
+
+
+def arrays_of(attributes, leave_out: str | None = None) -> list[tuple[str, np.ndarray]]:
+    """The named arrays of numbers of point or cell data, shared."""
+    out = []
+    for i in range(attributes.GetNumberOfArrays()):
+        array = attributes.GetArray(i)  # None for strings
+        if array is not None and array.GetName() and array.GetName() != leave_out:
+            out.append((array.GetName(), values_in(array.GetName(), vtk_to_numpy(array))))
+    return out
+
+
+def grid_of(grid) -> Grid:
+    """A vtkUnstructuredGrid, or pyvista.UnstructuredGrid, as `isotet.Grid`: arrays are shared, and must not change meanwhile."""
+    fields, cell_fields = arrays_of(grid.GetPointData()), arrays_of(grid.GetCellData())
+    return Grid._of(_isotet.Grid(points_of(grid), cells_of(grid), fields, cell_fields))
+
+
+class Scalars(NamedTuple):
+    """What is contoured: one value a point."""
+
+    name: str  # of the array of isovalues on the surface; empty: there is none
+    array: Any  # of VTK
+    values: np.ndarray
+
+    @property
+    def replaced(self) -> str | None:
+        """The name of a point array in whose place the surface has isovalues."""
+        return self.name if self.name == self.array.GetName() else None
+
+
+_MAGNITUDE = -2  # vtkArrayComponents::L2Norm
+
+
+def _one_component(array, component: int) -> tuple[str, np.ndarray]:
+    """Of an array with several: the first has no array of isovalues of its own, as with VTK."""
+    values, name = vtk_to_numpy(array), array.GetName() or "scalars"
+    if values.ndim == 1:
+        return name, values
+    if component == _MAGNITUDE:
+        return f"{name}_Magnitude", np.linalg.norm(values.astype(np.float64), axis=1)
+    if not 0 <= component < values.shape[1]:
+        raise ValueError(f"component {component} of '{name}' is asked for, but it has {values.shape[1]}")
+    return f"{name}_{component}" if component else "", np.ascontiguousarray(values[:, component])
+
+
+def scalars_of(grid, array, of_cells: bool = False, component: int = 0) -> Scalars:
+    """An array of points, or one of cells, which is averaged to the points by the volumes of the cells around."""
+    name, values = _one_component(array, component)
+    if not of_cells:
+        return Scalars(name, array, scalars_in(name or array.GetName(), values))
+    if not isinstance(grid, vtkUnstructuredGrid) or len(other_cells(grid)) == grid.GetNumberOfCells():
+        return Scalars(name, array, np.empty(0, np.float32))  # VTK averages what it contours
+    only = [("values", np.ascontiguousarray(values))]
+    whole = _isotet.Grid(points_of(grid), cells_of(grid, _GHOSTS & ~_DUPLICATE), [], only)
+    return Scalars(name, array, _isotet.find_field(whole, "values", True, False, call_options(0, None)).values)
+
+
+@functools.cache
+def _is_contoured() -> np.ndarray:
+    """Which of VTK's numbers of cell types isotet contours."""
+    return np.array([_isotet.contours_cell(kind) for kind in range(256)])
+
+
+def other_cells(grid) -> np.ndarray:
+    """Numbers of the cells that isotet does not contour, ghosts aside."""
+    types = types_of(grid)
+    if types is None:
+        return np.empty(0, np.int64)
+    types = vtk_to_numpy(types)
+    others = ~_is_contoured()[types] & (types != 0)
+    if others.any() and (ghosts := grid.GetCellGhostArray()) is not None:
+        others &= vtk_to_numpy(ghosts) & _GHOSTS == 0
+    return np.flatnonzero(others)
+
+
+def some_cells(grid, chosen: np.ndarray):
+    """A vtkUnstructuredGrid of some cells, none of them a polyhedron, with all points."""
+    out = vtkUnstructuredGrid()
+    out.SetPoints(grid.GetPoints())
+    out.GetPointData().ShallowCopy(grid.GetPointData())
+    connectivity, offsets = _parts_of(grid.GetCells())
+    sizes = np.diff(offsets)[chosen].astype(np.int64)
+    ends = np.cumsum(sizes)
+    places = np.arange(ends[-1] if len(ends) else 0) + np.repeat(offsets[chosen] - (ends - sizes), sizes)
+    cells = _cell_array(connectivity[places], np.append(0, ends))
+    out.SetCells(numpy_to_vtk(vtk_to_numpy(types_of(grid))[chosen], deep=True), cells)
+    for name, values in arrays_of(grid.GetCellData()):
+        _add_array(out.GetCellData(), name, values[chosen], copy=True)
+    return out
+
+
+def kept_type(values: np.ndarray, kind: np.dtype) -> np.ndarray:
+    """Interpolated integers, rounded to the type that they came in."""
+    if kind.kind == "f" or values.dtype == kind:
+        return values
+    limits = np.iinfo(kind)
+    if kind.itemsize == 8:  # the limits are no numbers of float64
+        return np.clip(np.rint(values), float(limits.min), np.nextafter(float(limits.max), 0)).astype(kind)
+    return np.clip(np.rint(values), limits.min, limits.max).astype(kind)
+
+
+def _add_array(attributes, name: str, values: np.ndarray, copy: bool):
+    array = numpy_to_vtk(values, deep=copy)
+    array.SetName(name)
+    attributes.AddArray(array)
+    return array
+
+
+def surface_of(mesh) -> Surface:
+    """A vtkPolyData of triangles as a surface, with its arrays."""
+    triangles = _parts_of(mesh.GetPolys())[0].reshape(-1, 3)
+    normals = mesh.GetPointData().GetNormals()
+    name = None if normals is None else normals.GetName()
+    return Surface(points_of(mesh), triangles, normals=None if normals is None else vtk_to_numpy(normals),
+                   fields=dict(arrays_of(mesh.GetPointData(), name)), cell_fields=dict(arrays_of(mesh.GetCellData())))  # fmt: skip
+
+
+def to_polydata(surface: Surface):
+    """A surface as vtkPolyData, with its normals ("Normals") and fields. The arrays are copies."""
+    return fill(vtkPolyData(), surface, copy=True)
+
+
+def _triangles_of(surface: Surface) -> vtkCellArray:
+    triangles = surface.triangles.reshape(-1)
+    fits = triangles.dtype == np.uint32 and len(surface.points) < 2**31
+    triangles = triangles.view(np.int32) if fits else triangles.astype(np.int64)
+    cells = vtkCellArray()
+    cells.SetData(3, numpy_to_vtk(triangles, deep=True))
+    return cells
+
+
+def _cell_array(connectivity: np.ndarray, offsets: np.ndarray) -> vtkCellArray:
+    cells = vtkCellArray()
+    cells.SetData(*(numpy_to_vtk(array.astype(np.int64), deep=True, array_type=VTK_ID_TYPE) for array in (offsets, connectivity)))
+    return cells
+
+
+def fill(out, surface: Surface, *, copy: bool, kinds: Mapping[str, np.dtype] = MappingProxyType({}), points=None,
+         polygons: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None):  # fmt: skip
+    """Without `copy` the surface must be left alone afterwards: VTK may write to its points and fields. Fields of the names
+    `kinds` get these types. The type of points is `points`, else that of the surface. `polygons` stand in place of triangles.
+
+    Triangles are always copied: vtkCellArray.SetData() makes arrays of its own on the memory of those given, and lets go
+    of the Python object that keeps that memory.
+    """
+    places = surface.points if points is None else surface.points.astype(points, copy=False)
+    points = vtkPoints()
+    points.SetData(numpy_to_vtk(places, deep=copy))
+    out.SetPoints(points)
+    out.SetPolys(_triangles_of(surface) if polygons is None else _cell_array(*polygons[:2]))
+    for name, values in surface.fields.items():
+        _add_array(out.GetPointData(), name, kept_type(values, kinds.get(name, values.dtype)), copy)
+    for name, values in surface.cell_fields.items():
+        _add_array(out.GetCellData(), name, values if polygons is None else values[polygons[2]], copy)
+    normals = surface.normals
+    if normals is not None:
+        array = numpy_to_vtk(normals, deep=copy)
+        array.SetName("Normals")
+        (out.GetPointData() if surface._has_vertex_normals else out.GetCellData()).SetNormals(array)
+    return out
+
+

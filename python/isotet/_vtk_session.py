@@ -1,0 +1,123 @@
+# Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+"""A session for one grid of VTK's, and its surfaces as vtkContourFilter gives them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk
+
+from . import _isotet
+from ._call import Progress, call_options
+from ._surface import Surface
+from ._vtk_data import Scalars, cells_of, fill, kept_type, other_cells, points_of, types_of
+
+
+class Session:
+    """A session for one grid of VTK's, which may change at any time.
+
+    Cells are taken for the same while VTK's modified times say so, as VTK's own filters do. Points and values are compared
+    with what they were: NumPy code that changes them in place leaves no other trace.
+    """
+
+    def __init__(self):
+        self._session: _isotet.Contour | None = None
+        self._cells: _isotet.Cells | None = None
+        self._times: tuple[int, ...] = ()
+        self._others = 0  # cells that isotet does not contour
+        self.update = "grid"  # what the last set() found to differ
+        self.how: dict[str, Any] = {}  # how the last surface was made
+
+    @staticmethod
+    def times_of(grid) -> tuple[int, ...]:
+        """Modified times of the cells. VTK never gives the same one twice, so they tell arrays apart, too."""
+        cells, types = grid.GetCells(), types_of(grid)
+        parts = (cells, cells.GetConnectivityArray(), cells.GetOffsetsArray(), types) if cells else (types,)
+        parts += (grid.GetCellGhostArray(),)
+        return tuple(part.GetMTime() for part in parts if part is not None)
+
+    def contour(self, grid, scalars: Scalars, isovalues: list[float], *, threads: int = 0, progress: Progress | None = None,
+                **how) -> Surface:  # fmt: skip
+        self.set(grid, scalars, threads=threads, progress=progress, **how)
+        assert self._session is not None
+        surface, self.how = self._session.extract(isovalues, call_options(threads, progress))
+        return Surface._of(surface, self.how)
+
+    def _look_at(self, grid) -> None:
+        times = self.times_of(grid)
+        if self._cells is None or times != self._times:  # equal cells in other arrays: the session finds it out
+            self._cells, self._others, self._times = cells_of(grid), len(other_cells(grid)), times
+
+    def others_of(self, grid) -> int:
+        """How many cells of the grid isotet does not contour."""
+        self._look_at(grid)
+        return self._others
+
+    def _input(self, grid, scalars: Scalars, numbers: np.ndarray | None = None, points=None) -> tuple[_isotet.Grid, _isotet.PointField]:
+        self._look_at(grid)
+        field = _isotet.PointField(scalars.name or scalars.array.GetName() or "scalars", scalars.values)
+        places = points_of(grid)
+        return _isotet.Grid(places if points is None else places.astype(points, copy=False), self._cells, [], [], numbers), field
+
+    def survey(self, grid, scalars: Scalars, fields: list[tuple[str, np.ndarray]], points=None) -> bytes:
+        return _isotet.survey(*self._input(grid, scalars, points=points), fields, False, call_options(0, None))
+
+    def set(self, grid, scalars: Scalars, *, normals: bool, surfaces: int, fields: list[tuple[str, np.ndarray]],
+            cell_fields: list[tuple[str, np.ndarray]], precision: str = "float32", numbers: np.ndarray | None = None,
+            frame: _isotet.Frame | None = None, points=None, threads: int = 0,
+            progress: Progress | None = None, source_cells: bool = False,
+            tolerances: tuple[float | None, float | None, float, float] = (None, None, 0.0, 0.0)) -> None:  # fmt: skip
+        mine, field = self._input(grid, scalars, numbers, points)
+        kind = "gradient" if normals else "none"
+        options = _isotet.ContourOptions(kind, False, source_cells, "merge", precision, None, surfaces, False, frame, *tolerances,
+                                         pack_all=True)  # fmt: skip
+        call = call_options(threads, progress)
+        if self._session is None:
+            self._session, self.update = _isotet.Contour(mine, field, fields, cell_fields, options, call), "grid"
+        else:
+            self.update = self._session.set(mine, field, fields, cell_fields, options, call)
+
+    def prepare(self) -> None:
+        assert self._session is not None
+        self._session.prepare(call_options(0, None))
+
+    @property
+    def report(self) -> dict[str, Any]:
+        told = {name: self.how[name] for name in ("method", "pack_seconds", "extract_seconds") if name in self.how}
+        return {"update": self.update, "packed_bytes": self.packed_bytes, **told}
+
+    def __repr__(self) -> str:
+        size = self.packed_bytes
+        return f"packed, {size} bytes" if size else "not packed"
+
+    @property
+    def packed_bytes(self) -> int:
+        """0: it is not packed."""
+        return 0 if self._session is None else self._session.packed_bytes()
+
+
+def says_nothing_to_contour(error: ValueError) -> bool:
+    """Whether the library refused a grid for want of cells that it contours: of polyhedra without faces only it knows."""
+    return "no cell that can be contoured" in str(error)
+
+
+def levels(lower: float, upper: float, count: int) -> list[float]:
+    """VTK's GenerateValues()."""
+    return np.linspace(lower, upper, count).tolist()
+
+
+def finish(surface: Surface, isovalues: list[float], scalars: Scalars, fields: list[tuple[str, np.ndarray]],
+           compute_scalars: bool, own_cell_fields: bool, out, points=None, polygons=None):  # fmt: skip
+    """A surface as vtkContourFilter gives it: the contoured scalars are an array of isovalues, integers are integers."""
+    fill(out, surface, copy=False, kinds={name: values.dtype for name, values in fields}, points=points, polygons=polygons)
+    if len(isovalues) != 1 and not own_cell_fields:
+        out.GetCellData().RemoveArray("isovalue")
+    if compute_scalars and scalars.name:
+        kind = scalars.values.dtype
+        values = np.repeat(np.array(isovalues, np.float64), np.array(surface._how["vertex_counts"], np.intp))
+        values = values.astype(kind) if kind.kind == "f" else kept_type(values, kind)
+        array = numpy_to_vtk(values)
+        array.SetName(scalars.name)
+        out.GetPointData().SetScalars(array)
+    return out
