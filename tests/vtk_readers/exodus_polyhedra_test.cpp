@@ -67,12 +67,12 @@ TEST(ExodusPolyhedra, ThatAreBrokenAreErrors) {
     };
     expect([](ExodusBlocks& b) { b.faces[1].numbers[3] = 344; }, "a face has node 344, but the nodes are 1 to 343");
     expect([](ExodusBlocks& b) { b.faces[1].numbers[3] = 0; }, "a face has node 0, but");
-    expect([](ExodusBlocks& b) { b.faces[0].counts[3] += 1; }, "face block 1, whose faces have");
-    expect([](ExodusBlocks& b) { b.faces[0].counts[3] = -4; }, "face block 1, whose faces have");
+    expect([](ExodusBlocks& b) { b.faces[0].counts[3] += 1; }, "face block 1, whose counts (fbepecnt1) have");
+    expect([](ExodusBlocks& b) { b.faces[0].counts[3] = -4; }, "face block 1, whose counts (fbepecnt1) have");
     expect([](ExodusBlocks& b) { b.polyhedra[1].numbers[3] = 0; },
            "an element of block 30 has face 0, but the faces are 1 to");
     expect([](ExodusBlocks& b) { b.polyhedra[0].numbers[3] = 99999; }, "an element of block 20 has face 99999, but");
-    expect([](ExodusBlocks& b) { b.polyhedra[0].counts[0] += 1; }, "element block 20, whose elements have");
+    expect([](ExodusBlocks& b) { b.polyhedra[0].counts[0] += 1; }, "element block 20, whose counts (ebepecnt2) have");
     expect([](ExodusBlocks& b) { b.face_topology = "quad"; }, "face block 1");
 }
 

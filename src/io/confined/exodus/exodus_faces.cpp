@@ -4,54 +4,40 @@
 #include <numeric>
 
 #include <fmt/core.h>
-#include <vtk_exodusII.h>
 
 #include "io/confined/exodus/exodus_file.hpp"
 #include "io/files/escape.hpp"
 
 namespace isotet::io::confined {
 
-Result<ExodusFile::Ragged> ExodusFile::read_ragged(int entity, std::int64_t id, std::uint64_t count,
-                                                   std::uint64_t size) const {
-    const auto type = static_cast<ex_entity_type>(entity);
-    const char* const what = type == EX_FACE_BLOCK ? "face" : "element";
-    Ragged ragged{std::vector<std::int64_t>(size), std::vector<int>(count)};
-    if (count == 0) return ragged;
-    if (ex_get_entity_count_per_polyhedra(number_, type, id, ragged.counts.data()) < 0)
-        return failed(
-            fmt::format("the number of {} in {} block {}", type == EX_FACE_BLOCK ? "nodes" : "faces", what, id));
-    const bool sound = std::ranges::all_of(ragged.counts, [](int n) { return n >= 0; });
-    const std::int64_t sum = std::accumulate(ragged.counts.begin(), ragged.counts.end(), std::int64_t{0});
+Result<ExodusFile::Ragged> ExodusFile::read_ragged(const std::string& numbers, const std::string& counts,
+                                                   std::uint64_t count, std::uint64_t size,
+                                                   const std::string& owner) const {
+    if (count == 0) return Ragged{};
+    auto each = file_.read<std::int32_t>(counts);
+    if (!each || each->size() != count) return failed(fmt::format("the counts ({}) of {}", counts, owner));
+    const bool sound = std::ranges::all_of(*each, [](int n) { return n >= 0; });
+    const std::int64_t sum = std::accumulate(each->begin(), each->end(), std::int64_t{0});
     if (!sound || static_cast<std::uint64_t>(sum) != size)
-        return failed(fmt::format("{} block {}, whose {} have {} entries of {},", what, id,
-                                  type == EX_FACE_BLOCK ? "faces" : "elements", sum, size));
-    auto* const nodes = type == EX_FACE_BLOCK ? ragged.numbers.data() : nullptr;
-    auto* const faces = type == EX_FACE_BLOCK ? nullptr : ragged.numbers.data();
-    if (size > 0 && ex_get_conn(number_, type, id, nodes, nullptr, faces) < 0)
-        return failed(fmt::format("the connectivity of {} block {}", what, id));
-    return ragged;
+        return failed(fmt::format("{}, whose counts ({}) have a sum of {} for {} numbers,", owner, counts, sum, size));
+    auto all = file_.read<std::int64_t>(numbers);
+    if (!all || all->size() != size) return failed(fmt::format("the connectivity ({}) of {}", numbers, owner));
+    return Ragged{*std::move(all), std::vector<int>(each->begin(), each->end())};
 }
 
 Result<ExodusFile::Ragged> ExodusFile::faces() {
-    ex_init_params counts{};
-    if (ex_get_init_ext(number_, &counts) < 0 || counts.num_face_blk < 0 || counts.num_face_blk > 1 << 20)
-        return failed("the number of face blocks");
-    std::vector<std::int64_t> ids(static_cast<std::size_t>(counts.num_face_blk));
-    if (!ids.empty() && ex_get_ids(number_, EX_FACE_BLOCK, ids.data()) < 0)
-        return failed("the numbers of the face blocks");
+    const std::uint64_t blocks = file_.dimension("num_fa_blk").value_or(0);
+    if (blocks > std::uint64_t{1} << 20) return failed(fmt::format("a list of {} face blocks", blocks));
     Ragged all;
-    for (const std::int64_t id : ids) {
-        ex_block block{};
-        block.id = id;
-        block.type = EX_FACE_BLOCK;
-        if (ex_get_block_param(number_, &block) < 0 || block.num_entry < 0 || block.num_nodes_per_entry < 0)
-            return failed(fmt::format("face block {}", id));
-        const auto count = static_cast<std::uint64_t>(block.num_entry);
-        block.topology[MAX_STR_LENGTH] = '\0';
-        const std::string topology = block.topology;
+    for (std::uint64_t i = 1; i <= blocks; ++i) {
+        const std::string conn = fmt::format("fbconn{}", i), owner = fmt::format("face block {}", i);
+        const auto faces = file_.dimension(fmt::format("num_fa_in_blk{}", i)),
+                   nodes = file_.dimension(fmt::format("num_nod_per_fa{}", i));
+        if (!faces) continue; // an empty one
+        const std::string topology = file_.text_attribute(conn, "elem_type").value_or("");
         if (topology != "nsided" && topology != "NSIDED" && topology != "Nsided")
-            return failed(fmt::format("face block {} of \"{}\", not \"nsided\",", id, escaped(topology)));
-        const auto own = read_ragged(EX_FACE_BLOCK, id, count, static_cast<std::uint64_t>(block.num_nodes_per_entry));
+            return failed(fmt::format("{} of \"{}\", not \"nsided\",", owner, escaped(topology)));
+        const auto own = read_ragged(conn, fmt::format("fbepecnt{}", i), *faces, nodes.value_or(0), owner);
         if (!own) return own;
         all.numbers.insert(all.numbers.end(), own->numbers.begin(), own->numbers.end());
         all.counts.insert(all.counts.end(), own->counts.begin(), own->counts.end());
@@ -60,7 +46,8 @@ Result<ExodusFile::Ragged> ExodusFile::faces() {
 }
 
 Result<ExodusFile::Ragged> ExodusFile::faces_of(const Block& block) {
-    return read_ragged(EX_ELEM_BLOCK, block.id, block.cells, block.faces);
+    return read_ragged(fmt::format("facconn{}", block.number), fmt::format("ebepecnt{}", block.number), block.cells,
+                       block.faces, fmt::format("element block {}", block.id));
 }
 
 } // namespace isotet::io::confined

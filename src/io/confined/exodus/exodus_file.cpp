@@ -1,175 +1,140 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "io/confined/exodus/exodus_file.hpp"
+
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <numeric>
 
 #include <fmt/core.h>
-#include <vtk_exodusII.h>
 
-#include "io/confined/exodus/exodus_file.hpp"
 #include "io/files/escape.hpp"
 
 namespace isotet::io::confined {
 namespace {
 
-constexpr int max_name = 4096;
 constexpr std::uint64_t max_plausible = std::uint64_t(1) << 48; // more than any file can hold
+constexpr std::uint64_t max_blocks = std::uint64_t(1) << 20;
 
-/// What to call with `visit` for the file's floating-point type.
-template <class Visit>
-auto with_real(int word, Visit visit) {
-    return word == 4 ? visit(float{}) : visit(double{});
+/// Numbers of blocks or sets; from 1 on where the file does not tell them.
+std::vector<std::int64_t> ids_of(const NetcdfFile& file, const std::string& variable, std::uint64_t count) {
+    auto ids = file.read<std::int64_t>(variable);
+    if (ids && ids->size() == count) return *std::move(ids);
+    std::vector<std::int64_t> from_1(count);
+    std::iota(from_1.begin(), from_1.end(), std::int64_t{1});
+    return from_1;
+}
+
+/// False for a block or set that the file marks as empty, for which it has no variables.
+bool has_entries(const NetcdfFile& file, const std::string& variable, std::size_t at) {
+    const auto status = file.read<std::int32_t>(variable);
+    return !status || at >= status->size() || (*status)[at] != 0;
+}
+
+std::string upper_case(std::string text) {
+    for (char& c : text)
+        if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+    return text;
 }
 
 } // namespace
 
-ExodusFile::ExodusFile(ExodusFile&& other) noexcept
-    : path_(std::move(other.path_)),
-      number_(std::exchange(other.number_, -1)),
-      word_(other.word_),
-      dimensions_(other.dimensions_),
-      points_(other.points_),
-      cells_(other.cells_),
-      blocks_(std::move(other.blocks_)),
-      sets_(std::move(other.sets_)),
-      all_blocks_(std::move(other.all_blocks_)),
-      point_variables_(std::move(other.point_variables_)),
-      cell_variables_(std::move(other.cell_variables_)),
-      times_(std::move(other.times_)) {}
-
-ExodusFile::~ExodusFile() {
-    if (number_ >= 0) ex_close(number_);
-}
-
-ScalarType ExodusFile::type() const noexcept { return word_ == 4 ? ScalarType::float32 : ScalarType::float64; }
+ScalarType ExodusFile::type() const noexcept { return is_single_ ? ScalarType::float32 : ScalarType::float64; }
 
 Error ExodusFile::failed(std::string_view what) const {
     return {ErrorCode::invalid_data, fmt::format("{}: {} cannot be read from the Exodus file", escaped(path_), what)};
 }
 
 Result<ExodusFile> ExodusFile::open(const std::string& path) {
-    ex_opts(0); // no messages of its own
-    ExodusFile file;
-    file.path_ = path;
-    float version = 0;
-    int wanted_word = 8, stored_word = 0;
-    file.number_ = ex_open(path.c_str(), EX_READ, &wanted_word, &stored_word, &version);
-    if (file.number_ < 0)
+    auto opened = NetcdfFile::open(path);
+    if (!opened || !opened->dimension("num_dim"))
         return Error{ErrorCode::invalid_data, escaped(path) + ": not an Exodus file, or a broken one"};
-    if (stored_word == 4) { // numbers come in the type of the file, which must be known when it is opened
-        ex_close(file.number_);
-        wanted_word = 4;
-        file.number_ = ex_open(path.c_str(), EX_READ, &wanted_word, &stored_word, &version);
-        if (file.number_ < 0) return Error{ErrorCode::invalid_data, escaped(path) + ": cannot be opened a second time"};
-    }
-    file.word_ = stored_word == 4 ? 4 : 8;
-    ex_set_int64_status(file.number_, EX_ALL_INT64_API);
+    ExodusFile file(path, *std::move(opened));
     if (auto read = file.read_contents(); !read) return read.error();
     return file;
 }
 
 Result<void> ExodusFile::read_contents() {
-    ex_init_params counts{};
-    if (ex_get_init_ext(number_, &counts) < 0) return failed("the list of contents");
-    for (const std::int64_t count :
-         {counts.num_dim, counts.num_nodes, counts.num_elem, counts.num_elem_blk, counts.num_elem_sets})
-        if (count < 0 || static_cast<std::uint64_t>(count) > max_plausible)
-            return failed(fmt::format("a count of {}", count));
-    if (counts.num_dim < 1 || counts.num_dim > 3) return failed(fmt::format("a grid of {} dimensions", counts.num_dim));
-    dimensions_ = static_cast<std::uint64_t>(counts.num_dim);
-    points_ = static_cast<std::uint64_t>(counts.num_nodes);
-    if (auto read = read_blocks(static_cast<std::size_t>(counts.num_elem_blk)); !read) return read;
-    if (auto read = read_sets(static_cast<std::size_t>(counts.num_elem_sets)); !read) return read;
-
-    const std::int64_t steps = ex_inquire_int(number_, EX_INQ_TIME);
-    if (steps < 0) return failed("the number of time steps");
-    if (steps == 0) return {}; // variables that have never been written
-    auto point_variables = variable_names(EX_NODAL);
-    if (!point_variables) return point_variables.error();
-    auto cell_variables = variable_names(EX_ELEM_BLOCK);
-    if (!cell_variables) return cell_variables.error();
-    point_variables_ = std::move(*point_variables);
-    cell_variables_ = std::move(*cell_variables);
-    const bool read = with_real(word_, [&](auto zero) {
-        std::vector<decltype(zero)> times(static_cast<std::size_t>(steps));
-        const bool worked = ex_get_all_times(number_, times.data()) >= 0;
-        times_.assign(times.begin(), times.end());
-        return worked;
-    });
-    if (!read) return failed("the times");
+    auto word = file_.number_attribute({}, "floating_point_word_size");
+    if (!word) word = file_.number_attribute({}, "floating point word size"); // before version 2
+    is_single_ = word == 4.0;
+    dimensions_ = file_.dimension("num_dim").value_or(0);
+    points_ = file_.dimension("num_nodes").value_or(0);
+    if (dimensions_ < 1 || dimensions_ > 3) return failed(fmt::format("a grid of {} dimensions", dimensions_));
+    if (points_ > max_plausible) return failed(fmt::format("a count of {}", points_));
+    if (auto read = read_blocks(); !read) return read;
+    if (auto read = read_sets(); !read) return read;
+    auto times = file_.read<double>("time_whole");
+    if (!times || times->empty()) return {}; // variables that have never been written
+    times_ = *std::move(times);
+    point_variables_ = file_.texts("name_nod_var");
+    cell_variables_ = file_.texts("name_elem_var");
     return {};
 }
 
-Result<void> ExodusFile::read_blocks(std::size_t count) {
-    if (count == 0) return {};
-    const std::int64_t longest = ex_inquire_int(number_, EX_INQ_DB_MAX_ALLOWED_NAME_LENGTH);
-    ex_set_max_name_length(number_, static_cast<int>(std::clamp<std::int64_t>(longest, MAX_STR_LENGTH, max_name)));
-    std::vector<std::int64_t> ids(count);
-    if (ex_get_ids(number_, EX_ELEM_BLOCK, ids.data()) < 0) return failed("the numbers of the element blocks");
-    for (const std::int64_t id : ids) {
-        ex_block block{};
-        block.id = id;
-        block.type = EX_ELEM_BLOCK;
-        if (ex_get_block_param(number_, &block) < 0) return failed(fmt::format("element block {}", id));
-        if (block.num_entry < 0 || block.num_nodes_per_entry < 0 ||
-            static_cast<std::uint64_t>(block.num_entry) > max_plausible ||
-            static_cast<std::uint64_t>(block.num_nodes_per_entry) > max_plausible)
-            return failed(fmt::format("element block {} of {} elements with {} nodes", id, block.num_entry,
-                                      block.num_nodes_per_entry));
-        Block result;
-        result.id = id;
-        block.topology[MAX_STR_LENGTH] = '\0';
-        result.topology = block.topology;
-        std::transform(result.topology.begin(), result.topology.end(), result.topology.begin(),
-                       [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
-        result.cells = static_cast<std::uint64_t>(block.num_entry);
-        const bool ragged = result.topology.starts_with("NFACED") || result.topology.starts_with("NSIDED");
-        result.corners = ragged ? 0 : static_cast<std::uint64_t>(block.num_nodes_per_entry);
-        if (block.num_faces_per_entry < 0 || static_cast<std::uint64_t>(block.num_faces_per_entry) > max_plausible)
-            return failed(fmt::format("element block {} with {} faces", id, block.num_faces_per_entry));
-        result.faces = static_cast<std::uint64_t>(block.num_faces_per_entry);
-        if (result.corners > 1000)
-            return failed(fmt::format("element block {} with {} nodes an element", id, result.corners));
-        result.name = name_of(EX_ELEM_BLOCK, id);
-        cells_ += result.cells;
-        blocks_.push_back(std::move(result));
+Result<void> ExodusFile::read_blocks() {
+    const std::uint64_t count = file_.dimension("num_el_blk").value_or(0);
+    if (count > max_blocks) return failed(fmt::format("a list of {} element blocks", count));
+    const auto ids = ids_of(file_, "eb_prop1", count);
+    const auto names = file_.texts("eb_names");
+    for (std::size_t i = 0; i < count; ++i) {
+        auto block = read_block(i + 1);
+        if (!block) return block.error();
+        block->id = ids[i];
+        if (i < names.size()) block->name = names[i];
+        cells_ += block->cells;
+        blocks_.push_back(*std::move(block));
     }
     return {};
 }
 
-/// Empty: it has none.
-std::string ExodusFile::name_of(int entity, std::int64_t id) const {
-    char name[max_name + 1] = {};
-    return ex_get_name(number_, static_cast<ex_entity_type>(entity), id, name) >= 0 ? name : "";
+Result<ExodusFile::Block> ExodusFile::read_block(std::size_t number) const {
+    Block block;
+    block.number = number;
+    if (!has_entries(file_, "eb_status", number - 1)) return block;
+    const auto of_block = [&](const char* name) { return file_.dimension(fmt::format("{}{}", name, number)); };
+    const auto cells = of_block("num_el_in_blk");
+    if (!cells) return failed(fmt::format("the number of elements of element block {}", number));
+    for (const char* variable : {"connect", "facconn"})
+        if (const auto topology = file_.text_attribute(fmt::format("{}{}", variable, number), "elem_type"))
+            block.topology = upper_case(*topology);
+    block.cells = *cells;
+    block.faces = of_block("num_fac_per_el").value_or(0);
+    const bool ragged = block.topology.starts_with("NFACED") || block.topology.starts_with("NSIDED");
+    block.corners = ragged ? 0 : of_block("num_nod_per_el").value_or(0);
+    if (block.cells > max_plausible || block.corners > 1000 || block.faces > max_plausible)
+        return failed(fmt::format("element block {} of {} elements with {} nodes each and {} faces", number,
+                                  block.cells, block.corners, block.faces));
+    return block;
 }
 
-Result<void> ExodusFile::read_sets(std::size_t count) {
-    std::vector<std::int64_t> ids(count);
-    if (count > 0 && ex_get_ids(number_, EX_ELEM_SET, ids.data()) < 0) return failed("the numbers of the element sets");
-    for (const std::int64_t id : ids) {
-        std::int64_t cells = 0, factors = 0;
-        if (ex_get_set_param(number_, EX_ELEM_SET, id, &cells, &factors) < 0)
-            return failed(fmt::format("element set {}", id));
-        if (cells < 0 || static_cast<std::uint64_t>(cells) > max_plausible)
-            return failed(fmt::format("element set {} of {} elements", id, cells));
-        std::string name = name_of(EX_ELEM_SET, id);
-        sets_.push_back(
-            {id, name.empty() ? fmt::format("set {}", id) : std::move(name), static_cast<std::uint64_t>(cells)});
+Result<void> ExodusFile::read_sets() {
+    const std::uint64_t count = file_.dimension("num_elem_sets").value_or(0);
+    if (count > max_blocks) return failed(fmt::format("a list of {} element sets", count));
+    const auto ids = ids_of(file_, "els_prop1", count);
+    const auto names = file_.texts("els_names");
+    for (std::size_t i = 0; i < count; ++i) {
+        const bool filled = has_entries(file_, "els_status", i);
+        const auto cells = filled ? file_.dimension(fmt::format("num_ele_els{}", i + 1)) : std::optional<std::uint64_t>(0);
+        if (!cells || *cells > max_plausible) return failed(fmt::format("element set {}", ids[i]));
+        sets_.push_back({ids[i], i + 1,
+                         i < names.size() && !names[i].empty() ? names[i] : fmt::format("set {}", ids[i]), *cells});
     }
     return {};
 }
 
 Result<std::vector<std::int64_t>> ExodusFile::cells_of(const Set& set) const {
-    std::vector<std::int64_t> cells(set.cells);
-    if (set.cells > 0 && ex_get_set(number_, EX_ELEM_SET, set.id, cells.data(), nullptr) < 0)
-        return failed(fmt::format("the elements of set {}", set.id));
-    for (std::int64_t& cell : cells) {
+    if (set.cells == 0) return std::vector<std::int64_t>();
+    auto cells = file_.read<std::int64_t>(fmt::format("elem_els{}", set.number));
+    if (!cells || cells->size() != set.cells) return failed(fmt::format("the elements of set {}", set.id));
+    for (std::int64_t& cell : *cells) {
         if (cell < 1 || static_cast<std::uint64_t>(cell) > cells_)
             return Error{ErrorCode::invalid_data,
                          fmt::format("{}: element set {} has element {}, but the elements are 1 to {}", escaped(path_),
                                      set.id, cell, cells_)};
         --cell;
     }
-    return cells;
+    return *std::move(cells);
 }
 
 void ExodusFile::choose(const std::vector<bool>& chosen) {
@@ -184,72 +149,71 @@ void ExodusFile::choose(const std::vector<bool>& chosen) {
     blocks_ = std::move(kept);
 }
 
-Result<std::vector<std::string>> ExodusFile::variable_names(int entity) {
-    const auto type = static_cast<ex_entity_type>(entity);
-    int count = 0;
-    if (ex_get_variable_param(number_, type, &count) < 0 || count < 0) return failed("the number of variables");
-    const std::int64_t longest = ex_inquire_int(number_, EX_INQ_DB_MAX_ALLOWED_NAME_LENGTH);
-    const int length = static_cast<int>(std::clamp<std::int64_t>(longest, MAX_STR_LENGTH, max_name));
-    ex_set_max_name_length(number_, length);
-    std::vector<std::string> names;
-    for (int i = 1; i <= count; ++i) {
-        std::vector<char> name(static_cast<std::size_t>(length) + 1, '\0');
-        if (ex_get_variable_name(number_, type, i, name.data()) < 0)
-            return failed(fmt::format("the name of variable {}", i));
-        name.back() = '\0';
-        names.emplace_back(name.data());
-        while (names.back().ends_with(' ')) names.back().pop_back();
-    }
-    return names;
-}
-
 template <class T>
-Result<Array> ExodusFile::read_coordinates() {
+Result<Array> ExodusFile::read_coordinates() const {
     std::vector<T> places(3 * points_, T(0));
-    std::vector<T> axis_values(points_);
+    std::vector<T> along(points_);
+    const bool together = file_.has("coord"); // in files of before version 2.02
     for (std::uint64_t axis = 0; axis < dimensions_ && points_ > 0; ++axis) {
-        void* axes[3] = {nullptr, nullptr, nullptr};
-        axes[axis] = axis_values.data();
-        if (ex_get_coord(number_, axes[0], axes[1], axes[2]) < 0) return failed("coordinates");
-        for (std::uint64_t i = 0; i < points_; ++i) places[3 * i + axis] = axis_values[i];
+        const std::string name = together ? "coord" : std::string("coord") + "xyz"[axis];
+        const std::array<std::uint64_t, 2> all{dimensions_, points_}, start{axis, 0}, count{1, points_};
+        const auto rank = [&](const auto& box) { return std::span(box).subspan(together ? 0 : 1); };
+        if (!file_.has_shape(name, rank(all)) || !file_.read(name, rank(start), rank(count), along.data()))
+            return failed("coordinates");
+        for (std::uint64_t i = 0; i < points_; ++i) places[3 * i + axis] = along[i];
     }
     return Array::own(std::move(places), 3);
 }
 
-Result<Array> ExodusFile::coordinates() { return word_ == 4 ? read_coordinates<float>() : read_coordinates<double>(); }
+Result<Array> ExodusFile::coordinates() { return is_single_ ? read_coordinates<float>() : read_coordinates<double>(); }
 
 Result<std::vector<std::int64_t>> ExodusFile::connectivity(const Block& block) {
-    std::vector<std::int64_t> nodes(block.cells * block.corners);
-    if (nodes.empty()) return nodes;
-    if (ex_get_conn(number_, EX_ELEM_BLOCK, block.id, nodes.data(), nullptr, nullptr) < 0)
-        return failed(fmt::format("the nodes of element block {}", block.id));
-    return nodes;
-}
-
-Result<Array> ExodusFile::point_variable(std::size_t variable, std::size_t step) {
-    return with_real(word_, [&](auto zero) -> Result<Array> {
-        std::vector<decltype(zero)> values(points_);
-        const int status = ex_get_var(number_, static_cast<int>(step) + 1, EX_NODAL, static_cast<int>(variable) + 1, 1,
-                                      static_cast<std::int64_t>(points_), values.data());
-        if (status != EX_NOERR)
-            return failed(fmt::format("nodal variable \"{}\"", escaped(point_variables_[variable])));
-        return Array::own(std::move(values));
-    });
+    if (block.cells == 0 || block.corners == 0) return std::vector<std::int64_t>();
+    const std::string name = fmt::format("connect{}", block.number);
+    std::optional<std::vector<std::int64_t>> nodes;
+    if (file_.has_shape(name, std::array{block.cells, block.corners})) nodes = file_.read<std::int64_t>(name);
+    if (!nodes) return failed(fmt::format("the nodes of element block {}", block.id));
+    return *std::move(nodes);
 }
 
 template <class T>
-Result<Array> ExodusFile::read_cell_variable(std::size_t variable, std::size_t step, std::size_t& blocks_without) {
+Result<Array> ExodusFile::read_point_variable(std::size_t variable, std::size_t step) const {
+    std::vector<T> values(points_);
+    const std::uint64_t steps = times_.size();
+    const std::string own = fmt::format("vals_nod_var{}", variable + 1);
+    bool good = points_ == 0;
+    if (file_.has(own)) {
+        good = good || (file_.has_shape(own, std::array{steps, points_}) &&
+                        file_.read(own, std::array<std::uint64_t, 2>{step, 0}, std::array<std::uint64_t, 2>{1, points_},
+                                   values.data()));
+    } else if (const std::uint64_t count = point_variables_.size();
+               file_.has_shape("vals_nod_var", std::array{steps, count, points_})) { // as "coord"
+        good = good || file_.read("vals_nod_var", std::array<std::uint64_t, 3>{step, variable, 0},
+                                  std::array<std::uint64_t, 3>{1, 1, points_}, values.data());
+    }
+    if (!good) return failed(fmt::format("nodal variable \"{}\"", escaped(point_variables_[variable])));
+    return Array::own(std::move(values));
+}
+
+Result<Array> ExodusFile::point_variable(std::size_t variable, std::size_t step) {
+    return is_single_ ? read_point_variable<float>(variable, step) : read_point_variable<double>(variable, step);
+}
+
+template <class T>
+Result<Array> ExodusFile::read_cell_variable(std::size_t variable, std::size_t step,
+                                             std::size_t& blocks_without) const {
     std::vector<T> values(cells_, std::numeric_limits<T>::quiet_NaN());
-    std::vector<int> defined(cell_variables_.size());
+    const std::uint64_t variables = cell_variables_.size();
+    const auto table = file_.read<std::int32_t>("elem_var_tab");
     std::uint64_t first = 0;
     for (const Block& block : blocks_) {
         if (block.cells == 0) continue;
-        if (ex_get_object_truth_vector(number_, EX_ELEM_BLOCK, block.id, static_cast<int>(defined.size()),
-                                       defined.data()) < 0)
-            return failed("the table of element variables");
-        if (defined[variable] == 0) ++blocks_without;
-        else if (ex_get_var(number_, static_cast<int>(step) + 1, EX_ELEM_BLOCK, static_cast<int>(variable) + 1,
-                            block.id, static_cast<std::int64_t>(block.cells), values.data() + first) != EX_NOERR)
+        const std::string name = fmt::format("vals_elem_var{}eb{}", variable + 1, block.number);
+        const std::size_t at = (block.number - 1) * variables + variable;
+        if (table && at < table->size() ? (*table)[at] == 0 : !file_.has(name)) ++blocks_without;
+        else if (!file_.has_shape(name, std::array<std::uint64_t, 2>{times_.size(), block.cells}) ||
+                 !file_.read(name, std::array<std::uint64_t, 2>{step, 0}, std::array<std::uint64_t, 2>{1, block.cells},
+                             values.data() + first))
             return failed(fmt::format("element variable \"{}\"", escaped(cell_variables_[variable])));
         first += block.cells;
     }
@@ -257,24 +221,23 @@ Result<Array> ExodusFile::read_cell_variable(std::size_t variable, std::size_t s
 }
 
 Result<Array> ExodusFile::cell_variable(std::size_t variable, std::size_t step, std::size_t& blocks_without) {
-    return word_ == 4 ? read_cell_variable<float>(variable, step, blocks_without)
+    return is_single_ ? read_cell_variable<float>(variable, step, blocks_without)
                       : read_cell_variable<double>(variable, step, blocks_without);
 }
 
-Result<Array> ExodusFile::id_map(int map, std::uint64_t count) {
-    std::vector<std::int64_t> ids(count);
-    if (count > 0 && ex_get_id_map(number_, static_cast<ex_entity_type>(map), ids.data()) < 0)
-        return failed("a map of global numbers");
+/// A node or element has its place as its number where the file has no map.
+Result<Array> ExodusFile::id_map(const std::string& map, std::uint64_t count) const {
+    auto ids = ids_of(file_, map, count);
     return Array::own(std::move(ids));
 }
 
-Result<Array> ExodusFile::point_ids() { return id_map(EX_NODE_MAP, points_); }
+Result<Array> ExodusFile::point_ids() { return id_map("node_num_map", points_); }
 
 Result<Array> ExodusFile::cell_ids() {
-    if (all_blocks_.empty()) return id_map(EX_ELEM_MAP, cells_);
+    if (all_blocks_.empty()) return id_map("elem_num_map", cells_);
     std::uint64_t count = 0;
     for (const auto& [cells, chosen] : all_blocks_) count += cells;
-    const auto all = id_map(EX_ELEM_MAP, count);
+    const auto all = id_map("elem_num_map", count);
     if (!all) return all;
     std::vector<std::int64_t> ids;
     const auto numbers = all->as<std::int64_t>();

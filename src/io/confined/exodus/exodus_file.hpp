@@ -1,14 +1,17 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// An Exodus II file through the Exodus library that VTK carries. VTK's own Exodus reader is not used: it glues scalars
-// to vectors, moves the mesh by them, doubles shared nodes, and cannot be told to leave all of that.
+// An Exodus II file: dimensions and variables of a netCDF file, under names that the format lays down. Source: L. Schoof and
+// V. Yarberry, "EXODUS II: A Finite Element Data Model", SAND92-2137, and what its library has written since.
 #pragma once
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <isotet/array.hpp>
 #include <isotet/result.hpp>
+
+#include "io/confined/exodus/netcdf_file.hpp"
 
 namespace isotet::io::confined {
 
@@ -16,6 +19,7 @@ class ExodusFile {
 public:
     struct Block {
         std::int64_t id = 0;
+        std::size_t number = 0; ///< in the names of its variables: 1 for the first block of the file
         std::string name;     ///< empty: it has none
         std::string topology; ///< upper case
         std::uint64_t cells = 0;
@@ -28,14 +32,12 @@ public:
     /// Elements of any blocks.
     struct Set {
         std::int64_t id = 0;
+        std::size_t number = 0; ///< as that of blocks
         std::string name; ///< "set 3" where it has none
         std::uint64_t cells = 0;
     };
 
     static Result<ExodusFile> open(const std::string& path);
-    ExodusFile(ExodusFile&& other) noexcept;
-    ExodusFile& operator=(ExodusFile&&) = delete;
-    ~ExodusFile();
 
     std::uint64_t points() const noexcept { return points_; }
     std::uint64_t cells() const noexcept { return cells_; }
@@ -61,7 +63,7 @@ public:
     Result<Ragged> faces();
     /// The faces of the polyhedra of a block.
     ///
-    /// Errors   invalid_data: what the library does not read; counts whose sum is not that of the numbers
+    /// Errors   invalid_data: variables that are missing or of another size; counts whose sum is not that of the numbers
     Result<Ragged> faces_of(const Block& block);
     /// The elements of a set, counted from 0 through all blocks of the file.
     Result<std::vector<std::int64_t>> cells_of(const Set& set) const;
@@ -72,23 +74,25 @@ public:
     Result<Array> cell_ids();
 
 private:
-    ExodusFile() = default;
+    ExodusFile(std::string path, NetcdfFile file) : path_(std::move(path)), file_(std::move(file)) {}
     Error failed(std::string_view what) const;
     Result<void> read_contents();
-    Result<void> read_blocks(std::size_t count);
-    Result<void> read_sets(std::size_t count);
-    std::string name_of(int entity, std::int64_t id) const;
-    Result<Ragged> read_ragged(int entity, std::int64_t id, std::uint64_t count, std::uint64_t size) const;
-    Result<std::vector<std::string>> variable_names(int entity);
+    Result<void> read_blocks();
+    Result<Block> read_block(std::size_t number) const;
+    Result<void> read_sets();
+    Result<Ragged> read_ragged(const std::string& numbers, const std::string& counts, std::uint64_t count,
+                               std::uint64_t size, const std::string& owner) const;
     template <class T>
-    Result<Array> read_coordinates();
+    Result<Array> read_coordinates() const;
     template <class T>
-    Result<Array> read_cell_variable(std::size_t variable, std::size_t step, std::size_t& blocks_without);
-    Result<Array> id_map(int map, std::uint64_t count);
+    Result<Array> read_point_variable(std::size_t variable, std::size_t step) const;
+    template <class T>
+    Result<Array> read_cell_variable(std::size_t variable, std::size_t step, std::size_t& blocks_without) const;
+    Result<Array> id_map(const std::string& map, std::uint64_t count) const;
 
     std::string path_;
-    int number_ = -1;
-    int word_ = 8;
+    NetcdfFile file_;
+    bool is_single_ = false;
     std::uint64_t dimensions_ = 3, points_ = 0, cells_ = 0; ///< cells of the chosen blocks
     std::vector<Block> blocks_;
     std::vector<Set> sets_;
