@@ -7,13 +7,11 @@
 #include <type_traits>
 #include <utility>
 
+#include <cgns_io.h>
 #include <fmt/core.h>
 
 #include "io/files/escape.hpp"
 #include "io/pieces/loaded.hpp"
-
-#include <vtk_cgns.h> // last: its macros rename common words
-#include VTK_CGNS(cgns_io.h)
 
 namespace isotet::io::confined {
 namespace {
@@ -106,8 +104,10 @@ Result<CgnsTree::Shape> CgnsTree::shape(const CgnsNode& node) const {
 template <class T>
 Result<Array> CgnsTree::values(const CgnsNode& node, const Shape& shape) const {
     std::vector<T> values(shape.count);
+    // Of ADF files the library gives values in the type of the file only.
     if (shape.count > 0 &&
-        cgio_read_all_data_type(number_, node.id, shape.type.c_str(), values.data()) != CGIO_ERR_NONE)
+        cgio_read_all_data_type(number_, node.id, shape.type.c_str(), values.data()) != CGIO_ERR_NONE &&
+        cgio_read_all_data(number_, node.id, values.data()) != CGIO_ERR_NONE)
         return wrong(node, fmt::format("has {} values that cannot be read", shape.count));
     return Array::own(std::move(values));
 }
