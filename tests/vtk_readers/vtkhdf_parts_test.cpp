@@ -2,7 +2,9 @@
 // VTKHDF: partitions without cells, arrays that are too long, unreadable or never written.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <functional>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -208,7 +210,65 @@ TEST_F(ReadVtkhdfParts, PointsMayBeIntegers) {
     EXPECT_EQ(result->grid.points.at(3, 2), 7);
 }
 
-/// VTK's reader of images gives what memory held.
+/// An image of 3 x 5 x 3 points whose box does not begin at 0.
+void write_image(Hdf5Writer& file, std::vector<double> direction) {
+    for (const char* name : {"/VTKHDF", "/VTKHDF/PointData", "/VTKHDF/CellData"}) file.group(name);
+    file.attribute("/VTKHDF", "Version", Counts{2, 0});
+    file.attribute("/VTKHDF", "Type", "ImageData");
+    file.attribute("/VTKHDF", "WholeExtent", Counts{1, 3, 0, 4, 0, 2});
+    file.real_attribute("/VTKHDF", "Origin", {1, 2, 3});
+    file.real_attribute("/VTKHDF", "Spacing", {0.5, 0.25, 1});
+    file.real_attribute("/VTKHDF", "Direction", std::move(direction));
+}
+
+std::vector<double> counted(std::size_t count) {
+    std::vector<double> values(count);
+    std::iota(values.begin(), values.end(), 0.0);
+    return values;
+}
+
+/// The places are those that VTK 9.7 gives.
+TEST_F(ReadVtkhdfParts, PlacesThePointsOfImages) {
+    {
+        Hdf5Writer file(folder_.file("a.vtkhdf"));
+        write_image(file, {0, 1, 0, 1, 0, 0, 0, 0, 1});
+        file.data<double>("/VTKHDF/PointData/v", counted(135), {3, 5, 3, 3});
+        file.data<double>("/VTKHDF/CellData/c", counted(16), {2, 4, 2});
+        file.data<double>("/VTKHDF/CellData/short", counted(8), {2, 2, 2});
+    }
+    const auto result = read(folder_.file("a.vtkhdf"));
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(result->grid.cells.count(), 16u);
+    const auto place = [&](std::size_t point) {
+        const Array& points = result->grid.points;
+        return std::array{points.at(point, 0), points.at(point, 1), points.at(point, 2)};
+    };
+    EXPECT_EQ(place(1), (std::array{1.0, 3.0, 3.0}));
+    EXPECT_EQ(place(4), (std::array{1.25, 3.0, 3.0}));
+    ASSERT_EQ(result->grid.point_fields.size(), 1u);
+    EXPECT_EQ(result->grid.point_fields[0].values.at(3, 2), 11);
+    ASSERT_EQ(result->grid.cell_fields.size(), 1u);
+    EXPECT_EQ(result->grid.cell_fields[0].values.at(15, 0), 15);
+    ASSERT_EQ(result->info.left_out.size(), 1u);
+    EXPECT_EQ(result->info.left_out[0].name, "short");
+}
+
+TEST_F(ReadVtkhdfParts, ReadsTheStepOfAnImageThatIsAskedFor) {
+    {
+        Hdf5Writer file(folder_.file("a.vtkhdf"));
+        write_image(file, {1, 0, 0, 0, 1, 0, 0, 0, 1});
+        file.group("/VTKHDF/Steps");
+        file.data<double>("/VTKHDF/Steps/Values", {0, 0.5}, {2});
+        file.data<double>("/VTKHDF/PointData/p", counted(90), {2, 3, 5, 3});
+    }
+    ReadOptions options;
+    options.step = 1;
+    const auto result = read(folder_.file("a.vtkhdf"), options);
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(result->info.times, (std::vector<double>{0, 0.5}));
+    EXPECT_EQ(result->grid.point_fields.at(0).values.at(1, 0), 46);
+}
+
 TEST_F(ReadVtkhdfParts, LeavesUnwrittenFieldsOfImagesOut) {
     {
         Hdf5Writer file(folder_.file("a.vtkhdf"));

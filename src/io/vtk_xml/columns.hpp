@@ -77,6 +77,6 @@ inline constexpr std::string_view ghost_rank_name = "ghostRank";
 ISOTET_API void mark_left_out(const Array& marks, std::string_view name, std::vector<std::uint8_t>& left_out);
 
 /// True for arrays that describe the grid (ghost marks), which are no fields.
-bool is_ghost_array(std::string_view name);
+ISOTET_API bool is_ghost_array(std::string_view name);
 
 } // namespace isotet::io::vtk_xml

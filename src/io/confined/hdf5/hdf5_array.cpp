@@ -1,4 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <span>
@@ -164,16 +165,25 @@ bool is_written(const std::string& file, const std::string& name) {
     return data.good() && !may_be_unwritten(data);
 }
 
-std::optional<std::int64_t> integer_attribute(const std::string& file, const std::string& group, const char* name) {
+std::vector<double> numbers_attribute(const std::string& file, const std::string& group, const char* name) {
+    constexpr hssize_t most = 1024;
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     const Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-    if (!opened.good() || H5Aexists_by_name(opened, group.c_str(), name, H5P_DEFAULT) <= 0) return std::nullopt;
+    if (!opened.good() || H5Aexists_by_name(opened, group.c_str(), name, H5P_DEFAULT) <= 0) return {};
     const Handle attribute(H5Aopen_by_name(opened, group.c_str(), name, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
     const Handle space(attribute.good() ? H5Aget_space(attribute) : -1, H5Sclose);
-    std::int64_t value = 0;
-    if (!space.good() || H5Sget_simple_extent_npoints(space) != 1 || H5Aread(attribute, H5T_NATIVE_INT64, &value) < 0)
-        return std::nullopt;
-    return value;
+    const hssize_t count = space.good() ? H5Sget_simple_extent_npoints(space) : 0;
+    if (count < 1 || count > most) return {};
+    std::vector<double> values(static_cast<std::size_t>(count));
+    if (H5Aread(attribute, H5T_NATIVE_DOUBLE, values.data()) < 0) return {};
+    return values;
+}
+
+std::optional<std::int64_t> integer_attribute(const std::string& file, const std::string& group, const char* name) {
+    const std::vector<double> values = numbers_attribute(file, group, name);
+    constexpr double most = 0x1p53;
+    if (values.size() != 1 || !(std::abs(values[0]) <= most)) return std::nullopt;
+    return static_cast<std::int64_t>(values[0]);
 }
 
 std::string text_attribute(const std::string& file, const std::string& group, const char* name) {

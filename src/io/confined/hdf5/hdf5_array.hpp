@@ -42,6 +42,9 @@ std::vector<std::string> groups_of(const std::string& file, const std::string& g
 /// An integer attribute of a group; nothing where there is none.
 std::optional<std::int64_t> integer_attribute(const std::string& file, const std::string& group, const char* name);
 
+/// The numbers of an attribute of a group; none where there is no such attribute.
+std::vector<double> numbers_attribute(const std::string& file, const std::string& group, const char* name);
+
 /// A text attribute of a group; empty where there is none.
 std::string text_attribute(const std::string& file, const std::string& group, const char* name);
 

@@ -1,19 +1,16 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// VTKHDF: unstructured grids, versions 1 and 2, alone or in collections, by ourselves; image data by VTK's reader.
+// VTKHDF: unstructured grids, versions 1 and 2, alone or in collections, and images.
 #include <algorithm>
 #include <limits>
 
 #include <fmt/core.h>
-#include <vtkDataArraySelection.h>
-#include <vtkHDFReader.h>
-#include <vtkNew.h>
 
 #include "io/confined/hdf5/hdf5_array.hpp"
 #include "io/confined/hdf5/hdf5_walk.hpp"
 #include "io/confined/hdf5/vtkhdf_grid.hpp"
+#include "io/confined/hdf5/vtkhdf_image.hpp"
 #include "io/confined/length_check.hpp"
 #include "io/confined/loaders.hpp"
-#include "io/confined/vtk_load.hpp"
 #include "io/files/escape.hpp"
 #include "io/pieces/block_choice.hpp"
 
@@ -82,35 +79,6 @@ Result<Loaded> load_collection(const std::string& path, const ReadOptions& optio
     return loaded;
 }
 
-/// VTK's reader gives what memory held where values were never written.
-void leave_out_unwritten(const std::string& path, Association association, vtkDataArraySelection& arrays,
-                         FileInfo& info) {
-    const std::string group = association == Association::point ? "/VTKHDF/PointData" : "/VTKHDF/CellData";
-    for (const std::string& name : data_sets_of(path, group)) {
-        if (is_written(path, group + "/" + name)) continue;
-        arrays.DisableArray(name.c_str());
-        leave_out(info, {association == Association::point ? "point field" : "cell field", name,
-                         "it has values that were never written"});
-    }
-}
-
-Result<Loaded> load_by_vtk(const std::string& path, const ReadOptions& options, Depth depth) {
-    vtkNew<vtkHDFReader> reader;
-    reader->SetFileName(path.c_str());
-    return load_with(*reader, path, options, depth, [&](const ReadOptions& chosen, FileInfo& info) {
-        for (int i = 0; i < reader->GetNumberOfPointArrays(); ++i)
-            if (!wanted(chosen, Association::point, reader->GetPointArrayName(i)))
-                announce(info, {reader->GetPointArrayName(i), Association::point, ScalarType::float64, 1});
-        for (int i = 0; i < reader->GetNumberOfCellArrays(); ++i)
-            if (!wanted(chosen, Association::cell, reader->GetCellArrayName(i)))
-                announce(info, {reader->GetCellArrayName(i), Association::cell, ScalarType::float64, 1});
-        choose_arrays(reader->GetPointDataArraySelection(), chosen, Association::point);
-        choose_arrays(reader->GetCellDataArraySelection(), chosen, Association::cell);
-        leave_out_unwritten(path, Association::point, *reader->GetPointDataArraySelection(), info);
-        leave_out_unwritten(path, Association::cell, *reader->GetCellDataArraySelection(), info);
-    });
-}
-
 } // namespace
 
 Result<Loaded> load_vtkhdf(const std::string& path, const ReadOptions& options, Depth depth) {
@@ -119,8 +87,11 @@ Result<Loaded> load_vtkhdf(const std::string& path, const ReadOptions& options, 
     const std::string type = text_attribute(path, "/VTKHDF", "Type");
     if (type == "PartitionedDataSetCollection" || type == "MultiBlockDataSet")
         return load_collection(path, options, depth);
-    if (type != "UnstructuredGrid") return load_by_vtk(path, options, depth);
-    return load_grid(path, options, depth);
+    if (type == "ImageData") return load_vtkhdf_image(path, options, depth);
+    if (type == "UnstructuredGrid") return load_grid(path, options, depth);
+    return broken(path, fmt::format("it is a VTKHDF file of type \"{}\": UnstructuredGrid, ImageData, "
+                                    "PartitionedDataSetCollection and MultiBlockDataSet are read",
+                                    escaped(type)));
 }
 
 } // namespace isotet::io::confined
