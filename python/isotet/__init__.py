@@ -20,11 +20,21 @@ Errors are ValueError (wrong arguments, broken data), TypeError (what is no numb
 `Error` for all else, each with a sentence: what, the value seen, the rule.
 """
 
+from typing import TYPE_CHECKING
+
 from ._grid import Contour, Grid, PackedGrid, Solids, contour, formats, inspect, make, pack, read, solid
-from ._isotet import Error, __version__
 from ._picture import render
 from ._pieces import Frame, make_frame, number_points
 from ._surface import Surface, SurfaceReport, check, parts, read_surface
+
+if TYPE_CHECKING:
+
+    class Error(Exception):
+        """What is no ValueError, MemoryError or OSError: the system refused something, or isotet is at fault."""
+
+    __version__: str
+else:
+    from ._isotet import Error, __version__
 
 __all__ = [
     "Contour", "Error", "Frame", "Grid", "PackedGrid", "Solids", "Surface", "SurfaceReport", "__version__", "check", "contour", "formats",

@@ -11,12 +11,14 @@ import numpy as np
 from . import _isotet
 
 # VTK's numbers of meshio's cell types. Those that are not contoured are left out by isotet, which counts them.
-_VTK_TYPES = {
+VTK_TYPES = {
     "vertex": 1, "line": 3, "triangle": 5, "polygon": 7, "quad": 9, "tetra": 10, "hexahedron": 12, "wedge": 13,
     "pyramid": 14, "penta_prism": 15, "hexa_prism": 16, "line3": 21, "triangle6": 22, "quad8": 23, "tetra10": 24,
     "hexahedron20": 25, "wedge15": 26, "pyramid13": 27, "quad9": 28, "hexahedron27": 29, "wedge18": 32, "hexahedron24": 33,
-    "triangle7": 34, "line4": 35,
+    "triangle7": 34, "line4": 35, "VTK_LAGRANGE_CURVE": 68, "VTK_LAGRANGE_TRIANGLE": 69, "VTK_LAGRANGE_QUADRILATERAL": 70,
+    "VTK_LAGRANGE_TETRAHEDRON": 71, "VTK_LAGRANGE_HEXAHEDRON": 72, "VTK_LAGRANGE_WEDGE": 73, "VTK_LAGRANGE_PYRAMID": 74,
 }  # fmt: skip
+_SOLID = ("tetra", "hexahedron", "wedge", "pyramid", "polyhedron")
 _TYPE_OF_CORNERS = {4: 10, 8: 12, 6: 13, 5: 14}
 
 
@@ -24,6 +26,8 @@ def _native(what: str, array, integers_only: bool = False) -> np.ndarray:
     """A contiguous array of a type that isotet has."""
     if isinstance(array, np.ma.MaskedArray) and np.ma.is_masked(array):
         raise ValueError(f"{what} is a masked array with masked values: only values may have some, which are no data")
+    if hasattr(array, "__dlpack__") and not hasattr(array, "__array__"):
+        array = np.from_dlpack(array)
     array = np.asarray(array)
     kind, bits = array.dtype.kind, 8 * array.dtype.itemsize
     if integers_only and kind in "bf":
@@ -97,8 +101,10 @@ def _blocks_in(blocks) -> _isotet.Cells:
         corners = _indices(f"cells[{name!r}]", corners)
         if corners.ndim != 2:
             raise ValueError(f"cells[{name!r}] has shape {corners.shape}, but must have one row a cell")
+        if name not in VTK_TYPES and name.startswith(_SOLID):
+            raise ValueError(f"cells of the type '{name}' have an order of nodes that isotet does not know: give them as VTK's Lagrange cells")
         arrays.append(corners)
-        types.append(_VTK_TYPES.get(name, 0))
+        types.append(VTK_TYPES.get(name, 0))
     if len(arrays) == 1 and types[0] in _TYPE_OF_CORNERS.values() and _TYPE_OF_CORNERS.get(arrays[0].shape[1]) == types[0]:
         return _isotet.Cells(arrays[0].reshape(-1), None, None, types[0])
     counts = [len(corners) for corners in arrays]

@@ -6,24 +6,32 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
 from . import _isotet
 from ._arrays import (
     cells_in, direction_in, fields_in, isovalues_in, middle_of, numbers_in, place_in, points_in, scalars_in, tolerances_in, words_in,
 )  # fmt: skip
 from ._call import Progress, call_options
+from ._meshes import grid_of_mesh, to_meshio
 from ._pieces import Frame
 from ._surface import Surface
+
+if TYPE_CHECKING:
+    import meshio
+    import pyvista
+    from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
 
 
 class Grid:
     """Points, cells and fields, as they are: arrays are shared with whoever gave them, and must not change meanwhile.
 
     points
-        N x 3 numbers; float32 or float64 are not copied.
+        N x 3 numbers; float32 or float64 are not copied. Or, without cells, a mesh of VTK, PyVista or meshio, whose arrays are
+        its fields where none are given; images and structured grids are converted.
     cells, offsets, types
         One of: integers of shape (M, 4) for tetrahedra, (M, 5) pyramids, (M, 6) wedges, (M, 8) hexahedra, with VTK's order
         of corners; meshio's cells (a mapping from "tetra", "hexahedron" and so on to such arrays, or its list of blocks);
@@ -51,15 +59,19 @@ class Grid:
 
     __slots__ = ("_grid", "info", "step", "notes", "__weakref__")
 
-    def __init__(self, points, cells, *, offsets=None, types=None, faces=None, face_offsets=None,
+    def __init__(self, points: Any, cells: Any = None, *, offsets: npt.ArrayLike | None = None, types: npt.ArrayLike | None = None,
+                 faces: npt.ArrayLike | None = None, face_offsets: npt.ArrayLike | None = None,
                  fields: Mapping[str, Any] | None = None, cell_fields: Mapping[str, Any] | None = None,
-                 point_numbers=None):  # fmt: skip
-        numbers = None if point_numbers is None else numbers_in("point_numbers", point_numbers)
-        self._grid = _isotet.Grid(points_in(points), cells_in(cells, offsets, types, faces, face_offsets),
-                                  fields_in("fields", fields), fields_in("cell_fields", cell_fields), numbers)  # fmt: skip
+                 point_numbers: npt.ArrayLike | None = None) -> None:  # fmt: skip
         self.info: dict[str, Any] = {}
         self.step = 0
         self.notes: list[str] = []
+        if cells is None:
+            self._grid = grid_of_mesh(points, fields, cell_fields, point_numbers)
+            return
+        numbers = None if point_numbers is None else numbers_in("point_numbers", point_numbers)
+        self._grid = _isotet.Grid(points_in(points), cells_in(cells, offsets, types, faces, face_offsets),
+                                  fields_in("fields", fields), fields_in("cell_fields", cell_fields), numbers)  # fmt: skip
 
     @classmethod
     def _of(cls, grid: _isotet.Grid, info: dict[str, Any] | None = None, step: int = 0, notes: Iterable[str] = ()) -> Grid:
@@ -163,7 +175,7 @@ class Grid:
             raise ValueError(f"{of} has no '{missing[0]}': there are {', '.join(own) or 'none'}")
         return [(name, own[name]) for name in fields]
 
-    def contour(self, isovalues: float | Sequence[float], field=None, *, normals: str = "none",
+    def contour(self, isovalues: npt.ArrayLike, field=None, *, normals: str = "none",
                 fields: Mapping[str, Any] | Iterable[str] | None = None,
                 cell_fields: Mapping[str, Any] | Iterable[str] | None = None, edge_ends: bool = False,
                 source_cells: bool = False, ties: str = "merge", precision: str = "float32", method: str | None = None,
@@ -228,7 +240,7 @@ class Grid:
                                   call)  # fmt: skip
         return Surface._of(*session.extract(values, call))
 
-    def slice(self, normal="x", origin=None, *, offsets: float | Sequence[float] | None = None, **options) -> Surface:
+    def slice(self, normal="x", origin=None, *, offsets: npt.ArrayLike | None = None, **options) -> Surface:
         """The cut along a plane, or along several parallel ones, as a surface that carries all fields of points and cells.
 
         normal
@@ -256,14 +268,14 @@ class Grid:
             places = [direction[0] * point[0] + direction[1] * point[1] + direction[2] * point[2]]
         return self._cut(_isotet.plane_field, (0, 0, 0), direction, places, options)
 
-    def slice_sphere(self, centre, radius: float | Sequence[float], **options) -> Surface:
+    def slice_sphere(self, centre, radius: npt.ArrayLike, **options) -> Surface:
         """The cut along a sphere, or along several around one point; facing outwards. `options` as for `slice`.
 
         Raises ValueError for a negative radius, and as `contour`.
         """
         return self._cut(_isotet.sphere_field, place_in("centre", centre), (0, 0, 1), isovalues_in(radius), options)
 
-    def slice_cylinder(self, point, axis, radius: float | Sequence[float], **options) -> Surface:
+    def slice_cylinder(self, point, axis, radius: npt.ArrayLike, **options) -> Surface:
         """The cut along a cylinder without ends, or along several around one axis through `point`. `axis` as the `normal` of
         `slice`, `options` as there.
 
@@ -278,7 +290,7 @@ class Grid:
         options.setdefault("cell_fields", list(self.cell_fields))
         return self.contour(sizes, field, **options)
 
-    def isovalues_at(self, percents: float | Sequence[float], field=None, *, of: str = "volume", threads: int = 0,
+    def isovalues_at(self, percents: npt.ArrayLike, field=None, *, of: str = "volume", threads: int = 0,
                      progress: Progress | None = None) -> list[float]:  # fmt: skip
         """Isovalues by what lies below them, in percent.
 
@@ -293,7 +305,7 @@ class Grid:
         call = call_options(threads, progress)
         return _isotet.isovalues_at(self._grid, self._field(field, call), isovalues_in(percents), of == "volume", call)
 
-    def volumes(self, isovalues: float | Sequence[float], field=None, *, threads: int = 0,
+    def volumes(self, isovalues: npt.ArrayLike, field=None, *, threads: int = 0,
                 progress: Progress | None = None) -> dict[str, Any]:  # fmt: skip
         """Area of the isosurfaces and volume below them, without making them: "area" and "volume_below", one an isovalue, and the
         "volume" of the grid where the field has values. In any order of the isovalues.
@@ -384,6 +396,30 @@ class Grid:
         """
         return _isotet.write_grid(self._grid, os.fspath(path), format, compression, call_options(0, progress))
 
+    def to_vtk(self) -> vtkUnstructuredGrid:
+        """The grid as vtkUnstructuredGrid, with its fields. The arrays are copies."""
+        from ._vtk_data import to_unstructured
+
+        return to_unstructured(self)
+
+    def to_pyvista(self) -> pyvista.UnstructuredGrid:
+        """The grid as pyvista.UnstructuredGrid, with its fields. The arrays are copies."""
+        import pyvista
+
+        return pyvista.wrap(self.to_vtk())
+
+    def to_meshio(self) -> meshio.Mesh:
+        """The grid as meshio.Mesh, with its fields. The arrays are copies.
+
+        Raises ValueError for cells that meshio has no name for, polyhedra among them.
+        """
+        return to_meshio(self)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        grid = self._grid
+        return _restored_grid, (grid.points, grid.cells.arrays(), grid.fields, grid.cell_fields, grid.point_numbers,
+                                (self.info, self.step, self.notes))  # fmt: skip
+
     def __len__(self) -> int:
         """The number of cells."""
         return len(self._grid.cells)
@@ -392,6 +428,13 @@ class Grid:
         names = list(self.fields) + list(self.cell_fields)
         carried = f", fields {', '.join(names)}" if names else ""
         return f"<isotet.Grid: {len(self.points)} points, {len(self)} cells{carried}>"
+
+
+def _restored_grid(points, cells, fields, cell_fields, numbers, told) -> Grid:
+    """A grid of a pickle."""
+    connectivity, offsets, types, uniform, faces, face_offsets = cells
+    own = _isotet.Cells(connectivity, offsets, types, uniform, faces, face_offsets)
+    return Grid._of(_isotet.Grid(points, own, list(fields.items()), list(cell_fields.items()), numbers), *told)
 
 
 class PackedGrid:
@@ -408,7 +451,7 @@ class PackedGrid:
         self._packed = packed
         return self
 
-    def contour(self, isovalues: float | Sequence[float], *, normals: str = "none",
+    def contour(self, isovalues: npt.ArrayLike, *, normals: str = "none",
                 fields: Mapping[str, Any] | None = None, cell_fields: Mapping[str, Any] | None = None,
                 edge_ends: bool = False, source_cells: bool = False, ties: str = "merge", threads: int = 0,
                 progress: Progress | None = None) -> Surface:  # fmt: skip
@@ -531,7 +574,7 @@ class Contour:
                                  now._carried(fields, "fields"), now._carried(cell_fields, "cell_fields"),
                                  self._options_with(frame), call)  # fmt: skip
 
-    def contour(self, isovalues: float | Sequence[float], *, threads: int = 0, progress: Progress | None = None) -> Surface:
+    def contour(self, isovalues: npt.ArrayLike, *, threads: int = 0, progress: Progress | None = None) -> Surface:
         """The surface of one isovalue, or one of several with the cell field "isovalue".
 
         Raises ValueError for an isovalue that is not finite and for broken grids; MemoryError.
@@ -552,6 +595,15 @@ class Contour:
     def method(self) -> str:
         """How the next surface is extracted: "direct" or "clusters"."""
         return self._session.method(1)
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of the packed grid; 0 where nothing is packed."""
+        return self._session.packed_bytes()
+
+    def __repr__(self) -> str:
+        size = self.nbytes
+        return f"<isotet.Contour: {f'packed, {size} bytes' if size else 'not packed'}, next {self.method}>"
 
 
 class Solids:
@@ -602,6 +654,9 @@ class Solids:
         """Of all cells with data."""
         return self._solids.grid_volume
 
+    def __repr__(self) -> str:
+        return f"<isotet.Solids: of a volume of {self.grid_volume:.6g}>"
+
 
 def solid(points, cells, values, *, above: float | None = None, below: float | None = None, offsets=None, types=None,
           fields: Mapping[str, Any] | None = None, cell_fields: Mapping[str, Any] | None = None, normals: str = "none",
@@ -627,7 +682,7 @@ def solid(points, cells, values, *, above: float | None = None, below: float | N
                       precision=precision, split_cells=split_cells, threads=threads, progress=progress)  # fmt: skip
 
 
-def contour(points, cells, values, isovalues: float | Sequence[float], *, offsets=None, types=None, normals: str = "none",
+def contour(points, cells, values, isovalues: npt.ArrayLike, *, offsets=None, types=None, normals: str = "none",
             fields: Mapping[str, Any] | None = None, cell_fields: Mapping[str, Any] | None = None,
             edge_ends: bool = False, source_cells: bool = False, ties: str = "merge", precision: str = "float32",
             method: str | None = None, split_cells: bool = False, frame: Frame | None = None,

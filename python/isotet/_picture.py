@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import struct
+import zlib
 from collections.abc import Sequence
 
 import numpy as np
@@ -10,6 +12,18 @@ import numpy as np
 from . import _isotet
 from ._call import Progress, call_options
 from ._surface import Surface
+
+
+def png_of(picture: np.ndarray) -> bytes:
+    """A picture of height x width x 4 bytes as a PNG file."""
+    height, width, _ = picture.shape
+    rows = np.hstack([np.zeros((height, 1), np.uint8), picture.reshape(height, -1)])  # each row begins with its filter, 0
+
+    def chunk(name: bytes, data: bytes) -> bytes:
+        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+
+    head = struct.pack(">IIBBBBB", width, height, 8, 6, 0, 0, 0)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(rows.tobytes(), 6)) + chunk(b"IEND", b"")
 
 
 def _camera(view, parallel: bool) -> tuple[_isotet.Camera, bool]:

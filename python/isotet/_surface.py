@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import base64
+import html
 import math
 import os
 from collections.abc import Iterable, Mapping
@@ -15,6 +17,11 @@ from ._arrays import fields_in, points_in, values_in
 from ._call import Progress, call_options
 
 if TYPE_CHECKING:
+    import meshio
+    import pyvista
+    import trimesh
+    from vtkmodules.vtkCommonDataModel import vtkPolyData
+
     from ._grid import Grid
 
 
@@ -187,7 +194,7 @@ class Surface:
         """
         return _isotet.write_surface(self._surface, os.fspath(path), format, compression, call_options(0, progress))
 
-    def to_pyvista(self):
+    def to_pyvista(self) -> pyvista.PolyData:
         """The surface as pyvista.PolyData, with its normals and fields. The arrays are copies."""
         import pyvista
 
@@ -195,13 +202,13 @@ class Surface:
 
         return pyvista.wrap(to_polydata(self))
 
-    def to_vtk(self):
+    def to_vtk(self) -> vtkPolyData:
         """The surface as vtkPolyData, with its normals and fields. The arrays are copies."""
         from ._vtk_data import to_polydata
 
         return to_polydata(self)
 
-    def to_trimesh(self):
+    def to_trimesh(self) -> trimesh.Trimesh:
         """The surface as trimesh.Trimesh: the same vertices, faces and normals, the fields as attributes. The arrays are copies."""
         import trimesh
 
@@ -213,7 +220,7 @@ class Surface:
             face_normals=np.array(self.normals) if self.normals_kind == "face" else None,
             vertex_attributes=points, face_attributes=faces)  # fmt: skip
 
-    def to_meshio(self):
+    def to_meshio(self) -> meshio.Mesh:
         """The surface as meshio.Mesh, with its fields. The arrays are copies."""
         import meshio
 
@@ -228,18 +235,30 @@ class Surface:
         carried = f", fields {', '.join(names)}" if names else ""
         return f"<isotet.Surface: {surface.vertex_count} vertices, {surface.triangle_count} triangles{carried}>"
 
+    def _repr_png_(self) -> bytes | None:
+        """A picture for notebooks."""
+        from ._picture import png_of, render
+
+        return png_of(render(self, size=(800, 600))) if self._surface.triangle_count else None
+
+    def _repr_html_(self) -> str:
+        """A picture with a line of text, for notebooks."""
+        picture, text = self._repr_png_(), html.escape(repr(self))
+        if picture is None:
+            return f"<pre>{text}</pre>"
+        return f'<figure><img width="400" src="data:image/png;base64,{base64.b64encode(picture).decode()}"/><figcaption>{text}</figcaption></figure>'
+
     def _ipython_display_(self) -> None:
-        """Shows the surface in a notebook, by PyVista's backend where PyVista is installed."""
+        """Shows the surface in a notebook, by PyVista's backend where PyVista is installed, else by a picture."""
         try:
             import pyvista  # noqa: F401
         except ImportError:
-            print(self)
-            return
+            raise NotImplementedError from None  # IPython then asks for the others
         print(self)
         if self._surface.triangle_count:
             self.to_pyvista().plot(notebook=True, smooth_shading=self._has_vertex_normals)
 
-    def __reduce__(self):
+    def __reduce__(self) -> tuple[Any, ...]:
         fields = {name: np.array(values) for name, values in self.fields.items()}
         cell_fields = {name: np.array(values) for name, values in self.cell_fields.items()}
         arrays = (self.normals, self.edge_ends, self.edge_weights, self.source_cells)

@@ -18,6 +18,7 @@ from . import _isotet
 from ._arrays import points_in, scalars_in, values_in
 from ._call import call_options
 from ._grid import Grid
+from ._meshes import expanded, faces_of
 from ._surface import Surface
 
 _TETRAHEDRON, _POLYHEDRON = 10, 42
@@ -102,10 +103,53 @@ def arrays_of(attributes, leave_out: str | None = None) -> list[tuple[str, np.nd
     return out
 
 
+def unstructured_of(data) -> Any:
+    """Any vtkDataSet as a vtkUnstructuredGrid: others are converted."""
+    if isinstance(data, vtkUnstructuredGrid):
+        return data
+    if not data.IsA("vtkDataSet"):
+        raise TypeError(f"the mesh is a {data.GetClassName()}, but must be one vtkDataSet: take its blocks one by one")
+    from vtkmodules.vtkFiltersCore import vtkAppendFilter
+
+    convert = vtkAppendFilter()
+    convert.AddInputData(data)
+    convert.Update()
+    return convert.GetOutput()
+
+
+def grid_in(data) -> _isotet.Grid:
+    """Any vtkDataSet, with fields and global ids. Arrays of unstructured grids are shared."""
+    grid = unstructured_of(data)
+    ids = grid.GetPointData().GetGlobalIds()
+    numbers = None if ids is None else vtk_to_numpy(ids)
+    return _isotet.Grid(points_of(grid), cells_of(grid), arrays_of(grid.GetPointData()), arrays_of(grid.GetCellData()), numbers)
+
+
+def to_unstructured(grid: Grid) -> vtkUnstructuredGrid:
+    """A grid as vtkUnstructuredGrid. The arrays are copies."""
+    out = vtkUnstructuredGrid()
+    points = vtkPoints()
+    points.SetData(numpy_to_vtk(grid.points, deep=True))
+    out.SetPoints(points)
+    connectivity, offsets, types = expanded(grid._grid)
+    of_types, cells = numpy_to_vtk(types.astype(np.uint8), deep=True), _cell_array(connectivity, offsets)
+    if (types == _POLYHEDRON).any():
+        if not hasattr(out, "SetPolyhedralCells"):
+            raise ValueError("polyhedra are handed to VTK from its version 9.4 on")
+        corners, sizes, counts = faces_of(grid)
+        faces = _cell_array(corners, np.append(0, np.cumsum(sizes)))
+        out.SetPolyhedralCells(of_types, cells, _cell_array(np.arange(len(sizes)), np.append(0, np.cumsum(counts))), faces)
+    else:
+        out.SetCells(of_types, cells)
+    for data, arrays in ((out.GetPointData(), grid.fields), (out.GetCellData(), grid.cell_fields)):
+        for name, values in arrays.items():
+            _add_array(data, name, values, copy=True)
+    return out
+
+
 def grid_of(grid) -> Grid:
     """A vtkUnstructuredGrid, or pyvista.UnstructuredGrid, as `isotet.Grid`: arrays are shared, and must not change meanwhile."""
-    fields, cell_fields = arrays_of(grid.GetPointData()), arrays_of(grid.GetCellData())
-    return Grid._of(_isotet.Grid(points_of(grid), cells_of(grid), fields, cell_fields))
+    return Grid._of(grid_in(grid))
 
 
 class Scalars(NamedTuple):

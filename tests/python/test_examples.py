@@ -15,6 +15,7 @@ LEAVES = {
     "first_contour": ["surface.png", "surface.vtp"],
     "numpy_only": ["torus.ply"],
     "time_series": [f"wave_{step:02}.vtp" for step in range(40)],
+    "with_dask": [],
 }
 
 
@@ -31,11 +32,15 @@ def test_all_are_known():
 
 @pytest.mark.parametrize("name", LEAVES)
 def test_runs(name, tmp_path):
+    if name == "with_dask":
+        pytest.importorskip("distributed")
     told = run(FOLDER / f"{name}.py", tmp_path)
     assert sorted(path.name for path in tmp_path.iterdir()) == LEAVES[name]
     assert all((tmp_path / file).stat().st_size > 1000 for file in LEAVES[name])
     if name == "numpy_only":
         assert "closed: True, handles: [1]" in told
+    if name == "with_dask":
+        assert "the same as those of the whole: True" in told
     if name == "time_series":
         assert "step 1: <isotet.Surface" in told and "new: field, clusters" in told
         assert isotet.read_surface(tmp_path / "wave_39.vtp").area > 1

@@ -394,6 +394,11 @@ def test_what_is_shown(sphere):
     surface = sphere.contour([0.4, 0.5], "sphere", fields=[])
     assert repr(surface) == f"<isotet.Surface: {len(surface.points)} vertices, {len(surface.triangles)} triangles, fields isovalue>"
     assert "1296 tets, field sphere" in repr(isotet.pack(sphere, values="sphere"))
+    session = isotet.Contour(sphere, "sphere", surfaces=100)
+    assert repr(session) == "<isotet.Contour: not packed, next clusters>"
+    session.prepare()
+    assert repr(session) == f"<isotet.Contour: packed, {session.nbytes} bytes, next clusters>"
+    assert repr(isotet.Solids(sphere, "sphere")) == "<isotet.Solids: of a volume of 8>"
     for name in isotet.__all__:
         assert getattr(isotet, name).__doc__, name
 
@@ -423,9 +428,20 @@ def test_surfaces_show_themselves_in_notebooks(sphere, monkeypatch, capsys):
     sphere.contour(9, "sphere")._ipython_display_()
     assert len(plotted) == 1, "nothing to plot"
     monkeypatch.setitem(sys.modules, "pyvista", None)  # not installed
-    surface._ipython_display_()
+    with pytest.raises(NotImplementedError):  # IPython then takes the picture
+        surface._ipython_display_()
     assert len(plotted) == 1
-    assert capsys.readouterr().out.splitlines()[-1] == repr(surface)
+    assert capsys.readouterr().out.splitlines()[-1] == repr(sphere.contour(9, "sphere"))
+
+
+def test_pictures_stand_in_for_plots(sphere, tmp_path):
+    surface = sphere.contour(0.5, "sphere")
+    (tmp_path / "surface.png").write_bytes(surface._repr_png_())
+    assert np.array_equal(pyvista.read_texture(tmp_path / "surface.png").to_array(),
+                          isotet.render(surface, size=(800, 600)))  # fmt: skip
+    assert "data:image/png;base64," in surface._repr_html_() and "&lt;isotet.Surface" in surface._repr_html_()
+    nothing = sphere.contour(9, "sphere")
+    assert nothing._repr_png_() is None and nothing._repr_html_().startswith("<pre>")
 
 
 def test_a_solid_is_closed_and_the_two_sides_make_up_the_grid():

@@ -1,0 +1,161 @@
+# Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+"""Grids of other packages, in and out; in other processes, too."""
+
+import copy
+import pickle
+import subprocess
+import sys
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+
+import meshio
+import numpy as np
+import pytest
+import pyvista as pv
+
+import isotet
+from conftest import TREE, same
+
+SHAPES = ["kuhn", "hex", "wedge", "pyramid", "mixed", "tet10"]
+
+
+@pytest.fixture(params=SHAPES)
+def grid(request) -> isotet.Grid:
+    made = isotet.make(request.param, 4, ["sphere", "gyroid"])
+    marks = np.arange(len(made), dtype=np.int32)
+    return isotet.Grid(made.points, made.cells, offsets=made.offsets, types=made.types, fields=made.fields, cell_fields={"mark": marks})
+
+
+@pytest.mark.parametrize("package", ["pyvista", "vtk", "meshio"])
+def test_grids_go_out_and_come_back(grid, package):
+    back = isotet.Grid(getattr(grid, f"to_{package}")())
+    assert set(back.fields) == {"sphere", "gyroid"} and back.cell_fields["mark"].dtype == np.int32
+    how = {"fields": ["gyroid"], "cell_fields": ["mark"]}
+    assert same(back.contour(0.4, "sphere", **how), grid.contour(0.4, "sphere", **how))
+
+
+def test_polyhedra_go_to_vtk_and_come_back(tree):
+    grid = isotet.read(tree / "data/vtu/polyhedron_two_pieces.vtu")
+    mesh = grid.to_pyvista()
+    assert mesh.volume == pytest.approx(pv.read(tree / "data/vtu/polyhedron_two_pieces.vtu").volume)
+    back = isotet.Grid(mesh)
+    assert np.array_equal(back.faces, grid.faces) and np.array_equal(back.face_offsets, grid.face_offsets)
+    with pytest.raises(ValueError, match="VTK's type 42, for which meshio has no name"):
+        grid.to_meshio()
+
+
+def test_voxels_are_hexahedra_for_meshio():
+    image = pv.ImageData(dimensions=(4, 4, 4))
+    image["x"] = image.points[:, 0]
+    grid = isotet.Grid(image)
+    assert len(grid) == 27 and grid.contour(1.5).area == 9
+    assert isotet.Grid(grid.to_meshio()).contour(1.5).area == 9
+    assert grid.to_pyvista().volume == 27
+
+
+def test_fields_that_are_given_take_the_place_of_the_meshs():
+    mesh = isotet.make("hex", 4, ["sphere"]).to_pyvista()
+    mesh.point_data.active_scalars_name = None
+    mesh["id"] = np.arange(mesh.n_points)
+    mesh.GetPointData().SetGlobalIds(mesh.GetPointData().GetArray("id"))
+    grid = isotet.Grid(mesh, fields={"x": mesh.points[:, 0]})
+    assert list(grid.fields) == ["x"] and grid.point_numbers.tolist() == list(range(mesh.n_points))
+    assert np.shares_memory(isotet.Grid(mesh).points, mesh.points)
+
+
+@pytest.mark.parametrize("mesh", [3, [[0.0, 0, 0]], pv.MultiBlock(), pv.Table()])
+def test_other_objects_are_type_errors(mesh):
+    with pytest.raises(TypeError, match="the mesh is a"):
+        isotet.Grid(mesh)
+
+
+def test_orders_of_nodes_that_are_not_known_are_named():
+    points = np.random.default_rng(1).random((20, 3))
+    with pytest.raises(ValueError, match="cells of the type 'tetra20' have an order of nodes"):
+        isotet.Grid(meshio.Mesh(points, [("tetra20", np.arange(20).reshape(1, 20))]))
+    cells = meshio.Mesh(points, [("VTK_LAGRANGE_TETRAHEDRON", np.arange(20).reshape(1, 20)), ("line5", np.arange(5).reshape(1, 5))])
+    assert isotet.Grid(cells).types.tolist() == [71, 0]
+
+
+class OnlyDlpack:
+    def __init__(self, array):
+        self.array = array
+
+    def __dlpack__(self, **how):
+        return self.array.__dlpack__(**how)
+
+    def __dlpack_device__(self):
+        return self.array.__dlpack_device__()
+
+
+def test_arrays_come_by_dlpack(tet):
+    points, cells, values = tet
+    surface = isotet.contour(*(OnlyDlpack(np.array(array)) for array in (points, cells, values)), 0.5)
+    assert same(surface, isotet.contour(points, cells, values, 0.5))
+
+
+def test_tables_of_pandas_are_arrays(tet):
+    pandas = pytest.importorskip("pandas")
+    points, cells, values = tet
+    table = pandas.DataFrame({"T": values, "p": 2 * values})
+    surface = isotet.contour(pandas.DataFrame(points), pandas.DataFrame(cells), table["T"], 0.5, fields=table)
+    assert np.allclose(surface.fields["p"], 1.0)
+
+
+def test_grids_are_pickled_and_copied(grid):
+    how = {"fields": ["gyroid"], "cell_fields": ["mark"], "normals": "gradient"}
+    wanted = grid.contour(0.4, "sphere", **how)
+    for other in (pickle.loads(pickle.dumps(grid)), copy.copy(grid), copy.deepcopy(grid)):
+        assert same(other.contour(0.4, "sphere", **how), wanted)
+    assert np.shares_memory(copy.copy(grid).points, grid.points)
+    assert not np.shares_memory(copy.deepcopy(grid).points, grid.points)
+    piece = grid.piece(0, 2)
+    assert pickle.loads(pickle.dumps(piece)).point_numbers.tolist() == piece.point_numbers.tolist()
+
+
+def test_what_files_say_is_pickled(tree):
+    grid = isotet.read(tree / "data/vtu/polyhedron_two_pieces.vtu")
+    other = pickle.loads(pickle.dumps(grid))
+    assert (other.info, other.step, other.notes) == (grid.info, grid.step, grid.notes)
+    assert np.array_equal(other.faces, grid.faces)
+
+
+def area_of(grid: isotet.Grid) -> float:
+    return grid.contour(0.5, "sphere", threads=1).area
+
+
+def test_pools_of_processes_take_grids(sphere):
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+        assert list(pool.map(area_of, [sphere, sphere])) == [area_of(sphere)] * 2
+
+
+TYPED = """
+import numpy as np
+import isotet
+grid = isotet.make("kuhn", 4, ["sphere"])
+surface: isotet.Surface = grid.contour(np.linspace(0, 1, 3))
+surface = grid.contour(np.float32(0.5), normals="vertex")
+isotet.contour(np.zeros((4, 3)), [[0, 1, 2, 3]], np.zeros(4), [0.5, np.float64(0.3)])
+again = isotet.Grid(grid.to_pyvista())
+session = isotet.Contour(again, np.zeros(3))
+session.set(again, [1.0, 2.0])
+print(surface.to_pyvista(), surface.to_vtk(), isotet.Error, isotet.__version__)
+grid.contour(0.5, normal="face")  # type: ignore[call-arg]
+"""
+SETTINGS = """
+[mypy]
+strict = True
+[mypy-pyvista.*,vtkmodules.*,meshio.*,trimesh.*,dask.*]
+follow_imports = skip
+"""
+
+
+def test_types_hold_in_strict_code(tmp_path):
+    """A comment that ignores nothing is an error, too."""
+    pytest.importorskip("mypy")
+    (tmp_path / "typed.py").write_text(TYPED)
+    (tmp_path / "mypy.ini").write_text(SETTINGS)
+    files = ["typed.py", *sorted((TREE / "examples/python").glob("*.py"))]
+    done = subprocess.run([sys.executable, "-m", "mypy", "--cache-dir", tmp_path / "cache", *files], cwd=tmp_path,
+                          capture_output=True, text=True, timeout=250, check=False)  # fmt: skip
+    assert done.returncode == 0, done.stdout
