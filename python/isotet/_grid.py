@@ -9,7 +9,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _isotet
 from ._arrays import (
@@ -22,6 +21,7 @@ from ._surface import Surface
 
 if TYPE_CHECKING:
     import meshio
+    import numpy.typing as npt
     import pyvista
     from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
 

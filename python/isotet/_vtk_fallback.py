@@ -8,7 +8,6 @@ from typing import NamedTuple
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPolyData
-from vtkmodules.vtkFiltersCore import vtkAppendPolyData, vtkCellDataToPointData, vtkContourFilter
 
 from ._vtk_data import Scalars, other_cells, some_cells
 
@@ -26,6 +25,8 @@ class Wishes(NamedTuple):
 
 def contour_by_vtk(data, scalars: Scalars, of_cells: bool, wishes: Wishes) -> vtkPolyData:
     """The surface, lines or points of any vtkDataSet. Cell arrays are averaged to points by VTK."""
+    from vtkmodules.vtkFiltersCore import vtkContourFilter  # these modules take longer to import than all of isotet
+
     data, name = _with_array(data, scalars, of_cells)
     contour = vtkContourFilter()
     contour.SetInputData(data)
@@ -45,6 +46,8 @@ def contour_by_vtk(data, scalars: Scalars, of_cells: bool, wishes: Wishes) -> vt
 def _with_array(data, scalars: Scalars, of_cells: bool):
     """The data set with what is contoured as a point array, and the name of that."""
     if of_cells:
+        from vtkmodules.vtkFiltersCore import vtkCellDataToPointData
+
         average = vtkCellDataToPointData()
         average.SetInputData(data)
         average.SetPassCellData(True)
@@ -83,6 +86,8 @@ def append(more, out) -> None:
         none = numpy_to_vtk(np.zeros((more.GetNumberOfPoints(), 3), np.float32), deep=True)
         none.SetName(normals.GetName())
         its.SetNormals(none)
+    from vtkmodules.vtkFiltersCore import vtkAppendPolyData
+
     both = vtkAppendPolyData()
     both.AddInputData(out)
     both.AddInputData(more)

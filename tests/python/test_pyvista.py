@@ -5,6 +5,7 @@ import gc
 import subprocess
 import sys
 import weakref
+from importlib.metadata import entry_points
 
 import numpy as np
 import pytest
@@ -508,3 +509,30 @@ def test_grids_of_vtk_are_shared():
     assert np.shares_memory(mine.cells, grid.cell_connectivity)
     assert set(mine.fields) == {"r", "x", "v"}
     assert mine.contour(2.5, "r").area == pytest.approx(grid.contour([2.5], "r").area, rel=1e-4)
+
+
+@pytest.mark.parametrize("ending", ["ts", "3mf"])
+def test_surfaces_in_formats_of_isotet_are_saved_and_read(tmp_path, ending):
+    surface = cubes().isotet.contour([2.5], "r")
+    surface.save(tmp_path / f"surface.{ending}")
+    again = pv.read(tmp_path / f"surface.{ending}")
+    assert (again.n_points, again.n_cells) == (surface.n_points, surface.n_cells)
+    assert again.area == pytest.approx(surface.area, rel=1e-4)
+    with pytest.raises(TypeError, match="takes surfaces"):
+        cubes().save(tmp_path / f"grid.{ending}")
+    surface.save(tmp_path / "surface.usda")
+    assert (tmp_path / "surface.usda").read_text().startswith("#usda")
+
+
+def test_grids_in_formats_of_isotet_are_read(tree):
+    path = next((tree / "data/gocad").glob("*.so"))
+    assert pv.read(path).n_cells == len(isotet.read(path))
+
+
+def test_pyvista_has_no_reader_of_its_own_for_these():
+    from pyvista.core.utilities.reader import CLASS_READERS
+
+    ours = {entry.name for entry in entry_points(group="pyvista.readers") if entry.value.startswith("isotet.")}
+    assert len(ours) > 5 and not {f".{name}" for name in ours} & set(CLASS_READERS)
+    known = {ending[1:] for kind in isotet.formats() for ending in kind["extensions"] if kind["reads_grid"] or kind["reads_surface"]}
+    assert ours <= known

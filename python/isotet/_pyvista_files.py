@@ -1,0 +1,27 @@
+# Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+"""Readers and writers for pyvista.read() and save(), found by entry points: of formats that only isotet reads or writes."""
+
+from __future__ import annotations
+
+import pyvista
+
+from ._grid import read
+from ._surface import read_surface
+from ._vtk_data import surface_of
+
+
+def read_grid_file(path: str, **options) -> pyvista.UnstructuredGrid:
+    """`options` are those of `isotet.read`."""
+    return read(path, **options).to_pyvista()
+
+
+def read_surface_file(path: str, **options) -> pyvista.PolyData:
+    """`options` are those of `isotet.read_surface`."""
+    return read_surface(path, **options).to_pyvista()
+
+
+def write_surface_file(mesh: pyvista.DataObject, path: str, **options) -> None:
+    """`options` are those of `isotet.Surface.write`. Faces are cut into triangles."""
+    if not isinstance(mesh, pyvista.PolyData):
+        raise TypeError(f"the mesh is a {type(mesh).__name__}, but this format takes surfaces: pyvista.PolyData")
+    surface_of(mesh if mesh.is_all_triangles else mesh.triangulate()).write(path, **options)
