@@ -17,10 +17,14 @@ def contour(piece: isotet.Grid, frame: isotet.Frame) -> isotet.Surface:
     return piece.contour(0.4, "gyroid", frame=frame, threads=1)
 
 
+def in_order(rows: np.ndarray) -> np.ndarray:
+    ordered: np.ndarray = rows[np.lexsort(rows.T)]
+    return ordered
+
+
 def corners_of(surface: isotet.Surface) -> np.ndarray:
     """The coordinates of each triangle's corners, in an order that does not depend on pieces."""
-    corners = surface.points[surface.triangles].reshape(-1, 9)
-    return corners[np.lexsort(corners.T)]
+    return in_order(surface.points[surface.triangles].reshape(-1, 9))
 
 
 def main() -> None:
@@ -30,8 +34,8 @@ def main() -> None:
         pieces = client.scatter([whole.piece(k, COUNT) for k in range(COUNT)])
         frame = isotet.make_frame(client.gather(client.map(survey, pieces)))
         surfaces = client.gather(client.map(contour, pieces, frame=frame))
-    joined = np.vstack([corners_of(surface) for surface in surfaces])
-    same = np.array_equal(joined[np.lexsort(joined.T)], corners_of(whole.contour(0.4, "gyroid")))
+    joined = in_order(np.vstack([corners_of(surface) for surface in surfaces]))
+    same = np.array_equal(joined, corners_of(whole.contour(0.4, "gyroid")))
     print(f"{COUNT} pieces, {len(joined)} triangles, the same as those of the whole: {same}")
 
 
