@@ -436,12 +436,71 @@ class HandedToVtk(unittest.TestCase):
         self.assertIn("a Tolerance refines those of one grid on one rank", contour.said[0])
         self.assertGreater(contour.GetOutputDataObject(0).GetBlock(1).GetNumberOfPolys(), 0)
 
-    def test_vectors(self):
+    def test_has_the_methods_of_vtkcontourfilter(self):
+        self.assertEqual(set(dir(vtkContourFilter)) - set(dir(vtkIsotetContour)), set())
+        ours, theirs = vtkIsotetContour(), vtkContourFilter()
+        for name in ("ComputeScalars", "ComputeGradients", "UseScalarTree", "GenerateTriangles", "ArrayComponent", "Locator"):
+            self.assertEqual(getattr(ours, f"Get{name}")(), getattr(theirs, f"Get{name}")(), name)
+
+    def test_polygons_are_vtks(self):
         grid = sphere()
-        add(grid.GetPointData(), "w", np.random.default_rng(1).random((grid.GetNumberOfPoints(), 3), np.float32))
-        ours, theirs = run(grid, name="w", value=0.5), run(grid, name="w", value=0.5, kind=vtkContourFilter)
+        ours, theirs = start(grid), start(grid, kind=vtkContourFilter)
+        for contour in (ours, theirs):
+            contour.GenerateTrianglesOff()
+            contour.Update()
         self.assertEqual(ours.GetOutput().GetNumberOfCells(), theirs.GetOutput().GetNumberOfCells())
-        self.assertIn("3 components", ours.said[0])
+        self.assertIn("GenerateTriangles is off", ours.said[0])
+
+    def test_components(self):
+        grid = sphere()
+        values = np.random.default_rng(1).random((grid.GetNumberOfPoints(), 3), np.float32)
+        add(grid.GetPointData(), "w", values)
+        for number in range(3):
+            add(grid.GetPointData(), f"c{number}", np.ascontiguousarray(values[:, number]))
+        contour = start(grid, name="w", value=0.5)
+        for number in (0, 2, 1):
+            contour.SetArrayComponent(number)
+            contour.Update()
+            out = contour.GetOutput()
+            self.assertEqual(points_of(out).tobytes(), points_of(run(grid, name=f"c{number}", value=0.5).GetOutput()).tobytes())
+            self.assertEqual("w_" + str(number) in names(out.GetPointData()), number > 0)
+            self.assertIn("w", names(out.GetPointData()))
+            self.assertEqual(contour.said, [])
+        contour.SetExpectedSurfaces(100)
+        for value in (0.55, 0.6):
+            contour.SetValue(0, value)
+            contour.Update()
+        self.assertEqual(contour.GetLastUpdate(), 0)
+        contour.SetArrayComponent(3)
+        contour.Update()
+        self.assertIn("the array has 3 components, but ArrayComponent is 3", contour.said[0])
+
+    def test_components_of_other_cells(self):
+        points, cells, field = lattice(6)
+        faces = grid_of(points, cells[:, [0, 1, 2]], {"r": field}, kind=5)
+        add(faces.GetPointData(), "w", np.stack([field * 0, field], axis=1))
+        contour = start(faces, name="w")
+        contour.SetArrayComponent(1)
+        contour.Update()
+        wanted = run(faces, kind=vtkContourFilter).GetOutput().GetNumberOfLines()
+        self.assertGreater(wanted, 0)
+        self.assertEqual(contour.GetOutput().GetNumberOfLines(), wanted)
+
+
+class Types(unittest.TestCase):
+    def test_integers_stay_integers(self):
+        for dtype in (np.int8, np.uint8, np.int16, np.int32, np.uint32, np.int64, np.uint64):
+            grid = sphere()
+            values = (np.arange(grid.GetNumberOfPoints()) % 100).astype(dtype)
+            add(grid.GetPointData(), "n", values)
+            add(grid.GetPointData(), "f", values.astype(np.float64))
+            ours = [run(grid).GetOutput().GetPointData().GetArray(name) for name in ("n", "f")]
+            theirs = run(grid, kind=vtkContourFilter).GetOutput().GetPointData().GetArray("n")
+            self.assertEqual(ours[0].GetDataType(), theirs.GetDataType())
+            np.testing.assert_array_equal(vtk_to_numpy(ours[0]), np.rint(vtk_to_numpy(ours[1])).astype(dtype))
+            contoured = run(grid, name="n", value=40).GetOutput().GetPointData().GetArray("n")
+            self.assertEqual(contoured.GetDataType(), theirs.GetDataType())
+            self.assertEqual(set(vtk_to_numpy(contoured).tolist()), {40})
 
 
 class Failing(unittest.TestCase):

@@ -1,7 +1,11 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "arrays.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <mutex>
+#include <span>
 #include <unordered_map>
 
 #include <vtkAbstractArray.h>
@@ -132,6 +136,37 @@ vtkSmartPointer<vtkDataArray> to_vtk(const isotet::Array& values, const char* na
     array->SetName(name);
     lend(array, values);
     return array;
+}
+
+namespace {
+
+template <class T>
+void round_into(std::span<const double> from, T* to) {
+    constexpr double lowest = static_cast<double>(std::numeric_limits<T>::lowest());
+    double highest = static_cast<double>(std::numeric_limits<T>::max());
+    if (sizeof(T) == 8) highest = std::nextafter(highest, 0.0); // 2^63 is no integer of 64 bits
+    std::ranges::transform(
+        from, to, [&](double value) { return static_cast<T>(std::clamp(std::nearbyint(value), lowest, highest)); });
+}
+
+} // namespace
+
+vtkSmartPointer<vtkDataArray> rounded_to(int vtk_type, const isotet::Array& values, const char* name) {
+    auto out = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(vtk_type));
+    out->SetName(name);
+    out->SetNumberOfComponents(static_cast<int>(values.components()));
+    out->SetNumberOfTuples(static_cast<vtkIdType>(values.tuples()));
+    void* const to = out->GetVoidPointer(0);
+    switch (vtk_type) { vtkTemplateMacro(round_into(values.as<double>(), static_cast<VTK_TT*>(to))); }
+    return out;
+}
+
+vtkSmartPointer<vtkDataArray> component_of(vtkDataArray* array, int component, const char* name) {
+    auto out = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(array->GetDataType()));
+    out->SetName(name);
+    out->SetNumberOfTuples(array->GetNumberOfTuples());
+    out->CopyComponent(0, array, component);
+    return out;
 }
 
 } // namespace isotet_vtk

@@ -47,4 +47,10 @@ void lend(vtkDataArray* array, const isotet::Array& values);
 /// `values` as an array of VTK, shared.
 vtkSmartPointer<vtkDataArray> to_vtk(const isotet::Array& values, const char* name);
 
+/// Numbers rounded to the integers of one of VTK's types, within its limits.
+vtkSmartPointer<vtkDataArray> rounded_to(int vtk_type, const isotet::Array& values, const char* name);
+
+/// One component of an array, in an array of its own with the name `name`.
+vtkSmartPointer<vtkDataArray> component_of(vtkDataArray* array, int component, const char* name);
+
 } // namespace isotet_vtk

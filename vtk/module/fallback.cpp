@@ -26,7 +26,7 @@ std::string reason_against(vtkDataObject* data, vtkDataArray* scalars) {
     if (!vtkUnstructuredGrid::SafeDownCast(data))
         return std::string(data->GetClassName()) +
                " is contoured by vtkContourFilter: isotet contours vtkUnstructuredGrid";
-    if (scalars->GetNumberOfComponents() != 1)
+    if (scalars && scalars->GetNumberOfComponents() != 1)
         return "array '" + std::string(scalars->GetName() ? scalars->GetName() : "") + "' has " +
                std::to_string(scalars->GetNumberOfComponents()) +
                " components and is contoured by vtkContourFilter: isotet contours scalars";
@@ -41,18 +41,36 @@ std::string reason_against(const std::vector<std::uint8_t>& types, const std::st
            (curved && !why_not.empty() ? "; " + why_not : "");
 }
 
+namespace {
+
+/// The data set with `scalars` among its point arrays: a component of an array is in none.
+vtkSmartPointer<vtkDataSet> with_scalars(vtkDataSet* data, vtkDataArray* scalars) {
+    vtkPointData* const arrays = data->GetPointData();
+    for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+        if (arrays->GetAbstractArray(i) == scalars) return data;
+    auto more = vtkSmartPointer<vtkDataSet>::Take(data->NewInstance());
+    more->ShallowCopy(data);
+    more->GetPointData()->SetScalars(scalars);
+    return more;
+}
+
+} // namespace
+
 void contour_by_vtk(vtkDataSet* data, vtkDataArray* scalars, const Wishes& wishes, vtkPolyData* out) {
     const vtkIsotetContourFilter::Suspend suspend; // VTK's own, also where isotet takes its place
     vtkNew<vtkContourFilter> filter;
-    filter->SetInputData(data);
+    filter->SetInputData(with_scalars(data, scalars));
     constexpr int points = vtkDataObject::FIELD_ASSOCIATION_POINTS;
-    if (scalars->GetName()) filter->SetInputArrayToProcess(0, 0, 0, points, scalars->GetName());
+    const bool has_name = scalars->GetName() && *scalars->GetName();
+    if (has_name) filter->SetInputArrayToProcess(0, 0, 0, points, scalars->GetName());
     else filter->SetInputArrayToProcess(0, 0, 0, points, vtkDataSetAttributes::SCALARS);
     filter->SetNumberOfContours(static_cast<int>(wishes.isovalues.size()));
     for (std::size_t i = 0; i < wishes.isovalues.size(); ++i)
         filter->SetValue(static_cast<int>(i), wishes.isovalues[i]);
     filter->SetComputeNormals(wishes.normals);
-    filter->SetComputeScalars(wishes.scalars);
+    filter->SetComputeScalars(wishes.scalars && (has_name || !scalars->GetName()));
+    filter->SetGenerateTriangles(wishes.triangles);
+    filter->SetArrayComponent(wishes.component);
     if (wishes.points)
         filter->SetOutputPointsPrecision(*wishes.points == isotet::Precision::float32 ? vtkAlgorithm::SINGLE_PRECISION
                                                                                       : vtkAlgorithm::DOUBLE_PRECISION);

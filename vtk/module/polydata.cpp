@@ -68,25 +68,26 @@ vtkSmartPointer<vtkCellArray> triangles_of(const isotet::Surface& surface) {
     return cells;
 }
 
-/// The contoured scalars: the isovalue of each point, in the array's type where that holds fractions.
+/// The contoured scalars: the isovalue of each point, in the array's type.
 vtkSmartPointer<vtkDataArray> isovalues_of(const std::vector<isotet::Surface>& surfaces, const Wishes& wishes,
                                            vtkDataArray* scalars) {
-    const bool is_single = scalars->GetDataType() == VTK_FLOAT;
-    auto array = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(is_single ? VTK_FLOAT : VTK_DOUBLE));
-    array->SetName(scalars->GetName());
-    std::size_t count = 0;
-    for (const isotet::Surface& surface : surfaces) count += surface.vertex_count();
-    array->SetNumberOfTuples(static_cast<vtkIdType>(count));
-    std::size_t at = 0;
-    for (std::size_t i = 0; i < surfaces.size(); ++i) {
-        const double value = wishes.isovalues[i];
-        const std::size_t length = surfaces[i].vertex_count();
-        if (is_single)
-            std::fill_n(static_cast<float*>(array->GetVoidPointer(0)) + at, length, static_cast<float>(value));
-        else std::fill_n(static_cast<double*>(array->GetVoidPointer(0)) + at, length, value);
-        at += length;
+    std::vector<double> values;
+    for (std::size_t i = 0; i < surfaces.size(); ++i)
+        values.insert(values.end(), surfaces[i].vertex_count(), wishes.isovalues[i]);
+    const isotet::Array all = isotet::Array::own(std::move(values));
+    switch (scalars->GetDataType()) {
+    case VTK_FLOAT: return to_vtk(as_float32(all), scalars->GetName());
+    case VTK_DOUBLE: return to_vtk(all, scalars->GetName());
+    default: return rounded_to(scalars->GetDataType(), all, scalars->GetName());
     }
-    return array;
+}
+
+/// A carried point field: interpolated integers are rounded to the type that `like` has.
+vtkSmartPointer<vtkDataArray> carried(const isotet::Field& field, vtkDataArray* like) {
+    const int type = like ? like->GetDataType() : VTK_DOUBLE;
+    if (type == VTK_FLOAT || type == VTK_DOUBLE || field.values.type() != isotet::ScalarType::float64)
+        return to_vtk(field.values, field.name.c_str());
+    return rounded_to(type, field.values, field.name.c_str());
 }
 
 /// Vectors stay the active vectors, and so on.
@@ -108,9 +109,10 @@ void write_polydata(const std::vector<isotet::Surface>& surfaces, const Wishes& 
     out->SetPoints(points);
     out->SetPolys(triangles_of(surface));
     vtkPointData* const of_points = out->GetPointData();
-    if (wishes.scalars) of_points->SetScalars(isovalues_of(surfaces, wishes, scalars));
+    const bool is_component = scalars->GetName() && !*scalars->GetName(); // the first one, which VTK gives no array
+    if (wishes.scalars && !is_component) of_points->SetScalars(isovalues_of(surfaces, wishes, scalars));
     for (const isotet::Field& field : surface.point_fields)
-        of_points->AddArray(to_vtk(field.values, field.name.c_str()));
+        of_points->AddArray(carried(field, grid->GetPointData()->GetArray(field.name.c_str())));
     for (const isotet::Field& field : surface.cell_fields)
         out->GetCellData()->AddArray(to_vtk(field.values, field.name.c_str()));
     if (wishes.normals && isotet::are_of_vertices(surface.normals_kind))

@@ -2,8 +2,10 @@
 #include "vtkIsotetContour.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "vtkCellData.h"
@@ -23,6 +25,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnstructuredGrid.h"
 
+#include "arrays.hpp"
 #include "blocks.hpp"
 #include "fallback.hpp"
 #include "run.hpp"
@@ -118,6 +121,36 @@ std::vector<Leaf> LeavesOf(vtkDataObject* input, vtkDataObject* output)
 struct vtkIsotetContour::Internals
 {
   isotet_vtk::Blocks Blocks;
+
+  /// A component of an array, and which array it was copied from.
+  struct Component
+  {
+    vtkDataArray* From = nullptr;
+    vtkMTimeType Time = 0;
+    int Number = 0;
+    vtkSmartPointer<vtkDataArray> Array;
+  };
+  std::map<unsigned int, Component> Components; ///< of the blocks of the last execution
+
+  /// The array itself where it has one component.
+  vtkDataArray* ComponentOf(
+    unsigned int index, vtkDataArray* array, int number, std::map<unsigned int, Component>& kept)
+  {
+    if (array->GetNumberOfComponents() == 1)
+    {
+      return array;
+    }
+    Component component = this->Components[index];
+    if (component.From != array || component.Time != array->GetMTime() || component.Number != number)
+    {
+      const char* const of = array->GetName();
+      const std::string name = number == 0 ? "" : (of ? of : "") + ("_" + std::to_string(number));
+      component = { array, array->GetMTime(), number, isotet_vtk::component_of(array, number, name.c_str()) };
+    }
+    kept[index] = component;
+    return component.Array;
+  }
+
   std::set<std::string> Warned; ///< in the last execution: a slider does not repeat warnings
 };
 
@@ -176,6 +209,11 @@ void vtkIsotetContour::GenerateValues(int numContours, double range[2])
 void vtkIsotetContour::GenerateValues(int numContours, double rangeStart, double rangeEnd)
 {
   this->ContourValues->GenerateValues(numContours, rangeStart, rangeEnd);
+}
+
+void vtkIsotetContour::SetInputArray(const std::string& name)
+{
+  this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, name.c_str());
 }
 
 vtkMTimeType vtkIsotetContour::GetMTime()
@@ -291,8 +329,12 @@ int vtkIsotetContour::RequestData(
                                                                     : isotet::Precision::float64;
   }
 
+  wishes.triangles = this->GenerateTriangles;
+  wishes.component = this->ArrayComponent;
+
   vtkDataObject* const input = vtkDataObject::GetData(inputs[0], 0);
   Work work;
+  std::map<unsigned int, Internals::Component> components;
   for (const Leaf& leaf : LeavesOf(input, vtkDataObject::GetData(outputs, 0)))
   {
     if (leaf.Data->GetNumberOfCells() == 0)
@@ -314,10 +356,21 @@ int vtkIsotetContour::RequestData(
       }
       continue;
     }
-    const std::string reason = isotet_vtk::reason_against(leaf.Data, scalars);
+    if (this->ArrayComponent >= scalars->GetNumberOfComponents() && scalars->GetNumberOfComponents() > 1)
+    {
+      work.Error = "the array has " + std::to_string(scalars->GetNumberOfComponents()) +
+        " components, but ArrayComponent is " + std::to_string(this->ArrayComponent);
+      continue;
+    }
+    auto* const grid = vtkUnstructuredGrid::SafeDownCast(leaf.Data);
+    vtkDataArray* const one =
+      grid ? this->Internal->ComponentOf(leaf.Index, scalars, this->ArrayComponent, components) : scalars;
+    const std::string reason = this->GenerateTriangles
+      ? isotet_vtk::reason_against(leaf.Data, grid ? one : nullptr)
+      : "GenerateTriangles is off: vtkContourFilter contours, and makes polygons";
     if (reason.empty())
     {
-      work.Tasks.push_back({ leaf.Index, vtkUnstructuredGrid::SafeDownCast(leaf.Data), scalars, leaf.Out });
+      work.Tasks.push_back({ leaf.Index, grid, one, leaf.Out });
     }
     else
     {
@@ -325,6 +378,8 @@ int vtkIsotetContour::RequestData(
       work.Reasons.insert(reason);
     }
   }
+
+  this->Internal->Components = std::move(components);
 
   isotet_vtk::AlgorithmRun run(this, this->NumberOfThreads);
   const isotet_vtk::Ranks ranks(this->Controller);
@@ -381,6 +436,13 @@ void vtkIsotetContour::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ComputeNormals: " << this->ComputeNormals << "\n";
   os << indent << "ComputeScalars: " << this->ComputeScalars << "\n";
   os << indent << "OutputPointsPrecision: " << this->OutputPointsPrecision << "\n";
+  os << indent << "ArrayComponent: " << this->ArrayComponent << "\n";
+  os << indent << "GenerateTriangles: " << this->GenerateTriangles << "\n";
+  os << indent << "ComputeGradients: " << this->ComputeGradients << "\n";
+  os << indent << "UseScalarTree: " << this->UseScalarTree << "\n";
+  os << indent << "FastMode: " << this->FastMode << "\n";
+  os << indent << "ScalarTree: " << this->ScalarTree.GetPointer() << "\n";
+  os << indent << "Locator: " << this->Locator.GetPointer() << "\n";
   os << indent << "Tolerance: " << this->Tolerance << "\n";
   os << indent << "ExpectedSurfaces: " << this->ExpectedSurfaces << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";

@@ -15,19 +15,24 @@
  * triangles. Every rank must execute the filter, those without data, too. An error on one rank is one on all.
  *
  * What isotet does not contour is given to vtkContourFilter, with a warning that says why: data sets of other classes,
- * scalars with components, and cells that are neither linear 3D cells nor polyhedra, nor, with a Tolerance, curved ones.
+ * cells that are neither linear 3D cells nor polyhedra, nor, with a Tolerance, curved ones, and all where GenerateTriangles is
+ * off.
  *
  * Differs from vtkContourFilter: vertices are welded exactly; triangles are counter-clockwise, and normals point, towards
  * higher values; normals are gradients of the array; points without data (NaN) give no triangles; integer point
- * arrays become float64.
+ * arrays are rounded to the nearest integers. A component of an array is contoured in any data set.
  */
 #ifndef vtkIsotetContour_h
 #define vtkIsotetContour_h
 
 #include "vtkIsotetModule.h" // For export macro
+#include "vtkIncrementalPointLocator.h" // For a smart pointer
 #include "vtkPolyDataAlgorithm.h"
+#include "vtkScalarTree.h"   // For a smart pointer
+#include "vtkSmartPointer.h" // For members
 
 #include <memory> // For std::unique_ptr
+#include <string> // For arguments
 
 class vtkContourValues;
 class vtkMultiProcessController;
@@ -80,6 +85,48 @@ public:
   vtkSetClampMacro(OutputPointsPrecision, int, SINGLE_PRECISION, DEFAULT_PRECISION);
   vtkGetMacro(OutputPointsPrecision, int);
   ///@}
+
+  ///@{
+  /**
+   * Which component of an array with several is contoured. 0 by default; others have an array of isovalues of their own.
+   */
+  vtkSetClampMacro(ArrayComponent, int, 0, VTK_INT_MAX);
+  vtkGetMacro(ArrayComponent, int);
+  ///@}
+
+  ///@{
+  /**
+   * Triangles; off: vtkContourFilter contours, and makes polygons. On by default.
+   */
+  vtkSetMacro(GenerateTriangles, vtkTypeBool);
+  vtkGetMacro(GenerateTriangles, vtkTypeBool);
+  vtkBooleanMacro(GenerateTriangles, vtkTypeBool);
+  ///@}
+
+  ///@{
+  /**
+   * Kept for the sake of code that sets them, without effect.
+   */
+  vtkSetMacro(ComputeGradients, vtkTypeBool);
+  vtkGetMacro(ComputeGradients, vtkTypeBool);
+  vtkBooleanMacro(ComputeGradients, vtkTypeBool);
+  vtkSetMacro(UseScalarTree, vtkTypeBool);
+  vtkGetMacro(UseScalarTree, vtkTypeBool);
+  vtkBooleanMacro(UseScalarTree, vtkTypeBool);
+  vtkSetMacro(FastMode, bool);
+  vtkGetMacro(FastMode, bool);
+  vtkBooleanMacro(FastMode, bool);
+  vtkSetSmartPointerMacro(ScalarTree, vtkScalarTree);
+  vtkGetSmartPointerMacro(ScalarTree, vtkScalarTree);
+  vtkSetSmartPointerMacro(Locator, vtkIncrementalPointLocator);
+  vtkGetSmartPointerMacro(Locator, vtkIncrementalPointLocator);
+  void CreateDefaultLocator() {}
+  ///@}
+
+  /**
+   * The point array of that name.
+   */
+  void SetInputArray(const std::string& name);
 
   ///@{
   /**
@@ -162,6 +209,13 @@ protected:
   vtkTypeBool ComputeNormals = 1;
   vtkTypeBool ComputeScalars = 1;
   int OutputPointsPrecision = DEFAULT_PRECISION;
+  int ArrayComponent = 0;
+  vtkTypeBool GenerateTriangles = 1;
+  vtkTypeBool ComputeGradients = 0;
+  vtkTypeBool UseScalarTree = 0;
+  bool FastMode = false;
+  vtkSmartPointer<vtkScalarTree> ScalarTree;
+  vtkSmartPointer<vtkIncrementalPointLocator> Locator;
   double Tolerance = 0;
   int ExpectedSurfaces = 0;
   int NumberOfThreads = 0;
