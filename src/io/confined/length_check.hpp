@@ -8,10 +8,6 @@
 
 namespace isotet::io::confined {
 
-/// netCDF classic, 64-bit offset and 64-bit data files (Exodus): the file is as long as its header needs. Files of
-/// other kinds (HDF5, which checks itself) pass.
-Result<void> check_netcdf_length(const std::string& path);
-
 /// HDF5: the end of file that the superblock states is there.
 Result<void> check_hdf5_length(const std::string& path);
 

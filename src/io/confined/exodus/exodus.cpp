@@ -219,7 +219,6 @@ std::vector<BlockInfo> blocks_of(const ExodusFile& file) {
 
 /// Opens a part, once it is known to be whole.
 Result<ExodusFile> open_part(const std::string& part, const ReadOptions& options) {
-    if (auto complete = check_netcdf_length(part); !complete) return complete.error();
     if (auto complete = check_hdf5_length(part); !complete) return complete.error();
     if (auto names = check_hdf5_names(part, options.allow_outside); !names) return names.error();
     return ExodusFile::open(part);

@@ -2,13 +2,14 @@
 #include "io/confined/exodus/exodus_file.hpp"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <numeric>
 
 #include <fmt/core.h>
 
 #include "io/files/escape.hpp"
+#include "io/pieces/common_type.hpp"
+#include "io/pieces/loaded.hpp"
 
 namespace isotet::io::confined {
 namespace {
@@ -18,7 +19,7 @@ constexpr std::uint64_t max_blocks = std::uint64_t(1) << 20;
 
 /// Numbers of blocks or sets; from 1 on where the file does not tell them.
 std::vector<std::int64_t> ids_of(const NetcdfFile& file, const std::string& variable, std::uint64_t count) {
-    auto ids = file.read<std::int64_t>(variable);
+    auto ids = file.numbers<std::int64_t>(variable);
     if (ids && ids->size() == count) return *std::move(ids);
     std::vector<std::int64_t> from_1(count);
     std::iota(from_1.begin(), from_1.end(), std::int64_t{1});
@@ -27,7 +28,7 @@ std::vector<std::int64_t> ids_of(const NetcdfFile& file, const std::string& vari
 
 /// False for a block or set that the file marks as empty, for which it has no variables.
 bool has_entries(const NetcdfFile& file, const std::string& variable, std::size_t at) {
-    const auto status = file.read<std::int32_t>(variable);
+    const auto status = file.numbers<std::int32_t>(variable);
     return !status || at >= status->size() || (*status)[at] != 0;
 }
 
@@ -47,36 +48,36 @@ Error ExodusFile::failed(std::string_view what) const {
 
 Result<ExodusFile> ExodusFile::open(const std::string& path) {
     auto opened = NetcdfFile::open(path);
-    if (!opened || !opened->dimension("num_dim"))
-        return Error{ErrorCode::invalid_data, escaped(path) + ": not an Exodus file, or a broken one"};
+    if (!opened) return opened.error();
+    if (!(*opened)->dimension("num_dim")) return broken(path, "it is no Exodus file: it has no dimension \"num_dim\"");
     ExodusFile file(path, *std::move(opened));
     if (auto read = file.read_contents(); !read) return read.error();
     return file;
 }
 
 Result<void> ExodusFile::read_contents() {
-    auto word = file_.number_attribute({}, "floating_point_word_size");
-    if (!word) word = file_.number_attribute({}, "floating point word size"); // before version 2
+    auto word = file_->number_attribute({}, "floating_point_word_size");
+    if (!word) word = file_->number_attribute({}, "floating point word size"); // before version 2
     is_single_ = word == 4.0;
-    dimensions_ = file_.dimension("num_dim").value_or(0);
-    points_ = file_.dimension("num_nodes").value_or(0);
+    dimensions_ = file_->dimension("num_dim").value_or(0);
+    points_ = file_->dimension("num_nodes").value_or(0);
     if (dimensions_ < 1 || dimensions_ > 3) return failed(fmt::format("a grid of {} dimensions", dimensions_));
     if (points_ > max_plausible) return failed(fmt::format("a count of {}", points_));
     if (auto read = read_blocks(); !read) return read;
     if (auto read = read_sets(); !read) return read;
-    auto times = file_.read<double>("time_whole");
+    auto times = file_->numbers<double>("time_whole");
     if (!times || times->empty()) return {}; // variables that have never been written
     times_ = *std::move(times);
-    point_variables_ = file_.texts("name_nod_var");
-    cell_variables_ = file_.texts("name_elem_var");
+    point_variables_ = file_->texts("name_nod_var");
+    cell_variables_ = file_->texts("name_elem_var");
     return {};
 }
 
 Result<void> ExodusFile::read_blocks() {
-    const std::uint64_t count = file_.dimension("num_el_blk").value_or(0);
+    const std::uint64_t count = file_->dimension("num_el_blk").value_or(0);
     if (count > max_blocks) return failed(fmt::format("a list of {} element blocks", count));
-    const auto ids = ids_of(file_, "eb_prop1", count);
-    const auto names = file_.texts("eb_names");
+    const auto ids = ids_of(*file_, "eb_prop1", count);
+    const auto names = file_->texts("eb_names");
     for (std::size_t i = 0; i < count; ++i) {
         auto block = read_block(i + 1);
         if (!block) return block.error();
@@ -91,12 +92,12 @@ Result<void> ExodusFile::read_blocks() {
 Result<ExodusFile::Block> ExodusFile::read_block(std::size_t number) const {
     Block block;
     block.number = number;
-    if (!has_entries(file_, "eb_status", number - 1)) return block;
-    const auto of_block = [&](const char* name) { return file_.dimension(fmt::format("{}{}", name, number)); };
+    if (!has_entries(*file_, "eb_status", number - 1)) return block;
+    const auto of_block = [&](const char* name) { return file_->dimension(fmt::format("{}{}", name, number)); };
     const auto cells = of_block("num_el_in_blk");
     if (!cells) return failed(fmt::format("the number of elements of element block {}", number));
     for (const char* variable : {"connect", "facconn"})
-        if (const auto topology = file_.text_attribute(fmt::format("{}{}", variable, number), "elem_type"))
+        if (const auto topology = file_->text_attribute(fmt::format("{}{}", variable, number), "elem_type"))
             block.topology = upper_case(*topology);
     block.cells = *cells;
     block.faces = of_block("num_fac_per_el").value_or(0);
@@ -109,13 +110,13 @@ Result<ExodusFile::Block> ExodusFile::read_block(std::size_t number) const {
 }
 
 Result<void> ExodusFile::read_sets() {
-    const std::uint64_t count = file_.dimension("num_elem_sets").value_or(0);
+    const std::uint64_t count = file_->dimension("num_elem_sets").value_or(0);
     if (count > max_blocks) return failed(fmt::format("a list of {} element sets", count));
-    const auto ids = ids_of(file_, "els_prop1", count);
-    const auto names = file_.texts("els_names");
+    const auto ids = ids_of(*file_, "els_prop1", count);
+    const auto names = file_->texts("els_names");
     for (std::size_t i = 0; i < count; ++i) {
-        const bool filled = has_entries(file_, "els_status", i);
-        const auto cells = filled ? file_.dimension(fmt::format("num_ele_els{}", i + 1)) : std::optional<std::uint64_t>(0);
+        const bool filled = has_entries(*file_, "els_status", i);
+        const auto cells = filled ? file_->dimension(fmt::format("num_ele_els{}", i + 1)) : std::optional<std::uint64_t>(0);
         if (!cells || *cells > max_plausible) return failed(fmt::format("element set {}", ids[i]));
         sets_.push_back({ids[i], i + 1,
                          i < names.size() && !names[i].empty() ? names[i] : fmt::format("set {}", ids[i]), *cells});
@@ -125,7 +126,7 @@ Result<void> ExodusFile::read_sets() {
 
 Result<std::vector<std::int64_t>> ExodusFile::cells_of(const Set& set) const {
     if (set.cells == 0) return std::vector<std::int64_t>();
-    auto cells = file_.read<std::int64_t>(fmt::format("elem_els{}", set.number));
+    auto cells = file_->numbers<std::int64_t>(fmt::format("elem_els{}", set.number));
     if (!cells || cells->size() != set.cells) return failed(fmt::format("the elements of set {}", set.id));
     for (std::int64_t& cell : *cells) {
         if (cell < 1 || static_cast<std::uint64_t>(cell) > cells_)
@@ -149,18 +150,30 @@ void ExodusFile::choose(const std::vector<bool>& chosen) {
     blocks_ = std::move(kept);
 }
 
+std::optional<Array> ExodusFile::rows(const std::string& variable, std::uint64_t first, std::uint64_t size) const {
+    const auto shape = file_->shape(variable);
+    const bool is_flat = shape && shape->size() == 1; // one place is one value
+    auto found = file_->rows(variable, is_flat ? 0 : first, is_flat ? size : 1);
+    if (!found || found->size() != size) return std::nullopt;
+    if (found->type() == type()) return *std::move(found);
+    std::vector<double> doubles(size);
+    std::vector<float> singles(is_single_ ? size : 0);
+    if (!is_single_) {
+        convert_scalars(*found, ScalarType::float64, reinterpret_cast<std::byte*>(doubles.data()));
+        return Array::own(std::move(doubles));
+    }
+    convert_scalars(*found, ScalarType::float32, reinterpret_cast<std::byte*>(singles.data()));
+    return Array::own(std::move(singles));
+}
+
 template <class T>
 Result<Array> ExodusFile::read_coordinates() const {
     std::vector<T> places(3 * points_, T(0));
-    std::vector<T> along(points_);
-    const bool together = file_.has("coord"); // in files of before version 2.02
+    const bool together = file_->has("coord"); // in files of before version 2.02
     for (std::uint64_t axis = 0; axis < dimensions_ && points_ > 0; ++axis) {
-        const std::string name = together ? "coord" : std::string("coord") + "xyz"[axis];
-        const std::array<std::uint64_t, 2> all{dimensions_, points_}, start{axis, 0}, count{1, points_};
-        const auto rank = [&](const auto& box) { return std::span(box).subspan(together ? 0 : 1); };
-        if (!file_.has_shape(name, rank(all)) || !file_.read(name, rank(start), rank(count), along.data()))
-            return failed("coordinates");
-        for (std::uint64_t i = 0; i < points_; ++i) places[3 * i + axis] = along[i];
+        const auto along = rows(together ? "coord" : std::string("coord") + "xyz"[axis], axis, points_);
+        if (!along) return failed("coordinates");
+        for (std::uint64_t i = 0; i < points_; ++i) places[3 * i + axis] = along->as<T>()[i];
     }
     return Array::own(std::move(places), 3);
 }
@@ -169,52 +182,41 @@ Result<Array> ExodusFile::coordinates() { return is_single_ ? read_coordinates<f
 
 Result<std::vector<std::int64_t>> ExodusFile::connectivity(const Block& block) {
     if (block.cells == 0 || block.corners == 0) return std::vector<std::int64_t>();
-    const std::string name = fmt::format("connect{}", block.number);
-    std::optional<std::vector<std::int64_t>> nodes;
-    if (file_.has_shape(name, std::array{block.cells, block.corners})) nodes = file_.read<std::int64_t>(name);
-    if (!nodes) return failed(fmt::format("the nodes of element block {}", block.id));
+    auto nodes = file_->numbers<std::int64_t>(fmt::format("connect{}", block.number));
+    if (!nodes || nodes->size() != block.cells * block.corners)
+        return failed(fmt::format("the nodes of element block {}", block.id));
     return *std::move(nodes);
 }
 
-template <class T>
-Result<Array> ExodusFile::read_point_variable(std::size_t variable, std::size_t step) const {
-    std::vector<T> values(points_);
-    const std::uint64_t steps = times_.size();
-    const std::string own = fmt::format("vals_nod_var{}", variable + 1);
-    bool good = points_ == 0;
-    if (file_.has(own)) {
-        good = good || (file_.has_shape(own, std::array{steps, points_}) &&
-                        file_.read(own, std::array<std::uint64_t, 2>{step, 0}, std::array<std::uint64_t, 2>{1, points_},
-                                   values.data()));
-    } else if (const std::uint64_t count = point_variables_.size();
-               file_.has_shape("vals_nod_var", std::array{steps, count, points_})) { // as "coord"
-        good = good || file_.read("vals_nod_var", std::array<std::uint64_t, 3>{step, variable, 0},
-                                  std::array<std::uint64_t, 3>{1, 1, points_}, values.data());
-    }
-    if (!good) return failed(fmt::format("nodal variable \"{}\"", escaped(point_variables_[variable])));
-    return Array::own(std::move(values));
-}
-
 Result<Array> ExodusFile::point_variable(std::size_t variable, std::size_t step) {
-    return is_single_ ? read_point_variable<float>(variable, step) : read_point_variable<double>(variable, step);
+    const std::string own = fmt::format("vals_nod_var{}", variable + 1);
+    const std::uint64_t all = points_ * point_variables_.size();
+    if (file_->has(own)) {
+        if (auto values = rows(own, step, points_)) return *std::move(values);
+    } else if (const auto values = rows("vals_nod_var", step, all)) { // of all variables, as "coord"
+        const auto* const first = static_cast<const std::byte*>(values->data()) + variable * points_ * size_of(type());
+        return Array(type(), first, points_, 1, values->owner().lock());
+    }
+    return failed(fmt::format("nodal variable \"{}\"", escaped(point_variables_[variable])));
 }
 
 template <class T>
 Result<Array> ExodusFile::read_cell_variable(std::size_t variable, std::size_t step,
                                              std::size_t& blocks_without) const {
     std::vector<T> values(cells_, std::numeric_limits<T>::quiet_NaN());
-    const std::uint64_t variables = cell_variables_.size();
-    const auto table = file_.read<std::int32_t>("elem_var_tab");
+    const auto table = file_->numbers<std::int32_t>("elem_var_tab");
     std::uint64_t first = 0;
     for (const Block& block : blocks_) {
         if (block.cells == 0) continue;
         const std::string name = fmt::format("vals_elem_var{}eb{}", variable + 1, block.number);
-        const std::size_t at = (block.number - 1) * variables + variable;
-        if (table && at < table->size() ? (*table)[at] == 0 : !file_.has(name)) ++blocks_without;
-        else if (!file_.has_shape(name, std::array<std::uint64_t, 2>{times_.size(), block.cells}) ||
-                 !file_.read(name, std::array<std::uint64_t, 2>{step, 0}, std::array<std::uint64_t, 2>{1, block.cells},
-                             values.data() + first))
-            return failed(fmt::format("element variable \"{}\"", escaped(cell_variables_[variable])));
+        const std::size_t at = (block.number - 1) * cell_variables_.size() + variable;
+        if (table && at < table->size() ? (*table)[at] == 0 : !file_->has(name)) {
+            ++blocks_without;
+        } else {
+            const auto own = rows(name, step, block.cells);
+            if (!own) return failed(fmt::format("element variable \"{}\"", escaped(cell_variables_[variable])));
+            std::ranges::copy(own->as<T>(), values.begin() + static_cast<std::ptrdiff_t>(first));
+        }
         first += block.cells;
     }
     return Array::own(std::move(values));
@@ -227,7 +229,7 @@ Result<Array> ExodusFile::cell_variable(std::size_t variable, std::size_t step, 
 
 /// A node or element has its place as its number where the file has no map.
 Result<Array> ExodusFile::id_map(const std::string& map, std::uint64_t count) const {
-    auto ids = ids_of(file_, map, count);
+    auto ids = ids_of(*file_, map, count);
     return Array::own(std::move(ids));
 }
 

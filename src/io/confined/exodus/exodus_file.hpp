@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,7 +12,7 @@
 #include <isotet/array.hpp>
 #include <isotet/result.hpp>
 
-#include "io/confined/exodus/netcdf_file.hpp"
+#include "io/confined/netcdf/netcdf_file.hpp"
 
 namespace isotet::io::confined {
 
@@ -74,7 +75,7 @@ public:
     Result<Array> cell_ids();
 
 private:
-    ExodusFile(std::string path, NetcdfFile file) : path_(std::move(path)), file_(std::move(file)) {}
+    ExodusFile(std::string path, std::unique_ptr<NetcdfFile> file) : path_(std::move(path)), file_(std::move(file)) {}
     Error failed(std::string_view what) const;
     Result<void> read_contents();
     Result<void> read_blocks();
@@ -82,16 +83,16 @@ private:
     Result<void> read_sets();
     Result<Ragged> read_ragged(const std::string& numbers, const std::string& counts, std::uint64_t count,
                                std::uint64_t size, const std::string& owner) const;
+    /// Some rows of a variable, in the type of the file's coordinates and variables, if it has so many values.
+    std::optional<Array> rows(const std::string& variable, std::uint64_t first, std::uint64_t size) const;
     template <class T>
     Result<Array> read_coordinates() const;
-    template <class T>
-    Result<Array> read_point_variable(std::size_t variable, std::size_t step) const;
     template <class T>
     Result<Array> read_cell_variable(std::size_t variable, std::size_t step, std::size_t& blocks_without) const;
     Result<Array> id_map(const std::string& map, std::uint64_t count) const;
 
     std::string path_;
-    NetcdfFile file_;
+    std::unique_ptr<NetcdfFile> file_;
     bool is_single_ = false;
     std::uint64_t dimensions_ = 3, points_ = 0, cells_ = 0; ///< cells of the chosen blocks
     std::vector<Block> blocks_;
