@@ -8,7 +8,6 @@ from support import *
 NAME = "pieces"
 VALUES = (0.3, 0.33)
 COUNT = 3
-FILTERS = {"plugin": "IsotetContour", "python": "IsotetContourPython"}
 
 
 def data():
@@ -48,8 +47,6 @@ def whole_of(value):
 
 def filter_of(kind, source):
     """The filter of the plugin in C++ ("plugin") or Python ("python")."""
-    if not hasattr(simple, FILTERS[kind]):
+    if not hasattr(simple, "IsotetContour"):
         load() if kind == "plugin" else simple.LoadPlugin(os.environ["ISOTET_PLUGIN_PYTHON"], remote=True, ns=vars(simple))
-    if kind == "plugin":
-        return contour(source, ComputeNormals=0, ExpectedSurfaces=100)
-    return simple.IsotetContourPython(Input=source, ContourBy=["POINTS", "r"], Isosurfaces=[0.3], ComputeNormals=0)
+    return contour(source, ComputeNormals=0, ExpectedSurfaces=100)

@@ -5,7 +5,7 @@ from support import *
 
 simple.LoadPlugin(os.environ["ISOTET_PLUGIN_PYTHON"], remote=True, ns=vars(simple))
 reader = simple.XMLPartitionedUnstructuredGridReader(FileName=[os.path.join(scratch, "pieces.pvtu")])
-filter = simple.IsotetContourPython(Input=reader, ContourBy=["POINTS", "r"], Isosurfaces=[0.3], ComputeNormals=0)
+filter = simple.IsotetContour(Input=reader, ContourBy=["POINTS", "r"], Isosurfaces=[0.3], ComputeNormals=0)
 out = os.path.join(scratch, f"python-{ranks}.pvtp")
 simple.servermanager.writers.XMLPPolyDataWriter(Input=filter, FileName=out, DataMode="Binary").UpdatePipeline()
 
@@ -19,6 +19,10 @@ surface = whole.GetOutput()
 assert surface.GetNumberOfPolys() > 0 and open_edges(surface) == 0, open_edges(surface)
 assert "r" in names(surface.GetPointData())
 
+filter.UpdatePropertyInformation()
+assert filter.GetProperty("LastUpdate")[0] == 3
+filter.OutputPointsPrecision = "Double"
+filter.NumberOfThreads = 1
 filter.Isosurfaces = [0.31, 0.33]
 filter.UpdatePipeline()
 assert filter.GetDataInformation().GetNumberOfCells() > surface.GetNumberOfPolys()

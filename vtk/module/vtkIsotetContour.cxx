@@ -65,6 +65,10 @@ std::string WhyThereIsNone(vtkAlgorithm* algorithm, vtkDataSet* data)
   {
     return "there is no array to process: the point data have no active scalars";
   }
+  if (!*name)
+  {
+    return "no array was chosen";
+  }
   std::string text = "there is no array to process: no point array is called '" + std::string(name) + "'";
   if (data->GetCellData()->HasArray(name))
   {
