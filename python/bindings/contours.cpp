@@ -3,11 +3,14 @@
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/string_view.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <iterator>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -138,6 +141,55 @@ Result<Extracted> extract_nothing(Contour& session, const Run& run) {
     return out;
 }
 
+Result<Extracted> extract_joined(Contour& session, const std::vector<double>& isovalues, const Run& run) {
+    if (isovalues.empty()) return extract_nothing(session, run);
+    Result<ContourResult> result = session.extract(isovalues, run);
+    if (!result) return result.error();
+    Extracted out;
+    for (const Extraction& extraction : result->surfaces)
+        out.vertex_counts.push_back(extraction.surface.vertex_count());
+    out.surface = join_all(std::move(result->surfaces), isovalues);
+    out.how = *std::move(result);
+    return out;
+}
+
+/// A session, and what it is set to before it extracts.
+struct BlockIn {
+    Contour* session;
+    ContourInput input;
+    ContourOptions options;
+};
+
+struct BlockOut {
+    ContourUpdate update;
+    Extracted extracted;
+};
+
+/// The same run with the progress of one part of several.
+Run run_of_part(const Run& run, std::size_t part, std::size_t parts) {
+    Run own = run;
+    if (run.progress.report)
+        own.progress.report = [&run, part, parts](std::string_view step, double fraction) {
+            run.progress.report(step, (static_cast<double>(part) + fraction) / static_cast<double>(parts));
+        };
+    return own;
+}
+
+Result<std::vector<BlockOut>> contour_blocks(std::vector<BlockIn>& blocks, const std::vector<double>& isovalues,
+                                             const Run& run) {
+    std::vector<BlockOut> out;
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+        const Run own = run_of_part(run, i, blocks.size());
+        BlockIn& block = blocks[i];
+        const Result<ContourUpdate> update = block.session->set(std::move(block.input), block.options, own);
+        if (!update) return update.error();
+        Result<Extracted> extracted = extract_joined(*block.session, isovalues, own);
+        if (!extracted) return extracted.error();
+        out.push_back({*update, *std::move(extracted)});
+    }
+    return out;
+}
+
 nb::tuple extracted_out(Extracted&& extracted) {
     nb::dict how;
     how["method"] = word_of(extracted.how.method, words_of_method);
@@ -198,17 +250,7 @@ void add_sessions(nb::module_& module) {
         .def(
             "extract",
             [](Contour& self, const std::vector<double>& isovalues, const CallOptions& how) {
-                return extracted_out(call(how, [&](const Run& run) -> Result<Extracted> {
-                    if (isovalues.empty()) return extract_nothing(self, run);
-                    Result<ContourResult> result = self.extract(isovalues, run);
-                    if (!result) return result.error();
-                    Extracted out;
-                    for (const Extraction& extraction : result->surfaces)
-                        out.vertex_counts.push_back(extraction.surface.vertex_count());
-                    out.surface = join_all(std::move(result->surfaces), isovalues);
-                    out.how = *std::move(result);
-                    return out;
-                }));
+                return extracted_out(call(how, [&](const Run& run) { return extract_joined(self, isovalues, run); }));
             },
             "isovalues"_a, "call"_a)
         .def(
@@ -236,6 +278,22 @@ void add_sessions(nb::module_& module) {
                 return word_of(self.method(isovalues), words_of_method);
             },
             "isovalues"_a);
+}
+
+void add_contour_blocks(nb::module_& module) {
+    using Block = std::tuple<Contour*, const Grid*, const PointField*, FieldsIn, FieldsIn, const ContourOptions*>;
+    module.def(
+        "contour_blocks",
+        [](const std::vector<Block>& blocks, const std::vector<double>& isovalues, const CallOptions& how) {
+            std::vector<BlockIn> in;
+            for (const auto& [session, grid, field, fields, cell_fields, options] : blocks)
+                in.push_back({session, contour_input(*grid, *field, fields, cell_fields), *options});
+            nb::list out;
+            for (BlockOut& block : call(how, [&](const Run& run) { return contour_blocks(in, isovalues, run); }))
+                out.append(nb::make_tuple(word_of(block.update, words_of_update), extracted_out(std::move(block.extracted))));
+            return out;
+        },
+        "blocks"_a, "isovalues"_a, "call"_a);
 }
 
 nb::dict solid_out(const Solid& solid, double grid_volume) {
@@ -341,6 +399,7 @@ void add_packed_grids(nb::module_& module) {
 
 void add_contours(nb::module_& module) {
     add_sessions(module);
+    add_contour_blocks(module);
     add_solids(module);
     add_packed_grids(module);
 }

@@ -24,10 +24,11 @@ class Session:
     def __init__(self):
         self._session: _isotet.Contour | None = None
         self._cells: _isotet.Cells | None = None
-        self._times: tuple[int, ...] = ()
-        self._others = 0  # cells that isotet does not contour
+        self.times: tuple[int, ...] = ()  # of the cells
+        self.others = 0  # cells that isotet does not contour
         self.update = "grid"  # what the last set() found to differ
         self.how: dict[str, Any] = {}  # how the last surface was made
+        self._is_new = True
 
     @staticmethod
     def times_of(grid) -> tuple[int, ...]:
@@ -37,25 +38,14 @@ class Session:
         parts += (grid.GetCellGhostArray(),)
         return tuple(part.GetMTime() for part in parts if part is not None)
 
-    def contour(self, grid, scalars: Scalars, isovalues: list[float], *, threads: int = 0, progress: Progress | None = None,
-                **how) -> Surface:  # fmt: skip
-        self.set(grid, scalars, threads=threads, progress=progress, **how)
-        assert self._session is not None
-        surface, self.how = self._session.extract(isovalues, call_options(threads, progress))
-        return Surface._of(surface, self.how)
-
-    def _look_at(self, grid) -> None:
-        times = self.times_of(grid)
-        if self._cells is None or times != self._times:  # equal cells in other arrays: the session finds it out
-            self._cells, self._others, self._times = cells_of(grid), len(other_cells(grid)), times
-
-    def others_of(self, grid) -> int:
-        """How many cells of the grid isotet does not contour."""
-        self._look_at(grid)
-        return self._others
+    def look_at(self, grid, times: tuple[int, ...] | None = None) -> None:
+        """Takes its cells, before anything else. `times`: what times_of() gives, if it is known."""
+        times = times or self.times_of(grid)
+        if self._cells is None or times != self.times:  # equal cells in other arrays: the session finds it out
+            self._cells, self.others, self.times = cells_of(grid), len(other_cells(grid)), times
 
     def _input(self, grid, scalars: Scalars, numbers: np.ndarray | None = None, points=None) -> tuple[_isotet.Grid, _isotet.PointField]:
-        self._look_at(grid)
+        assert self._cells is not None
         field = _isotet.PointField(scalars.name or scalars.array.GetName() or "scalars", scalars.values)
         places = points_of(grid)
         return _isotet.Grid(places if points is None else places.astype(points, copy=False), self._cells, [], [], numbers), field
@@ -63,24 +53,29 @@ class Session:
     def survey(self, grid, scalars: Scalars, fields: list[tuple[str, np.ndarray]], points=None) -> bytes:
         return _isotet.survey(*self._input(grid, scalars, points=points), fields, False, call_options(0, None))
 
-    def set(self, grid, scalars: Scalars, *, normals: bool, surfaces: int, fields: list[tuple[str, np.ndarray]],
-            cell_fields: list[tuple[str, np.ndarray]], precision: str = "float32", numbers: np.ndarray | None = None,
-            frame: _isotet.Frame | None = None, points=None, threads: int = 0,
-            progress: Progress | None = None, source_cells: bool = False,
-            tolerances: tuple[float | None, float | None, float, float] = (None, None, 0.0, 0.0)) -> None:  # fmt: skip
+    def inputs(self, grid, scalars: Scalars, *, normals: bool, surfaces: int, fields: list[tuple[str, np.ndarray]],
+               cell_fields: list[tuple[str, np.ndarray]], precision: str = "float32", numbers: np.ndarray | None = None,
+               frame: _isotet.Frame | None = None, points=None, source_cells: bool = False,
+               tolerances: tuple[float | None, float | None, float, float] = (None, None, 0.0, 0.0)) -> tuple[Any, ...]:  # fmt: skip
+        """What contour_all() sets the session to; it is made here if there is none."""
         mine, field = self._input(grid, scalars, numbers, points)
         kind = "gradient" if normals else "none"
         options = _isotet.ContourOptions(kind, False, source_cells, "merge", precision, None, surfaces, False, frame, *tolerances,
                                          pack_all=True)  # fmt: skip
-        call = call_options(threads, progress)
+        self._is_new = self._session is None
         if self._session is None:
-            self._session, self.update = _isotet.Contour(mine, field, fields, cell_fields, options, call), "grid"
-        else:
-            self.update = self._session.set(mine, field, fields, cell_fields, options, call)
+            self._session = _isotet.Contour(mine, field, fields, cell_fields, options, call_options(0, None))
+        return self._session, mine, field, fields, cell_fields, options
 
-    def prepare(self) -> None:
-        assert self._session is not None
-        self._session.prepare(call_options(0, None))
+    def took(self, update: str, made: tuple[_isotet.Surface, dict[str, Any]]) -> Surface:
+        self.update = "grid" if self._is_new else update
+        self.how = made[1]
+        return Surface._of(*made)
+
+    def pack(self, grid, scalars: Scalars, **how) -> None:
+        session, *inputs = self.inputs(grid, scalars, **how)
+        session.set(*inputs, call_options(0, None))
+        session.prepare(call_options(0, None))
 
     @property
     def report(self) -> dict[str, Any]:
@@ -100,6 +95,22 @@ class Session:
 def says_nothing_to_contour(error: ValueError) -> bool:
     """Whether the library refused a grid for want of cells that it contours: of polyhedra without faces only it knows."""
     return "no cell that can be contoured" in str(error)
+
+
+def contour_all(blocks: list[tuple[Session, dict[str, Any]]], isovalues: list[float], threads: int = 0,
+                progress: Progress | None = None) -> list[Surface | None]:  # fmt: skip
+    """Surfaces of sessions, set to what Session.inputs() takes, in one call of the library; None where there is no cell to
+    contour."""
+    try:
+        inputs = [session.inputs(**how) for session, how in blocks]
+        made = _isotet.contour_blocks(inputs, isovalues, call_options(threads, progress))
+    except ValueError as error:
+        if not says_nothing_to_contour(error):
+            raise
+        if len(blocks) == 1:
+            return [None]
+        return [surface for block in blocks for surface in contour_all([block], isovalues, threads, progress)]
+    return [session.took(*one) for (session, _), one in zip(blocks, made, strict=True)]
 
 
 def levels(lower: float, upper: float, count: int) -> list[float]:

@@ -21,7 +21,7 @@ from ._grid import Grid, Solids
 from ._surface import Surface, parts
 from ._vtk_data import Scalars, arrays_of, cells_of, fill, points_of, scalars_of, some_cells, other_cells, surface_of, to_polydata
 from ._vtk_fallback import REASON, Wishes, append, append_other_cells, contour_by_vtk
-from ._vtk_session import Session, finish, levels, says_nothing_to_contour
+from ._vtk_session import Session, contour_all, finish, levels
 
 _STRUCTURED = (pyvista.StructuredGrid, pyvista.ExplicitStructuredGrid, pyvista.RectilinearGrid, pyvista.ImageData)
 MANY = 1 << 20  # surfaces that a slider may ask for
@@ -183,27 +183,25 @@ class GridAccessor:
     def _extract(self, scalars: Scalars, values: list[float], out, compute_scalars: bool, *, normals: bool, **how) -> None:
         """What isotet contours of the grid."""
         grid, cells = self._grid, self._unstructured()
-        if self._session.others_of(cells) == cells.n_cells:
+        self._session.look_at(cells)
+        if self._session.others == cells.n_cells:
             return
         fields, cell_fields = arrays_of(grid.GetPointData(), scalars.replaced), arrays_of(grid.GetCellData())
         if normals:
             fields = [named for named in fields if named[0] != "Normals"]
-        try:
-            surface = self._session.contour(cells, scalars, values, normals=normals, surfaces=self._expected, fields=fields,
-                                            cell_fields=cell_fields, **how)  # fmt: skip
-        except ValueError as error:
-            if not says_nothing_to_contour(error):
-                raise
+        how.update(grid=cells, scalars=scalars, normals=normals, surfaces=self._expected, fields=fields, cell_fields=cell_fields)
+        (surface,) = contour_all([(self._session, how)], values)
+        if surface is None:
             self._warn_of_cells("leaves out", cells.n_cells)
             return
         hidden = int(np.count_nonzero(cells.celltypes == pyvista.CellType.EMPTY_CELL)) if surface._how["cells_left_out"] else 0
-        self._warn_of_cells("leaves out", surface._how["cells_left_out"] - self._session.others_of(cells) - hidden)
+        self._warn_of_cells("leaves out", surface._how["cells_left_out"] - self._session.others - hidden)
         finish(surface, values, scalars, fields, compute_scalars, any(name == "isovalue" for name, _ in cell_fields), out)
 
     def _add_others(self, wishes: Wishes, scalars: Scalars, of_cells: bool, out) -> None:
         """What VTK contours of it."""
         cells = self._unstructured()
-        others = self._session.others_of(cells)
+        others = self._session.others
         if others and others == cells.n_cells:
             append(contour_by_vtk(self._grid, scalars, of_cells, wishes), out)
         elif others:
@@ -241,7 +239,7 @@ class GridAccessor:
         field = _isotet.plane_field(points_of(cells), (0.0, 0.0, 0.0), direction, offset, call_options(0, None))
         heights = numpy_to_vtk(field.values)
         self._extract(Scalars("", heights, field.values), [offset], out, False, normals=False)
-        if others := self._session.others_of(cells):
+        if others := self._session.others:
             flat = grid if others == cells.n_cells else pyvista.wrap(some_cells(grid, other_cells(grid)))
             append(flat.slice(direction, origin=point), out)
             self._warn_of_cells("leaves to VTK", others)
@@ -294,8 +292,8 @@ class GridAccessor:
         Cell arrays and normals may come later."""
         self._expected = MANY
         chosen, _ = self._scalars(scalars, preference)
-        self._session.set(self._unstructured(), chosen, normals=compute_normals, surfaces=MANY, fields=[], cell_fields=[])
-        self._session.prepare()
+        self._session.look_at(self._unstructured())
+        self._session.pack(self._unstructured(), chosen, normals=compute_normals, surfaces=MANY, fields=[], cell_fields=[])
 
     @property
     def report(self) -> dict[str, Any]:

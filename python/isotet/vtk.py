@@ -21,10 +21,11 @@ from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm, vtkDemandDrivenPipe
 from . import _isotet
 from ._polygons import polygons_of
 from ._ranks import Ranks
+from ._surface import Surface
 from ._vtk_data import Scalars, arrays_of, grid_of, scalars_of, to_polydata
 from ._vtk_fallback import REASON, Wishes, append, append_other_cells, contour_by_vtk
 from ._vtk_properties import ContourProperties
-from ._vtk_session import Session, finish, says_nothing_to_contour
+from ._vtk_session import Session, contour_all, finish
 
 __all__ = ["IsotetContour", "grid_of", "to_polydata"]
 
@@ -229,15 +230,10 @@ class IsotetContour(ContourProperties):
         else:
             warnings.warn(f"IsotetContour: {text}", stacklevel=2)
 
-    def _report(self, part: int, parts: int):
-        """For the progress of one block of several."""
-
-        def report(step: str, fraction: float) -> None:
-            self.UpdateProgress(max(self.GetProgress(), (part + fraction) / parts))  # each step begins at 0
-            if self.GetAbortExecute():
-                raise _Aborted
-
-        return report
+    def _report(self, step: str, fraction: float) -> None:
+        self.UpdateProgress(max(self.GetProgress(), fraction))  # each step begins at 0
+        if self.GetAbortExecute():
+            raise _Aborted
 
     def _missing(self, grid) -> ValueError:
         name = self.GetInputArrayInformation(0).Get(vtkDataObject.FIELD_NAME())
@@ -253,12 +249,15 @@ class IsotetContour(ContourProperties):
         Sessions of blocks that are gone go, too."""
         before = dict(self._sessions)
         matched: dict[int, Session] = {}
-        numbers = {session._times: number for number, session in before.items()}
+        numbers = {session.times: number for number, session in before.items()}
+        times = {block.number: Session.times_of(block.grid) for block in blocks}
         for block in blocks:
-            number = numbers.get(Session.times_of(block.grid))
+            number = numbers.get(times[block.number])
             if number in before:
                 matched[block.number] = before.pop(number)
         self._sessions = {block.number: matched.get(block.number) or before.pop(block.number, None) or Session() for block in blocks}
+        for block in blocks:
+            self._sessions[block.number].look_at(block.grid, times[block.number])
 
     def _blocks_of(self, data, out) -> tuple[list[_Block], Exception | None]:
         """The data sets that have the array; of composite data others stay empty. And what to say if none has it."""
@@ -339,36 +338,43 @@ class IsotetContour(ContourProperties):
         return (np.float64 if wanted == np.float64 else None), wanted
 
     def _has_own_cells(self, block: _Block) -> bool:
-        return self._sessions[block.number].others_of(block.grid) < block.grid.GetNumberOfCells()
+        return self._sessions[block.number].others < block.grid.GetNumberOfCells()
 
-    def _contour(self, block: _Block, framed: bool, numbered: bool, progress) -> None:
-        if self._has_own_cells(block):
-            try:
-                self._contour_own(block, framed, numbered, progress)
-            except ValueError as error:
-                if not says_nothing_to_contour(error):
-                    raise
-        if self._sessions[block.number].others_of(block.grid):
-            count = append_other_cells(block.grid, block.scalars, block.of_cells, self._wishes(), block.out)
-            self._warn(f"{count} of {block.grid.GetNumberOfCells()} cells are contoured by vtkContourFilter: {REASON}")
-
-    def _contour_own(self, block: _Block, framed: bool, numbered: bool, progress) -> None:
-        computed, wanted = self._points(block.grid)
+    def _how(self, block: _Block, numbered: bool) -> dict[str, Any]:
+        """What the session of a block is set to."""
+        computed, _ = self._points(block.grid)
         precision, frame, numbers = "float64" if computed else self._precision, None, None
+        framed = self._framed is not None
         if framed:
             frame = self._frame
             precision = precision if frame is not None else "float64"  # fits where types differ, but for one rounding
             numbers = vtk_to_numpy(block.numbers) if numbered else None
-        normals, isovalues = self.GetComputeNormals() != 0, self._values
-        fields, cell_fields = block.fields(normals), arrays_of(block.grid.GetCellData())
-        surface = self._sessions[block.number].contour(
-            block.grid, block.scalars, isovalues, normals=normals, surfaces=self._expected, fields=fields,
-            cell_fields=cell_fields, precision=precision, numbers=numbers, frame=frame, points=computed,
-            source_cells=not self.GetGenerateTriangles(), threads=self._threads, progress=progress,
-            tolerances=(None, None if framed else self._tolerance or None, 0.0, 0.0))  # fmt: skip
-        own = any(name == "isovalue" for name, _ in cell_fields)
+        normals = self.GetComputeNormals() != 0
+        return {"grid": block.grid, "scalars": block.scalars, "normals": normals, "surfaces": self._expected,
+                "fields": block.fields(normals), "cell_fields": arrays_of(block.grid.GetCellData()), "precision": precision,
+                "numbers": numbers, "frame": frame, "points": computed, "source_cells": not self.GetGenerateTriangles(),
+                "tolerances": (None, None if framed else self._tolerance or None, 0.0, 0.0)}  # fmt: skip
+
+    def _contour(self, blocks: list[_Block], numbered: bool) -> None:
+        """What isotet contours of the blocks."""
+        hows = [self._how(block, numbered) for block in blocks]
+        surfaces = contour_all([(self._sessions[block.number], how) for block, how in zip(blocks, hows, strict=True)],
+                               self._values, self._threads, self._report)  # fmt: skip
+        for block, how, surface in zip(blocks, hows, surfaces, strict=True):
+            if surface is not None:
+                self._finish(block, how, surface)
+
+    def _finish(self, block: _Block, how: dict[str, Any], surface: Surface) -> None:
+        own = any(name == "isovalue" for name, _ in how["cell_fields"])
         polygons = None if self.GetGenerateTriangles() else polygons_of(surface.triangles, surface.source_cells)
-        finish(surface, isovalues, block.scalars, fields, bool(self.GetComputeScalars()), own, block.out, wanted, polygons)
+        finish(surface, self._values, block.scalars, how["fields"], bool(self.GetComputeScalars()), own, block.out,
+               self._points(block.grid)[1], polygons)  # fmt: skip
+
+    def _add_others(self, block: _Block) -> None:
+        """What VTK contours of a block."""
+        if self._sessions[block.number].others:
+            count = append_other_cells(block.grid, block.scalars, block.of_cells, self._wishes(), block.out)
+            self._warn(f"{count} of {block.grid.GetNumberOfCells()} cells are contoured by vtkContourFilter: {REASON}")
 
     def _execute(self, data, out, blocks: list[_Block]) -> None:
         """Fills `blocks` first, so that an error finds what is to be emptied."""
@@ -383,8 +389,9 @@ class IsotetContour(ContourProperties):
             failure = error
         ranks, numbered = self._agree(framed, missing, failure, bool(blocks))
         try:
-            for i, block in enumerate(own):
-                self._contour(block, self._framed is not None, numbered, self._report(i, len(own)))
+            self._contour(framed, numbered)
+            for block in own:
+                self._add_others(block)
         except BaseException as error:  # noqa: BLE001
             failure = error
         ranks.agree(failure)
