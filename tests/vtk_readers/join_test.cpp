@@ -120,6 +120,22 @@ TEST(Join, FillsFieldsThatAPieceLacksWithNaN) {
     EXPECT_TRUE(has_note(*result, "\"n\" is in 1 of 2 pieces only"));
 }
 
+TEST(Join, TakesDataBeforeNoDataWherePiecesMeet) {
+    Loaded loaded;
+    for (const double apex : {1.0, -1.0}) loaded.pieces.push_back(tetrahedron(0, apex));
+    const double none = std::nan("");
+    loaded.pieces[0].grid.point_fields = {{"t", Array::own(std::vector<double>{none, 1, none, none})}};
+    loaded.pieces[1].grid.point_fields = {{"t", Array::own(std::vector<double>{5, 1, 7, none})}};
+    const auto result = join(std::move(loaded), {});
+    ASSERT_TRUE(result);
+    const Array& t = result->grid.point_fields.at(0).values;
+    ASSERT_EQ(t.tuples(), 5u);
+    EXPECT_EQ(t.at(0), 5);
+    EXPECT_EQ(t.at(1), 1);
+    EXPECT_EQ(t.at(2), 7);
+    EXPECT_FALSE(has_note(*result, "differs in"));
+}
+
 TEST(Join, TellsOfAllFieldsThatAPieceLacksAtOnce) {
     Loaded loaded;
     for (const double x : {0.0, 5.0}) loaded.pieces.push_back(tetrahedron(x, 1));

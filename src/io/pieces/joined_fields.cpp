@@ -127,9 +127,39 @@ void put_as(const Array& values, const Put& put_from) {
     put_from(converted.data());
 }
 
+/// The points of each piece among `joined`, which ascends.
+template <class Visit>
+void each_joined(const std::vector<Piece>& pieces, std::span<const JoinedPoint> joined, const Visit& visit) {
+    std::uint64_t first = 0;
+    std::size_t next = 0;
+    for (std::size_t p = 0; p < pieces.size(); ++p) {
+        const std::uint64_t end = first + pieces[p].grid.points.tuples();
+        for (; next < joined.size() && joined[next].point < end; ++next) visit(p, joined[next].point - first);
+        first = end;
+    }
+}
+
+/// Where the piece whose value was taken has no data, another one's is taken, that of the first piece that has some.
+template <class To>
+void prefer_data(const std::vector<Piece>& pieces, Fields which, const JoinedColumn& column, const PointNumbers& numbers,
+                 std::span<const JoinedPoint> joined, To* to) {
+    if constexpr (std::is_floating_point_v<To>) {
+        std::vector<const Array*> values;
+        for (const Piece& piece : pieces) {
+            const Field* const field = find(piece.grid.*which, column.name);
+            values.push_back(field ? &field->values : nullptr);
+        }
+        each_joined(pieces, joined, [&](std::size_t p, std::uint64_t point) {
+            To* const place = to + numbers.pieces[p](point) * column.components;
+            for (std::size_t c = 0; values[p] && c < column.components; ++c)
+                if (std::isnan(place[c])) place[c] = static_cast<To>(values[p]->at(point, c));
+        });
+    }
+}
+
 /// A joined column of points. From the last piece to the first: the first one's value stays where points are joined.
 Result<Array> joined_at_points(const std::vector<Piece>& pieces, Fields which, const JoinedColumn& column,
-                               const PointNumbers& numbers) {
+                               const PointNumbers& numbers, std::span<const JoinedPoint> joined) {
     return filled(column, numbers.count, column.missing, [&]<class To>(To* to) {
         for (std::size_t p = pieces.size(); p-- > 0;)
             if (const Field* field = find(pieces[p].grid.*which, column.name))
@@ -139,6 +169,7 @@ Result<Array> joined_at_points(const std::vector<Piece>& pieces, Fields which, c
                                               put(from, to, column.components, begin, end, numbers.pieces[p]);
                                           });
                 });
+        prefer_data(pieces, which, column, numbers, joined, to);
     });
 }
 
@@ -172,18 +203,6 @@ void drop(std::vector<Piece>& pieces, Fields which, const std::string& name) {
         std::erase_if(piece.grid.*which, [&](const Field& field) { return field.name == name; });
 }
 
-/// The points of each piece among `joined`, which ascends.
-template <class Visit>
-void each_joined(const std::vector<Piece>& pieces, std::span<const JoinedPoint> joined, const Visit& visit) {
-    std::uint64_t first = 0;
-    std::size_t next = 0;
-    for (std::size_t p = 0; p < pieces.size(); ++p) {
-        const std::uint64_t end = first + pieces[p].grid.points.tuples();
-        for (; next < joined.size() && joined[next].point < end; ++next) visit(p, joined[next].point - first);
-        first = end;
-    }
-}
-
 /// Points that were joined though their values differ by more than rounding: a field that jumps from piece to piece.
 std::uint64_t count_jumps(const std::vector<Piece>& pieces, const PointNumbers& numbers,
                           std::span<const JoinedPoint> joined, const JoinedColumn& column, const Array& whole) {
@@ -208,7 +227,7 @@ std::uint64_t count_jumps(const std::vector<Piece>& pieces, const PointNumbers& 
         bool same = true;
         for (std::size_t c = 0; values[p] && c < components; ++c) {
             const double a = values[p]->at(point, c), b = whole.at(numbers.pieces[p](point), c);
-            same = same && (a == b || (a != a && b != b) || std::abs(a - b) <= rounding);
+            same = same && (a == b || a != a || std::abs(a - b) <= rounding); // no data is no other value
         }
         jumps += !same;
     });
@@ -227,7 +246,7 @@ Result<std::vector<Field>> join_point_fields(std::vector<Piece>& pieces, const P
     for (const JoinedColumn& column : columns) {
         if (progress.cancelled()) return Error{ErrorCode::cancelled, "joining pieces was cancelled"};
         if (column.other_components == 0) {
-            auto values = joined_at_points(pieces, &Grid::point_fields, column, numbers);
+            auto values = joined_at_points(pieces, &Grid::point_fields, column, numbers, joined);
             if (!values) return values.error();
             if (const std::uint64_t jumps = count_jumps(pieces, numbers, joined, column, *values); jumps > 0)
                 whole.notes.push_back(
@@ -265,7 +284,7 @@ Result<Array> join_points(std::vector<Piece>& pieces, const PointNumbers& number
     const Filled filled = with_points(pieces);
     for (Piece& piece : pieces) piece.grid.point_fields = {{"points", std::exchange(piece.grid.points, Array())}};
     const JoinedColumn column = columns_of(pieces, &Grid::point_fields, filled).front();
-    return joined_at_points(pieces, &Grid::point_fields, column, numbers);
+    return joined_at_points(pieces, &Grid::point_fields, column, numbers, {});
 }
 
 } // namespace isotet::io

@@ -14,7 +14,7 @@
 
 namespace isotet::io {
 
-/// Joins fields of points. Where points were joined, the value is that of the first piece that has the field; fields
+/// Joins fields of points. Where points were joined, the value is that of the first piece that has data there; fields
 /// whose values differ there by more than rounding are told. A field that only some pieces have is NaN
 /// elsewhere (integers become float64), one with different numbers of components is left out: `whole` tells both.
 /// Frees the fields of the pieces.
