@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 import os
+import weakref
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -540,7 +541,7 @@ class Contour:
     'field'
     """
 
-    __slots__ = ("_session", "_options", "_refinement", "_centre", "__weakref__")
+    __slots__ = ("_session", "_options", "_refinement", "_centre", "_grid", "_given", "__weakref__")
 
     def __init__(self, grid: Grid, field=None, *, fields=None, cell_fields=None, normals: str = "none",
                  edge_ends: bool = False, source_cells: bool = False, ties: str = "merge", precision: str = "float32",
@@ -553,6 +554,7 @@ class Contour:
         self._centre = centre
         self._refinement = (*tolerances_in(tolerance, geometry_tolerance, distance), exact_vertices)
         self._options = (normals, edge_ends, source_cells, ties, precision, method, surfaces, split_cells)
+        self._remember(grid, field, fields, cell_fields, frame)
         self._session = _isotet.Contour(grid._grid, grid._field(field, call, frame is not None, centre),
                                         grid._carried(fields, "fields"), grid._carried(cell_fields, "cell_fields"), self._options_with(frame),
                                         call)  # fmt: skip
@@ -570,9 +572,22 @@ class Contour:
         """
         call = call_options(threads, progress)
         now = Grid._of(grid._grid.renewed())  # what its arrays hold is compared, not whose they are
-        return self._session.set(now._grid, now._field(field, call, frame is not None, self._centre),
-                                 now._carried(fields, "fields"), now._carried(cell_fields, "cell_fields"),
-                                 self._options_with(frame), call)  # fmt: skip
+        update = self._session.set(now._grid, now._field(field, call, frame is not None, self._centre),
+                                   now._carried(fields, "fields"), now._carried(cell_fields, "cell_fields"),
+                                   self._options_with(frame), call)  # fmt: skip
+        self._remember(grid, field, fields, cell_fields, frame)
+        return update
+
+    def _remember(self, grid: Grid, *given: Any) -> None:
+        """For pickles. A packed session lets its grid go, and so does this."""
+        self._grid, self._given = weakref.ref(grid), given
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """A session is pickled and copied as its grid, field and options: the other one packs for itself."""
+        grid = self._grid()
+        if grid is None:
+            raise TypeError("the isotet.Grid of the session is gone: keep it while the session is pickled or copied")
+        return _restored_session, (grid, self._given, self._options, self._refinement, self._centre)
 
     def contour(self, isovalues: npt.ArrayLike, *, threads: int = 0, progress: Progress | None = None) -> Surface:
         """The surface of one isovalue, or one of several with the cell field "isovalue".
@@ -604,6 +619,19 @@ class Contour:
     def __repr__(self) -> str:
         size = self.nbytes
         return f"<isotet.Contour: {f'packed, {size} bytes' if size else 'not packed'}, next {self.method}>"
+
+
+def _restored_session(grid: Grid, given: tuple[Any, ...], options: tuple[Any, ...], refinement: tuple[Any, ...],
+                      centre: str) -> Contour:  # fmt: skip
+    """A session of a pickle, which keeps the grid that came with it."""
+    session = Contour.__new__(Contour)
+    session._options, session._refinement, session._centre = options, refinement, centre
+    field, fields, cell_fields, frame = given
+    call = call_options(0, None)
+    session._session = _isotet.Contour(grid._grid, grid._field(field, call, frame is not None, centre), grid._carried(fields, "fields"),
+                                       grid._carried(cell_fields, "cell_fields"), session._options_with(frame), call)  # fmt: skip
+    session._remember(grid, *given)
+    return session
 
 
 class Solids:

@@ -120,6 +120,18 @@ def test_what_files_say_is_pickled(tree):
     assert np.array_equal(other.faces, grid.faces)
 
 
+def test_sessions_are_pickled_and_copied(grid):
+    session = isotet.Contour(grid, "sphere", fields=["gyroid"], normals="face", surfaces=100)
+    wanted = session.contour(0.4)
+    session.set(grid, "gyroid", fields=["sphere"])
+    session.set(grid, "sphere", fields=["gyroid"])
+    for other in (pickle.loads(pickle.dumps((grid, session)))[1], copy.copy(session)):
+        assert same(other.contour(0.4), wanted)
+    gone = isotet.Contour(isotet.Grid(grid.to_meshio()), "sphere")
+    with pytest.raises(TypeError, match="the isotet.Grid of the session is gone"):
+        pickle.dumps(gone)
+
+
 def area_of(grid: isotet.Grid) -> float:
     return grid.contour(0.5, "sphere", threads=1).area
 

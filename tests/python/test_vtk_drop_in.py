@@ -240,6 +240,53 @@ def wedges(side):
     return pv.UnstructuredGrid({pv.CellType.WEDGE: np.hstack([corners, corners + count])}, points)
 
 
+CORNERS = {
+    pv.CellType.TETRA: [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)],
+    pv.CellType.PYRAMID: [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0.5, 0.5, 1)],
+    pv.CellType.WEDGE: [(0, 0, 0), (0, 1, 0), (1, 0, 0), (0, 0, 1), (0, 1, 1), (1, 0, 1)],
+    pv.CellType.VOXEL: [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)],
+    pv.CellType.HEXAHEDRON: [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)],
+}
+
+
+@pytest.mark.parametrize("cell", list(CORNERS), ids=lambda cell: cell.name)
+def test_every_case_of_a_cell_cuts_the_edges_that_vtk_cuts(cell):
+    """What VTK's tests of single cells ask, for all signs of the corners at once."""
+    corners = np.array(CORNERS[cell], float)
+    count = len(corners)
+    cases = (np.arange(2**count)[:, None] >> np.arange(count)) & 1
+    points = corners[None] + 3 * np.arange(2**count)[:, None, None] * [1, 0, 0]
+    grid = pv.UnstructuredGrid({cell: np.arange(cases.size).reshape(-1, count)}, points.reshape(-1, 3))
+    grid["r"] = cases.reshape(-1).astype(float)
+    grid.cell_data["case"] = np.arange(2**count)
+    ours, theirs = both(grid, values=(0.5,), ComputeNormals=0)
+    assert ours.n_points == theirs.n_points > 0
+    assert np.allclose(np.sort(ours.points, axis=0), np.sort(theirs.points, axis=0))
+    assert set(ours.cell_data["case"]) == set(theirs.cell_data["case"]) == set(range(1, 2**count - 1))
+    assert (ours.is_manifold, ours.n_open_edges > 0) == (False, True)
+
+
+def test_a_constant_array_gives_nothing():
+    points = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], float)
+    grid = pv.UnstructuredGrid({pv.CellType.TETRA: np.array([[0, 1, 2, 3]])}, points)
+    grid["r"] = np.full(4, 1000.0)
+    ours, theirs = both(grid, values=(1000.0,), UseScalarTree=1)
+    assert ours.n_points == theirs.n_points == 0
+
+
+def test_implicit_arrays_of_vtk_are_read():
+    from vtkmodules.vtkCommonCore import vtkConstantArray
+
+    grid = cubes()
+    constant = vtkConstantArray["float64"]() if hasattr(vtkConstantArray, "__getitem__") else vtkConstantArray()
+    constant.SetName("constant")
+    constant.SetNumberOfTuples(grid.n_points)
+    constant.ConstructBackend(4.0)
+    grid.GetPointData().AddArray(constant)
+    surface = output(pipeline(grid))
+    assert set(np.asarray(surface.point_data["constant"])) == {4.0}
+
+
 def test_no_isovalues_give_the_shapes_of_a_surface():
     contour = pipeline(cubes())
     contour.SetNumberOfContours(0)
