@@ -83,7 +83,7 @@ private:
 /// Method       marching tetrahedra over clusters in compute shaders; docs/inside/gpu.md
 class ISOTET_API DeviceGrid {
 public:
-    /// What upload() will need, told before anything is taken.
+    /// What upload() will need, told before anything is taken; nothing of a grid that lies in a file.
     /// Cost   a pass over the links of the packed grid
     static DeviceGridNeeds needs(const PackedGrid& packed, const DeviceGridOptions& options = {});
 

@@ -127,4 +127,16 @@ private:
 ISOTET_API Result<PackedGrid> pack(const Grid& grid, const PointField& field, const PackOptions& options = {},
                                    const Run& run = {});
 
+/// A packed grid as arrays again: points with the user's numbers, cells cluster after cluster, the packed field. What packing
+/// changed stays so (values and coordinates as they are stored, dropped and split cells). Points that no cell uses have the
+/// coordinates of one that is used, and NaN (integers: 0).
+///
+/// Guarantees   the same bytes for any thread count
+/// Cost         one pass; of a grid in a file, all of it is read
+/// Errors       out_of_memory; of a grid in a file: as PackedFile; cancelled
+ISOTET_API Result<Grid> unpack(const PackedGrid& packed, const Run& run = {});
+
+/// The packed field alone, by the user's point numbers, as unpack() gives it.
+ISOTET_API Result<Field> unpack_field(const PackedGrid& packed, const Run& run = {});
+
 } // namespace isotet

@@ -2,14 +2,17 @@
 #include <isotet/extract.hpp>
 #include <isotet/reference.hpp>
 
+#include "api/carried.hpp"
 #include "api/finish.hpp"
 #include "api/fits.hpp"
 #include "api/ties.hpp"
 #include "base/carry_out.hpp"
+#include "base/parallel.hpp"
 #include "cpu/extract.hpp"
 #include "numbers/storage.hpp"
 #include "packed/field_storage.hpp"
 #include "packed/packed.hpp"
+#include "packed/residency.hpp"
 #include "reference/extract.hpp"
 
 namespace isotet {
@@ -28,6 +31,10 @@ Result<std::vector<Extraction>> extract_as(const core::Packed& packed, std::span
     if (!reference)
         for (std::size_t i = 0; i < storages.size(); ++i)
             request.fields.push_back({options.point_fields[i].values, storages[i]});
+    for (const PackedGrid& grid : options.packed_fields) {
+        storages.push_back(grid.data().storage);
+        request.fields.push_back(ops::carried_field<Real>(grid.shared_data()));
+    }
     request.ends = options.edge_ends || (reference && !options.point_fields.empty());
     request.normals = options.normals == Normals::gradient;
     request.source_cells = options.source_cells || !options.cell_fields.empty();
@@ -46,7 +53,9 @@ Result<std::vector<Extraction>> extract_as(const core::Packed& packed, std::span
         ops::RawSurface& surface = raw->surfaces[i];
         ExtractReport& report = out[i].report;
         out[i].surface = api::finish<Real>(placement, options, storages, surface);
-        api::report_ties(packed, isovalues[i], request.isovalues[i], surface.tied_points, report);
+        const auto told =
+            api::report_ties(packed, isovalues[i], request.isovalues[i], surface.tied_points, report, progress);
+        if (!told) return told.error();
         report.selected_clusters = surface.selected_clusters;
         report.surface_bytes = api::bytes_of(out[i].surface);
         report.predicted_bytes = raw->predicted_bytes;
@@ -64,8 +73,19 @@ Result<std::vector<Extraction>> extract(const PackedGrid& packed, std::span<cons
     return core::carry_out("extraction", run, [&](const Progress& progress) -> Result<std::vector<Extraction>> {
         if (auto ok = api::check_isovalues(isovalues); !ok) return ok.error();
         if (auto ok = api::check_fit(options, packed.data()); !ok) return ok.error();
-        return packed.data().single() ? extract_as<float>(packed.data(), isovalues, options, reference, progress)
-                                      : extract_as<double>(packed.data(), isovalues, options, reference, progress);
+        std::shared_ptr<const core::Packed> data = packed.shared_data();
+        ExtractOptions all = options;
+        // How fields of the user are stored depends on their values at all points of the packed grid.
+        if (reference || (data->residency && !options.point_fields.empty())) {
+            const auto whole = core::whole_of(data, progress);
+            if (!whole) return whole.error();
+            data = *whole;
+            auto unpacked = api::with_unpacked_fields(std::move(all), {core::threads_here(), progress});
+            if (!unpacked) return unpacked.error();
+            all = *std::move(unpacked);
+        }
+        return data->single() ? extract_as<float>(*data, isovalues, all, reference, progress)
+                              : extract_as<double>(*data, isovalues, all, reference, progress);
     });
 }
 

@@ -11,6 +11,7 @@
 #include "base/errors.hpp"
 #include "base/parallel.hpp"
 #include "numbers/storage.hpp"
+#include "packed/packed.hpp"
 
 namespace isotet::api {
 
@@ -72,6 +73,12 @@ Surface finish(const Placement& placement, const ExtractOptions& options,
         const Array stored = raw.fields.empty() ? interpolate_field<Real>(field, storages[i], raw) : raw.fields[i];
         surface.point_fields.push_back({field.name, user_values<Real>(stored, field.values.type(), storages[i])});
     }
+    for (std::size_t i = 0; i < options.packed_fields.size(); ++i) {
+        const std::size_t place = options.point_fields.size() + i;
+        const core::Packed& packed = options.packed_fields[i].data();
+        surface.point_fields.push_back(
+            {packed.field_report.name, user_values<Real>(raw.fields[place], packed.field.type(), storages[place])});
+    }
     for (const Field& field : options.cell_fields) surface.cell_fields.push_back(copy_cell_field(field, raw));
     if (options.edge_ends) {
         surface.edge_ends = raw.ends;
@@ -90,6 +97,7 @@ MoreBytes more_bytes(const ExtractOptions& options, const Placement& placement) 
     MoreBytes more;
     if (placement.point_type != ScalarType::float32) more.vertex += 3 * sizeof(double);
     for (const Field& field : options.point_fields) more.vertex += field.values.components() * sizeof(double);
+    more.vertex += options.packed_fields.size() * sizeof(double);
     if (options.normals == Normals::gradient) more.vertex += fill_normals_bytes;
     if (options.normals == Normals::face) more.triangle += 3 * sizeof(float);
     if (options.normals == Normals::vertex) {

@@ -17,6 +17,13 @@ Result<void> check_fit(const ExtractOptions& options, const core::Packed& packed
         if (field.values.tuples() != packed.user_points)
             return invalid_argument(fmt::format("point field '{}' has {} tuples, but the packed grid has {} points", field.name,
                                      field.values.tuples(), packed.user_points));
+    for (const PackedGrid& grid : options.packed_fields) {
+        const core::Packed& other = grid.data();
+        if (other.headers.data() != packed.headers.data() || other.reals.index() != packed.reals.index())
+            return invalid_argument(fmt::format("the packed field '{}' is of other cells than the contoured field, but "
+                                                "must be of the same packed grid",
+                                                other.field_report.name));
+    }
     for (const Field& field : options.cell_fields)
         if (field.values.tuples() != packed.user_cells)
             return invalid_argument(fmt::format("cell field '{}' has {} tuples, but the packed grid has {} cells",

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <utility>
 
 #include "base/buffer.hpp"
 
@@ -17,6 +18,9 @@ public:
         auto buffer = std::make_shared<Buffer<T>>(size);
         data_ = std::shared_ptr<T>(buffer, buffer->data());
     }
+
+    /// Shares memory of another kind.
+    SharedBuffer(std::shared_ptr<T> data, std::size_t size) : data_(std::move(data)), size_(size) {}
 
     T* data() noexcept { return data_.get(); }
     const T* data() const noexcept { return data_.get(); }

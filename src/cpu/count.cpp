@@ -7,6 +7,7 @@
 
 #include "base/parallel.hpp"
 #include "cpu/at_level.hpp"
+#include "cpu/batches.hpp"
 #include "cpu/cutting.hpp"
 #include "cpu/level.hpp"
 #include "cpu/prefetch.hpp"
@@ -108,8 +109,8 @@ private:
 } // namespace
 
 template <class Real>
-Counted<Real> count(const Packed& packed, const Wanted<Real>& wanted, const Selection& selection, Masks& masks,
-                    Keep keep, const Progress& progress) {
+Result<Counted<Real>> count(const Packed& packed, const Wanted<Real>& wanted, const Selection& selection, Masks& masks,
+                            Keep keep, Batches& batches, const Progress& progress) {
     Counted<Real> out;
     out.starts = core::Buffer<Start>(selection.size());
     out.records = core::Buffer<const Record<Real>*>(keep == Keep::records ? selection.size() : 0);
@@ -119,12 +120,15 @@ Counted<Real> count(const Packed& packed, const Wanted<Real>& wanted, const Sele
     using Memory = CutScratch<Real>;
     tbb::enumerable_thread_specific<std::shared_ptr<Memory>> scratch(
         [] { return std::shared_ptr<Memory>(new Memory); });
-    core::parallel_ranges(selection.size(), 16, [&](std::size_t begin, std::size_t end) {
-        if (progress.cancelled()) return;
-        Memory& memory = *scratch.local();
-        for (std::size_t place = begin; place < end; ++place) counter.count_place(place, memory);
-        place_vertices<Portable>(memory);
-    });
+    const auto count_batch = [&](std::size_t first, std::size_t last) {
+        core::parallel_ranges(last - first, 16, [&](std::size_t begin, std::size_t end) {
+            if (progress.cancelled()) return;
+            Memory& memory = *scratch.local();
+            for (std::size_t place = first + begin; place < first + end; ++place) counter.count_place(place, memory);
+            place_vertices<Portable>(memory);
+        });
+    };
+    if (auto ok = batches.run(count_batch); !ok) return ok.error();
     out.bytes = out.starts.bytes() + out.records.bytes();
     for (std::shared_ptr<Memory>& memory : scratch) {
         out.bytes += sizeof(Memory) + memory->arena.bytes();
@@ -141,10 +145,10 @@ std::size_t count_scratch_bytes() {
 
 template std::size_t count_scratch_bytes<float>();
 template std::size_t count_scratch_bytes<double>();
-template Counted<float> count<float>(const Packed&, const Wanted<float>&, const Selection&, Masks&, Keep,
-                                     const Progress&);
-template Counted<double> count<double>(const Packed&, const Wanted<double>&, const Selection&, Masks&, Keep,
-                                       const Progress&);
+template Result<Counted<float>> count<float>(const Packed&, const Wanted<float>&, const Selection&, Masks&, Keep,
+                                             Batches&, const Progress&);
+template Result<Counted<double>> count<double>(const Packed&, const Wanted<double>&, const Selection&, Masks&, Keep,
+                                               Batches&, const Progress&);
 
 std::vector<Total> scan(const Selection& selection, const Masks& masks, std::size_t isovalues,
                         core::Buffer<Start>& starts) {

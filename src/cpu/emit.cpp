@@ -7,6 +7,7 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include "base/parallel.hpp"
+#include "cpu/batches.hpp"
 #include "cpu/field_writer.hpp"
 #include "cpu/level.hpp"
 #include "cpu/prefetch.hpp"
@@ -87,7 +88,7 @@ private:
 
     /// Asks for what the places to come will read, while this one is worked on.
     void ask_ahead(std::size_t place, Scratch<Real>& s) const {
-        const std::size_t left = selection_.size() - place;
+        const std::size_t left = selection_.ahead_end - place;
         if (left > 3) {
             prefetch(&packed_.headers[selection_.clusters[place + 3]]);
             prefetch(counted_.records[place + 3]);
@@ -176,13 +177,15 @@ private:
     void write_ends(const OwnVertices<Real>& own, std::uint64_t first, const Target<Real>& target,
                     const Scratch<Real>& s) const {
         constexpr std::size_t at_once = 64;
-        std::array<std::uint64_t, at_once> below, above;
+        std::array<std::uint64_t, at_once> below, above, packed_below, packed_above;
         for (std::size_t begin = 0; begin < own.count; begin += at_once, first += at_once) {
             const std::size_t count = std::min(own.count - begin, at_once);
             const Real* const weights = own.weights + begin;
             for (std::size_t i = 0; i < count; ++i) {
-                below[i] = packed_.user_point(s.points->packed[own.ends[begin + i].below]);
-                above[i] = packed_.user_point(s.points->packed[own.ends[begin + i].above]);
+                packed_below[i] = s.points->packed[own.ends[begin + i].below];
+                packed_above[i] = s.points->packed[own.ends[begin + i].above];
+                below[i] = packed_.user_point(packed_below[i]);
+                above[i] = packed_.user_point(packed_above[i]);
             }
             if (target.ends) {
                 for (std::size_t i = 0; i < count; ++i) {
@@ -191,9 +194,13 @@ private:
                 }
                 std::copy_n(weights, count, target.weights + first);
             }
-            for (std::size_t f = 0; f < target.fields.size(); ++f)
-                write_field<Real>(wanted_.fields[f], {below.data(), above.data(), weights, count},
-                                  target.fields[f] + first * wanted_.fields[f].values.components());
+            for (std::size_t f = 0; f < target.fields.size(); ++f) {
+                const ops::CarriedField& field = wanted_.fields[f];
+                write_field<Real>(field,
+                                  {(field.packed ? packed_below : below).data(),
+                                   (field.packed ? packed_above : above).data(), weights, count},
+                                  target.fields[f] + first * field.values.components());
+            }
         }
     }
 
@@ -272,14 +279,17 @@ void emit_places(const Emitter<Real>& emitter, std::size_t begin, std::size_t en
 } // namespace
 
 template <class Real>
-void emit(const Packed& packed, const Wanted<Real>& wanted, const Selection& selection, const Masks& masks,
-          const Counted<Real>& counted, std::span<const Target<Real>> targets, const Progress& progress) {
+Result<void> emit(const Packed& packed, const Wanted<Real>& wanted, const Selection& selection, const Masks& masks,
+                  const Counted<Real>& counted, std::span<const Target<Real>> targets, Batches& batches,
+                  const Progress& progress) {
     const Emitter<Real> emitter(packed, wanted, selection, masks, counted, targets);
     tbb::enumerable_thread_specific<std::unique_ptr<Scratch<Real>>> scratch(
         [] { return std::unique_ptr<Scratch<Real>>(new Scratch<Real>); });
-    core::parallel_ranges(selection.size(), 64, [&](std::size_t begin, std::size_t end) {
-        if (progress.cancelled()) return;
-        emit_places(emitter, begin, end, *scratch.local());
+    return batches.run([&](std::size_t first, std::size_t last) {
+        core::parallel_ranges(last - first, 64, [&](std::size_t begin, std::size_t end) {
+            if (progress.cancelled()) return;
+            emit_places(emitter, first + begin, first + end, *scratch.local());
+        });
     });
 }
 
@@ -291,9 +301,10 @@ std::size_t emit_scratch_bytes() {
 template std::size_t emit_scratch_bytes<float>();
 template std::size_t emit_scratch_bytes<double>();
 
-template void emit<float>(const Packed&, const Wanted<float>&, const Selection&, const Masks&, const Counted<float>&,
-                          std::span<const Target<float>>, const Progress&);
-template void emit<double>(const Packed&, const Wanted<double>&, const Selection&, const Masks&, const Counted<double>&,
-                           std::span<const Target<double>>, const Progress&);
+template Result<void> emit<float>(const Packed&, const Wanted<float>&, const Selection&, const Masks&,
+                                  const Counted<float>&, std::span<const Target<float>>, Batches&, const Progress&);
+template Result<void> emit<double>(const Packed&, const Wanted<double>&, const Selection&, const Masks&,
+                                   const Counted<double>&, std::span<const Target<double>>, Batches&,
+                                   const Progress&);
 
 } // namespace isotet::cpu

@@ -2,11 +2,13 @@
 #include "cpu/extract.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 #include <string_view>
 
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
+#include "cpu/batches.hpp"
 #include "cpu/steps.hpp"
 #include "cpu/surface_arrays.hpp"
 
@@ -47,6 +49,35 @@ private:
     std::uint64_t fixed_ = 0, at_most_ = 0;
 };
 
+/// The grid, and those of fields that are carried.
+template <class Real>
+std::vector<const core::Packed*> grids_of(const core::Packed& packed, const ops::Request<Real>& request) {
+    std::vector<const core::Packed*> grids{&packed};
+    for (const ops::CarriedField& field : request.fields)
+        if (field.packed) grids.push_back(field.packed.get());
+    return grids;
+}
+
+/// Whether all triangles have vertices that are there. Of a grid from a file that is not so where seam edges are others in
+/// their owner than in a cluster that names them.
+template <class Real>
+bool all_below(const Target<Real>& target, const Total& total) {
+    std::atomic<bool> all{true};
+    core::parallel_ranges(3 * total.triangles, 1 << 16, [&](std::size_t begin, std::size_t end) {
+        std::uint64_t largest = 0;
+        for (std::size_t i = begin; i < end; ++i)
+            largest = std::max<std::uint64_t>(largest, target.triangles ? target.triangles[i]
+                                                                        : target.wide_triangles[i]);
+        if (largest >= total.vertices && begin < end) all.store(false, std::memory_order_relaxed);
+    });
+    return all;
+}
+
+Error seams_differ() {
+    return {ErrorCode::invalid_data,
+            "a triangle has a vertex that is not there: the seam edges of two clusters differ, but must be the same"};
+}
+
 /// What is needed is known exactly only once everything has been counted. But a bound is known from the selected
 /// clusters, and mostly there is far more memory. Asking the system how much takes longer than extracting a small
 /// surface.
@@ -71,29 +102,38 @@ Result<ops::RawSurfaces> extract(const core::Packed& packed, const ops::Request<
     const bool ends = sizeof(Real) > sizeof(float) || request.ends || request.normals || !request.fields.empty();
     const Wanted<Real> wanted{isovalues, request.ties, ends, request.source_cells, request.fields};
 
-    const auto selected = select(packed, wanted.isovalues);
+    auto selected = select(packed, wanted.isovalues);
     if (!selected) return selected.error();
-    const Selection& selection = *selected;
+    Selection& selection = *selected;
     Masks masks(selection);
+    Batches batches(grids_of(packed, request), selection, progress);
 
     const Need<Real> need(request, selection, masks);
     out.predicted_bytes = need.at_most();
     constexpr std::string_view what = "extraction";
     if (need.at_most() > ask_from && !core::require_memory(what, need.at_most())) {
-        Counted<Real> trial = count(packed, wanted, selection, masks, Keep::nothing, progress);
+        Result<Counted<Real>> trial = count(packed, wanted, selection, masks, Keep::nothing, batches, progress);
+        if (!trial) return trial.error();
         if (progress.cancelled()) return cancelled();
-        out.predicted_bytes = need.of(scan(selection, masks, isovalues.size(), trial.starts), trial.record_bytes);
+        out.predicted_bytes = need.of(scan(selection, masks, isovalues.size(), trial->starts), trial->record_bytes);
         if (auto ok = core::require_memory(what, out.predicted_bytes); !ok) return ok.error();
     }
 
-    Counted<Real> counted = count(packed, wanted, selection, masks, Keep::records, progress);
+    Result<Counted<Real>> all_counted = count(packed, wanted, selection, masks, Keep::records, batches, progress);
+    if (!all_counted) return all_counted.error();
+    Counted<Real>& counted = *all_counted;
     if (progress.cancelled()) return cancelled();
     const std::vector<Total> totals = scan(selection, masks, isovalues.size(), counted.starts);
     std::vector<SurfaceArrays<Real>> arrays;
     std::vector<Target<Real>> targets;
     for (const Total& total : totals) targets.push_back(arrays.emplace_back(request, total).target(request));
-    emit(packed, wanted, selection, masks, counted, std::span<const Target<Real>>(targets), progress);
+    const std::span<const Target<Real>> all_targets(targets);
+    if (auto ok = emit(packed, wanted, selection, masks, counted, all_targets, batches, progress); !ok)
+        return ok.error();
     if (progress.cancelled()) return cancelled();
+    if (packed.residency)
+        for (std::size_t k = 0; k < totals.size(); ++k)
+            if (!all_below(targets[k], totals[k])) return seams_differ();
 
     out.surfaces.resize(order.size());
     for (std::size_t k = 0; k < order.size(); ++k) {

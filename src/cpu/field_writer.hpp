@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Point fields of the user's grid at vertices.
+// Point fields at vertices.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace isotet::cpu {
 
-/// A run of vertices: the user's points at the ends of their edges, and where between them they lie.
+/// A run of vertices: the points at the ends of their edges (the user's, or packed ones), and where between them they lie.
 template <class Real>
 struct VertexRun {
     const std::uint64_t* below;
@@ -18,7 +18,7 @@ struct VertexRun {
     std::size_t count;
 };
 
-/// Writes a field at the vertices of a run: `count` x components numbers.
+/// Writes a field at the vertices of a run, with points as the field's values have them: `count` x components numbers.
 template <class Real>
 void write_field(const ops::CarriedField& field, const VertexRun<Real>& vertices, Real* out);
 

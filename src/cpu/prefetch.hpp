@@ -20,8 +20,8 @@ public:
         while (count_ < next_.size()) {
             const std::uint32_t cluster = selection.clusters[place];
             do ++place;
-            while (place < selection.size() && selection.clusters[place] == cluster);
-            if (place >= selection.size()) return;
+            while (place < selection.ahead_end && selection.clusters[place] == cluster);
+            if (place >= selection.ahead_end) return;
             next_[count_++] = place;
         }
     }

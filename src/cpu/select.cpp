@@ -95,6 +95,7 @@ Result<Selection> select(const Packed& packed, std::span<const core::StoredIsova
     selection.base = core::Buffer<std::uint32_t>(packed.clusters());
     selection.first_word[all.places] = all.words;
     selection.tets = all.tets;
+    selection.ahead_end = all.places;
     core::parallel_each(tasks, 1, [&](std::size_t task) {
         Sums next = before[task];
         for (const Hit& hit : hits[task]) {

@@ -37,6 +37,7 @@ struct Selection {
     core::Buffer<std::uint64_t> first_word; ///< N + 1: where the masks of a place begin
     core::Buffer<std::uint32_t> base;       ///< C: only set for clusters with a place
     std::uint64_t tets = 0;                 ///< of the clusters of all places; ClusterHeader::like_tets()
+    std::size_t ahead_end = 0; ///< places from here on are not looked at ahead: their clusters may not be in memory
 
     std::size_t size() const { return clusters.size(); }
     /// The place of a cluster and an isovalue that has one: those of a cluster stand side by side.
@@ -94,6 +95,8 @@ struct Start {
     std::uint64_t triangle = 0;
 };
 
+class Batches;
+
 /// Whether counting leaves records behind.
 enum class Keep { records, nothing };
 
@@ -130,18 +133,21 @@ struct Target {
 template <class Real>
 Result<Selection> select(const Packed& packed, std::span<const core::StoredIsovalue<Real>> isovalues);
 
+/// Errors   of a grid that lies in a file, as Residency::bring()
 template <class Real>
-Counted<Real> count(const Packed& packed, const Wanted<Real>& wanted, const Selection& selection, Masks& masks,
-                    Keep keep, const Progress& progress);
+Result<Counted<Real>> count(const Packed& packed, const Wanted<Real>& wanted, const Selection& selection, Masks& masks,
+                            Keep keep, Batches& batches, const Progress& progress);
 
 /// Turns counts into starts. Returns the total of each isovalue.
 std::vector<Total> scan(const Selection& selection, const Masks& masks, std::size_t isovalues,
                         core::Buffer<Start>& starts);
 
 /// `targets`  one for each isovalue
+/// Errors     as count()
 template <class Real>
-void emit(const Packed& packed, const Wanted<Real>& wanted, const Selection& selection, const Masks& masks,
-          const Counted<Real>& counted, std::span<const Target<Real>> targets, const Progress& progress);
+Result<void> emit(const Packed& packed, const Wanted<Real>& wanted, const Selection& selection, const Masks& masks,
+                  const Counted<Real>& counted, std::span<const Target<Real>> targets, Batches& batches,
+                  const Progress& progress);
 
 /// Bytes of a thread while it counts, without records, and while it emits.
 template <class Real>

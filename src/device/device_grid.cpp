@@ -16,6 +16,7 @@
 #include "base/errors.hpp"
 #include "base/guard.hpp"
 #include "base/rising_progress.hpp"
+#include "packed/residency.hpp"
 #include "packed/set_field.hpp"
 #include "numbers/storage.hpp"
 #include "vulkan/engine/grid_on_device.hpp"
@@ -114,7 +115,7 @@ const PackedGrid& DeviceGrid::packed() const noexcept {
 }
 
 DeviceGridNeeds DeviceGrid::needs(const PackedGrid& packed, const DeviceGridOptions& options) {
-    if (!packed.data().single()) return {};
+    if (!packed.data().single() || packed.data().residency) return {};
     const vulkan::GridNeeds needs = vulkan::GridOnDevice::needs(packed.data(), options.page_bytes);
     return {needs.resident, needs.pages, needs.largest_page, needs.page_count};
 }
@@ -125,9 +126,11 @@ Result<DeviceGrid> DeviceGrid::upload(const Device& device, const PackedGrid& pa
         vulkan::GridOptions grid_options;
         grid_options.page_bytes = options.page_bytes;
         grid_options.reserve = options.surface_bytes.value_or(device.memory_free() / 8);
-        auto grid = vulkan::GridOnDevice::upload(device.context(), packed.shared_data(), grid_options, progress);
+        const auto whole = core::whole_of(packed.shared_data(), progress);
+        if (!whole) return whole.error();
+        auto grid = vulkan::GridOnDevice::upload(device.context(), *whole, grid_options, progress);
         if (!grid) return std::move(grid).error();
-        return DeviceGrid(std::make_unique<Data>(Data{packed, *std::move(grid), {}}));
+        return DeviceGrid(std::make_unique<Data>(Data{PackedGrid(*whole), *std::move(grid), {}}));
     });
 }
 
@@ -148,7 +151,8 @@ Result<Extraction> DeviceSurface::Data::download() const {
         out.surface.normals_kind = options.normals;
         out.surface.normals = raw->normals;
     }
-    api::report_ties(*packed, isovalue, stored, raw->tied_points, out.report);
+    if (auto told = api::report_ties(*packed, isovalue, stored, raw->tied_points, out.report, {}); !told)
+        return told.error();
     out.report.selected_clusters = raw->selected_clusters;
     out.report.surface_bytes = api::bytes_of(out.surface);
     return out;
@@ -239,6 +243,9 @@ Result<void> DeviceGrid::extract_into(std::span<const double> isovalues, std::sp
         vulkan::GridOnDevice& grid = *data_->grid;
         if (auto ok = api::check_isovalues(isovalues); !ok) return ok;
         if (auto ok = api::check_fit(options, data_->packed.data()); !ok) return ok;
+        if (!options.packed_fields.empty())
+            return invalid_argument(
+                "fields of packed grids are carried by the CPU only: unpack_field() gives them as arrays");
         const std::uint64_t up = grid.context().staging().uploaded();
         auto fields = carry(grid, options);
         if (!fields) return fields.error();

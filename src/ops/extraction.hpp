@@ -16,6 +16,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include <isotet/extract.hpp>
@@ -27,11 +29,22 @@
 
 namespace isotet::ops {
 
-/// A point field of the user's grid that is carried onto surfaces.
+/// A point field that is carried onto surfaces: values of the user's points, and how they are stored.
 struct CarriedField {
     Array values;
     core::Storage storage;
+    /// Not null: `values` are the stored ones of this grid, which has the same cells, by packed points; the storage is then
+    /// that of numbers that stay as they are.
+    std::shared_ptr<const core::Packed> packed = {};
 };
+
+/// The field of a grid that has the same cells.
+template <class Real>
+CarriedField carried_field(std::shared_ptr<const core::Packed> packed) {
+    const auto& values = packed->as<Real>().values;
+    Array stored(scalar_type_of<Real>(), values.data(), values.size(), 1, nullptr);
+    return {stored, {}, std::move(packed)};
+}
 
 /// What to extract.
 template <class Real>

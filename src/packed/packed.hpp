@@ -160,6 +160,7 @@ struct Values {
 };
 
 class StorageCache;
+class Residency;
 
 /// Copying shares all arrays. A copy that gets another field or other points gets arrays of its own for them.
 struct Packed {
@@ -188,6 +189,10 @@ struct Packed {
     std::uint64_t user_points = 0, user_cells = 0;
     PackReport report;
     FieldReport field_report;
+    /// Null where all arrays are in memory. Else the grid lies in a file: only headers, ranges and has_no_data are there, and
+    /// of the others what was brought (residency.hpp); between the chunks of the file are numbers that no point, word or
+    /// group has, so that sizes of arrays are not counts.
+    std::shared_ptr<const Residency> residency;
 
     std::size_t clusters() const { return headers.size(); }
     std::size_t points() const { return point_ids.size() + wide_point_ids.size(); }

@@ -16,6 +16,7 @@
 #include "base/parallel.hpp"
 #include "grid/boundary_faces.hpp"
 #include "packed/packed.hpp"
+#include "packed/residency.hpp"
 #include "packed/stored_cells.hpp"
 
 namespace isotet {
@@ -132,9 +133,11 @@ Surface surface_of(const Packed& packed, const std::vector<PackedFace>& faces) {
 
 Result<Surface> boundary_of(const PackedGrid& packed, const Run& run) {
     return core::carry_out("finding the boundary", run, [&](const Progress& progress) -> Result<Surface> {
-        const auto faces = core::packed_boundary(packed.data(), progress);
+        const auto whole = core::whole_of(packed.shared_data(), progress);
+        if (!whole) return whole.error();
+        const auto faces = core::packed_boundary(**whole, progress);
         if (!faces) return faces.error();
-        return core::surface_of(packed.data(), *faces);
+        return core::surface_of(**whole, *faces);
     });
 }
 

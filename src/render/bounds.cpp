@@ -8,6 +8,7 @@
 
 #include "base/parallel.hpp"
 #include "packed/packed.hpp"
+#include "packed/residency.hpp"
 
 namespace isotet {
 
@@ -58,7 +59,9 @@ Box bounds_of_positions(const Positions& positions, const std::array<double, 3>&
 } // namespace
 
 Box bounds_of(const PackedGrid& packed) {
-    const core::Packed& data = packed.data();
+    const auto whole = core::whole_of(packed.shared_data(), {});
+    if (!whole) return {};
+    const core::Packed& data = **whole;
     return std::visit([&](const auto& reals) { return bounds_of_positions(reals.positions, data.origin); }, data.reals);
 }
 

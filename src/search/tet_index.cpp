@@ -12,6 +12,7 @@
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
 #include "numbers/storage.hpp"
+#include "packed/residency.hpp"
 #include "packed/tet_table.hpp"
 #include "search/all_tets.hpp"
 #include "search/cluster_ranges.hpp"
@@ -110,7 +111,9 @@ TetIndex::~TetIndex() = default;
 
 Result<TetIndex> TetIndex::create(const PackedGrid& grid, SearchIndex index, const Run& run) {
     return core::carry_out("building the index", run, [&](const Progress& progress) -> Result<TetIndex> {
-        Result<std::unique_ptr<IndexedTets>> tets = build_tets(grid.data(), index, progress);
+        const auto whole = core::whole_of(grid.shared_data(), progress);
+        if (!whole) return whole.error();
+        Result<std::unique_ptr<IndexedTets>> tets = build_tets(**whole, index, progress);
         if (!tets) return tets.error();
         return TetIndex(*std::move(tets));
     });

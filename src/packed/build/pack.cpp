@@ -17,6 +17,7 @@
 #include "packed/build/pack_draft.hpp"
 #include "packed/field_storage.hpp"
 #include "packed/frame.hpp"
+#include "packed/residency.hpp"
 #include "packed/stored_cells.hpp"
 
 namespace isotet {
@@ -221,7 +222,9 @@ PackedGrid PackedGrid::with_frame(const std::optional<Frame>& frame) const {
 Result<PackedGrid> PackedGrid::with_field(const PointField& field, const Run& run) const {
     return core::carry_out("setting the field", run, [&](const Progress& progress) -> Result<PackedGrid> {
         if (auto ok = core::check_field(field, data_->user_points); !ok) return ok.error();
-        const auto next = std::make_shared<core::Packed>(*data_);
+        const auto whole = core::whole_of(data_, progress);
+        if (!whole) return whole.error();
+        const auto next = std::make_shared<core::Packed>(**whole);
         if (auto stored = core::store_field(field, *next, progress); !stored) return stored.error();
         if (!next->gradients.empty()) core::store_gradients(*next);
         return PackedGrid(next);
@@ -234,7 +237,9 @@ Result<PackedGrid> PackedGrid::with_points(const Array& points, const Run& run) 
             return Error{ErrorCode::invalid_argument,
                          fmt::format("the new points are {} x {} {}, but must be {} x 3 of float32 or float64",
                                      points.tuples(), points.components(), name_of(points.type()), data_->user_points)};
-        const auto next = std::make_shared<core::Packed>(*data_);
+        const auto whole = core::whole_of(data_, progress);
+        if (!whole) return whole.error();
+        const auto next = std::make_shared<core::Packed>(**whole);
         if (auto checked = core::check_moved_points(*next, points); !checked) return checked.error();
         if (auto stored = core::store_points(points, *next); !stored) return stored.error();
         if (!next->gradients.empty()) core::store_gradients(*next);

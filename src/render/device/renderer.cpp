@@ -11,6 +11,7 @@
 #include "base/carry_out.hpp"
 #include "base/guard.hpp"
 #include "packed/packed.hpp"
+#include "packed/residency.hpp"
 #include "render/check_drawing.hpp"
 #include "render/device/field_buffer.hpp"
 #include "render/device/frame.hpp"
@@ -67,7 +68,9 @@ Result<DeviceColors> DeviceColors::of_mesh(const Device& device, const Array& va
 Result<DeviceColors> DeviceColors::of_grid(const Device& device, const PackedGrid& packed, const Array& values,
                                            Association association, const ColorScale& scale) {
     return core::guarded("uploading colours", [&]() -> Result<DeviceColors> {
-        const core::Packed& data = packed.data();
+        const auto whole = core::whole_of(packed.shared_data(), {});
+        if (!whole) return whole.error();
+        const core::Packed& data = **whole;
         const bool of_points = association == Association::point;
         const std::uint64_t needed = of_points ? data.user_points : data.user_cells;
         if (values.tuples() != needed)

@@ -7,6 +7,7 @@
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
 #include "base/guard.hpp"
+#include "packed/residency.hpp"
 #include "render/device/chosen_tets.hpp"
 
 namespace isotet {
@@ -40,8 +41,10 @@ const TetStoreReport& TetStore::report() const noexcept {
 Result<TetStore> TetStore::upload(const Device& device, const PackedGrid& packed, DrawMethod method,
                                   const TetStoreOptions& options, const Run& run) {
     return core::carry_out("uploading tets", run, [&](const Progress& progress) -> Result<TetStore> {
+        const auto whole = core::whole_of(packed.shared_data(), progress);
+        if (!whole) return whole.error();
         Result<std::shared_ptr<render::TetPages>> pages =
-            render::TetPages::upload(device.context(), packed.data(), method, options, progress);
+            render::TetPages::upload(device.context(), **whole, method, options, progress);
         if (!pages) return pages.error();
         return TetStore(*std::move(pages));
     });
