@@ -22,6 +22,7 @@
 #include "io/grdecl/read_grdecl.hpp"
 #include "io/medit/read_medit.hpp"
 #include "io/medit/read_medit_parts.hpp"
+#include "io/packed/read_isotet.hpp"
 #include "io/reader.hpp"
 #include "io/tetgen/read_tetgen.hpp"
 #include "io/vtk_legacy/read_legacy_vtk.hpp"
@@ -249,6 +250,7 @@ std::span<const GridReader> own_readers() {
         all.push_back(legacy_vtk_reader());
         all.push_back(openfoam_reader());
         all.push_back(grdecl_reader());
+        all.push_back(isotet_reader());
         all.insert(all.end(), {
                                   GridReader{grid_format("gmsh", "Gmsh MSH 1.0 to 4.1", {".msh"}), recognizes_gmsh,
                                              inspect_gmsh_file, read_gmsh_file},

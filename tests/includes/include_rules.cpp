@@ -46,6 +46,7 @@ const std::vector<FolderRule>& folder_rules() {
         {"src/io/surfaces/", {"io/", "check/", "grid/", "numbers/", "base/"}},
         {"src/io/process/", {"io/process/", "io/files/", "io/reader.hpp", "base/"}},
         {"src/io/confined/", {"io/", "grid/", "numbers/", "base/"}},
+        {"src/io/packed/", {"io/packed/", "io/files/", "io/reader.hpp", "packed/", "grid/", "numbers/", "base/"}},
         {"src/io/", {"io/", "grid/", "numbers/", "base/"}},
         {"apps/cli/", {"view/"}}, // its own headers have no folder
         {"examples/", {}},

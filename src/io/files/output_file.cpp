@@ -175,6 +175,19 @@ Result<void> OutputFile::write_through(std::span<const std::byte> bytes) {
     return {};
 }
 
+Result<void> OutputFile::overwrite(std::uint64_t at, std::span<const std::byte> bytes) {
+    if (error_) return *error_;
+    if (auto flushed = flush(); !flushed) return flushed;
+    while (!bytes.empty()) {
+        const auto written = ::pwrite(file_.number(), bytes.data(), bytes.size(), static_cast<off_t>(at));
+        if (written < 0 && errno == EINTR) continue;
+        if (written <= 0) return fail("cannot be written", written == 0 ? ENOSPC : errno);
+        bytes = bytes.subspan(static_cast<std::size_t>(written));
+        at += static_cast<std::uint64_t>(written);
+    }
+    return {};
+}
+
 Result<void> OutputFile::commit() {
     if (error_) return *error_;
     if (!file_) return Error{ErrorCode::internal, fmt::format("{} was committed twice", path_)};

@@ -37,6 +37,8 @@ public:
 
     Result<void> write(std::span<const std::byte> bytes);
     Result<void> write(std::string_view text) { return write(std::as_bytes(std::span(text))); }
+    /// Writes again over bytes that were written.
+    Result<void> overwrite(std::uint64_t at, std::span<const std::byte> bytes);
     Result<void> commit();
 
     /// Bytes written so far.

@@ -1,0 +1,45 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Packed grids made of an open packed file: on address space that is filled as it is needed, or whole.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "io/packed/chunk_cache.hpp"
+#include "packed/packed.hpp"
+
+namespace isotet::io {
+
+/// What all grids of a file share: headers, points and topology.
+class PackedStore {
+public:
+    /// Errors   throws std::bad_alloc; as read_headers()
+    static Result<std::shared_ptr<PackedStore>> open(std::shared_ptr<const PackedSource> source, std::uint64_t limit,
+                                                     const Progress& progress);
+    ~PackedStore();
+    PackedStore(const PackedStore&) = delete;
+    PackedStore& operator=(const PackedStore&) = delete;
+
+    ChunkCache& cache() { return cache_; }
+    const PackedSource& source() const { return cache_.source(); }
+
+private:
+    PackedStore(std::shared_ptr<const PackedSource> source, std::uint64_t limit);
+    friend class FileResidency;
+
+    ChunkCache cache_;
+    core::Packed packed_; ///< without a field
+    std::unique_ptr<CachedPieces> points_, topology_;
+};
+
+/// A grid of which parts are read as they are needed.
+Result<std::shared_ptr<const core::Packed>> grid_of_file(const std::shared_ptr<PackedStore>& store,
+                                                         const FieldEntry& field, const Progress& progress);
+
+/// A grid in memory, all checked.
+/// `same_cells`   null, or one of this file that is in memory already: only values are read
+Result<std::shared_ptr<const core::Packed>> whole_grid_of_file(const PackedSource& source, const FieldEntry& field,
+                                                               const core::Packed* same_cells,
+                                                               const Progress& progress);
+
+} // namespace isotet::io

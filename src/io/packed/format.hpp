@@ -1,0 +1,109 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Packed files, version 1: docs/inside/packed-file.md describes every byte.
+//
+//   header        4096 bytes: magic, version, two slots that tell where the directory is; the one with the higher count holds
+//   chunks        each: points (positions, user's numbers, ranks), then topology (cells, links, user's cells); 64-byte aligned
+//   clusters      20 bytes each: the counts of their headers
+//   field, step   ranges and has_no_data of all clusters; then a piece a chunk: values, group ranges, gradients
+//   directory     what is where, with checksums
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <isotet/frame.hpp>
+#include <isotet/pack.hpp>
+
+#include "numbers/storage.hpp"
+#include "packed/packed.hpp"
+
+namespace isotet::io {
+
+constexpr std::string_view packed_magic = "isotetP\n";
+constexpr std::uint16_t packed_major = 1, packed_minor = 0;
+constexpr std::uint32_t packed_byte_order = 0x01020304;
+constexpr std::size_t packed_header_bytes = 4096;
+constexpr std::array<std::size_t, 2> packed_slots{512, 1024}; ///< a sector each: written at once
+constexpr std::size_t packed_slot_bytes = 40;
+constexpr std::uint64_t piece_alignment = 64;
+constexpr std::size_t cluster_record_bytes = 20;
+
+constexpr std::uint64_t align_piece(std::uint64_t at) {
+    return (at + piece_alignment - 1) / piece_alignment * piece_alignment;
+}
+
+/// Where the newest directory is.
+struct DirectorySlot {
+    std::uint64_t count = 0; ///< directories written so far; 0: none
+    std::uint64_t offset = 0, bytes = 0;
+    std::uint64_t file_bytes = 0; ///< what is behind was left by a writer that did not finish
+    std::uint32_t checksum = 0;   ///< of the directory
+};
+
+/// What chunks and arrays are counted in.
+enum class Unit : std::uint8_t { points, words, links, groups };
+constexpr std::size_t unit_count = 4;
+
+struct ChunkEntry {
+    std::uint32_t clusters = 0;
+    std::array<std::uint32_t, unit_count> counts{}; ///< by Unit
+    std::uint32_t clusters_checksum = 0, points_checksum = 0, topology_checksum = 0;
+
+    std::uint64_t count(Unit unit) const { return counts[static_cast<std::size_t>(unit)]; }
+};
+
+/// A field at a step.
+struct FieldEntry {
+    std::string name;
+    std::uint32_t step = 0;
+    double time = std::numeric_limits<double>::quiet_NaN(); ///< NaN: not known
+    ScalarType type = ScalarType::float32;
+    bool gradients = false;
+    core::Storage storage;
+    FieldReport report;
+    std::uint64_t ranges_offset = 0, values_offset = 0;
+    std::vector<std::uint32_t> ranges_checksums, values_checksums; ///< a chunk
+};
+
+/// What a packed file holds.
+struct PackedDirectory {
+    Precision precision = Precision::float32;
+    ScalarType point_type = ScalarType::float32;
+    bool wide_point_ids = false, wide_cell_ids = false, cell_ids = false, ranks = false;
+    std::uint64_t clusters = 0;
+    std::array<std::uint64_t, unit_count> counts{}; ///< by Unit
+    std::uint64_t user_points = 0, user_cells = 0;
+    std::array<double, 3> origin{}, lower{}, upper{}; ///< bounds of the points
+    PackReport report;
+    std::uint64_t clusters_offset = 0, chunks_offset = 0;
+    std::optional<Frame> frame;
+    std::vector<ChunkEntry> chunks;
+    std::vector<FieldEntry> fields;
+
+    std::size_t real_bytes() const { return precision == Precision::float32 ? 4 : 8; }
+    std::uint64_t count(Unit unit) const { return counts[static_cast<std::size_t>(unit)]; }
+
+    /// Bytes of pieces of a chunk.
+    std::uint64_t points_bytes(const ChunkEntry& chunk) const {
+        return chunk.count(Unit::points) *
+               (3 * real_bytes() + (wide_point_ids ? 8u : 4u) + (ranks ? std::size_t{8} : 0));
+    }
+    std::uint64_t topology_bytes(const ChunkEntry& chunk) const {
+        const std::uint64_t cell_id = !cell_ids ? 0 : wide_cell_ids ? 8 : 4;
+        return chunk.count(Unit::words) * (4 + cell_id) + chunk.count(Unit::links) * 4;
+    }
+    std::uint64_t ranges_bytes(const ChunkEntry& chunk) const {
+        return std::uint64_t{chunk.clusters} * (2 * real_bytes() + 1);
+    }
+    std::uint64_t values_bytes(const ChunkEntry& chunk, const FieldEntry& field) const {
+        return chunk.count(Unit::points) * (real_bytes() + (field.gradients ? std::size_t{4} : 0)) +
+               chunk.count(Unit::groups) * 2;
+    }
+};
+
+} // namespace isotet::io

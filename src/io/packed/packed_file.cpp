@@ -1,0 +1,155 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/packed_file.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <mutex>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/carry_out.hpp"
+#include "base/errors.hpp"
+#include "base/memory.hpp"
+#include "io/files/text_scanner.hpp"
+#include "io/packed/file_grid.hpp"
+
+namespace isotet {
+
+struct PackedFile::Data {
+    std::shared_ptr<const io::PackedSource> source;
+    PackedFileInfo info;
+    std::uint64_t limit = 0;
+    mutable std::mutex mutex;
+    mutable std::shared_ptr<io::PackedStore> store; ///< null before the first grid
+
+    Result<std::shared_ptr<io::PackedStore>> opened_store(const Progress& progress) const;
+    Result<const io::FieldEntry*> find(std::string_view field, std::size_t step) const;
+};
+
+namespace {
+
+PackedFileInfo info_of(const io::PackedSource& source) {
+    const io::PackedDirectory& d = source.directory;
+    PackedFileInfo info;
+    info.major = io::packed_major;
+    info.minor = io::packed_minor;
+    info.file_bytes = source.file.size;
+    info.precision = d.precision;
+    info.point_type = d.point_type;
+    info.user_points = d.user_points;
+    info.user_cells = d.user_cells;
+    info.report = d.report;
+    info.chunks = d.chunks.size();
+    info.source_cells = d.cell_ids;
+    info.lower = d.lower;
+    info.upper = d.upper;
+    info.steps = d.fields.back().step + std::size_t{1};
+    for (const io::FieldEntry& field : d.fields) {
+        if (field.step == info.times.size() && !std::isnan(field.time)) info.times.push_back(field.time);
+        info.fields.push_back({field.step, field.type, field.report, field.gradients});
+    }
+    if (info.times.size() < info.steps) info.times.clear();
+    return info;
+}
+
+} // namespace
+
+PackedFile::PackedFile(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
+
+Result<PackedFile> PackedFile::open(const std::string& path, const PackedFileOptions& options, const Run& run) {
+    return core::carry_out("opening a packed file", run, [&](const Progress&) -> Result<PackedFile> {
+        auto source = io::PackedSource::open(path);
+        if (!source) return source.error();
+        auto data = std::make_shared<Data>();
+        data->source = *std::move(source);
+        data->info = info_of(*data->source);
+        data->limit = options.memory ? options.memory : core::free_memory() / 2;
+        return PackedFile(std::move(data));
+    });
+}
+
+bool PackedFile::is_one(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::string head(io::packed_magic.size(), '\0');
+    return file.read(head.data(), static_cast<std::streamsize>(head.size())) && head == io::packed_magic;
+}
+
+const PackedFileInfo& PackedFile::info() const noexcept { return data_->info; }
+
+Result<std::shared_ptr<io::PackedStore>> PackedFile::Data::opened_store(const Progress& progress) const {
+    const std::lock_guard lock(mutex);
+    if (store) return store;
+    auto opened = io::PackedStore::open(source, limit, progress);
+    if (opened) store = *opened;
+    return opened;
+}
+
+Result<const io::FieldEntry*> PackedFile::Data::find(std::string_view field, std::size_t step) const {
+    if (step >= info.steps)
+        return invalid_argument(fmt::format("step {} is not there, but the file has {} step{}, counted from 0", step,
+                                            info.steps, info.steps == 1 ? "" : "s"));
+    std::vector<std::string> names;
+    const io::FieldEntry* found = nullptr;
+    for (const io::FieldEntry& entry : source->directory.fields) {
+        if (entry.step != step) continue;
+        names.push_back(entry.name);
+        if (entry.name == field || field.empty()) found = &entry;
+    }
+    if (field.empty() && names.size() == 1) return found;
+    if (!field.empty() && found) return found;
+    names = nearest_first(field, std::move(names));
+    for (std::string& name : names) name = io::in_quotes(name);
+    if (field.empty())
+        return invalid_argument(fmt::format("no field was named, but the file has {}", fmt::join(names, ", ")));
+    return invalid_argument(fmt::format("field {} is not in the file at step {}, which has {}", io::in_quotes(field), step,
+                                        fmt::join(names, ", ")));
+}
+
+Result<PackedGrid> PackedFile::grid(std::string_view field, std::size_t step, const Run& run) const {
+    return core::carry_out("reading a packed file", run, [&](const Progress& progress) -> Result<PackedGrid> {
+        const auto entry = data_->find(field, step);
+        if (!entry) return entry.error();
+        const auto store = data_->opened_store(progress);
+        if (!store) return store.error();
+        auto packed = io::grid_of_file(*store, **entry, progress);
+        if (!packed) return packed.error();
+        return PackedGrid(*std::move(packed));
+    });
+}
+
+Result<PackedGrid> PackedFile::load(std::string_view field, std::size_t step, const Run& run) const {
+    return core::carry_out("reading a packed file", run, [&](const Progress& progress) -> Result<PackedGrid> {
+        const auto entry = data_->find(field, step);
+        if (!entry) return entry.error();
+        auto packed = io::whole_grid_of_file(*data_->source, **entry, nullptr, progress);
+        if (!packed) return packed.error();
+        return PackedGrid(*std::move(packed));
+    });
+}
+
+Result<void> PackedFile::check(const Run& run) const {
+    return core::carry_out("checking a packed file", run, [&](const Progress& progress) -> Result<void> {
+        std::shared_ptr<const core::Packed> first;
+        for (const io::FieldEntry& entry : data_->source->directory.fields) {
+            auto packed = io::whole_grid_of_file(*data_->source, entry, first.get(), progress);
+            if (!packed) return packed.error();
+            if (!first) first = *std::move(packed);
+        }
+        return {};
+    });
+}
+
+ResidencyReport PackedFile::residency() const {
+    const std::lock_guard lock(data_->mutex);
+    ResidencyReport report;
+    if (data_->store) report = data_->store->cache().report();
+    report.limit = data_->limit;
+    report.bytes_read = data_->source->bytes_read.load(std::memory_order_relaxed);
+    report.reads = data_->source->reads.load(std::memory_order_relaxed);
+    return report;
+}
+
+} // namespace isotet

@@ -1,0 +1,340 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/packed_file.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "base/carry_out.hpp"
+#include "base/errors.hpp"
+#include "io/files/crc32c.hpp"
+#include "io/files/output_file.hpp"
+#include "io/files/text_scanner.hpp"
+#include "io/packed/chunk_places.hpp"
+#include "io/packed/directory.hpp"
+#include "packed/residency.hpp"
+
+namespace isotet {
+
+namespace io {
+
+namespace {
+
+using core::ClusterHeader;
+using core::Packed;
+
+constexpr std::uint32_t most_chunk_bytes = std::uint32_t{1} << 24;
+
+/// Chunks end where their topology has `chunk_bytes` or more.
+std::vector<ChunkEntry> cut_into_chunks(const Packed& packed, std::uint32_t chunk_bytes) {
+    std::vector<ChunkEntry> chunks;
+    std::uint64_t bytes = chunk_bytes;
+    for (const ClusterHeader& h : packed.headers) {
+        if (bytes >= chunk_bytes) {
+            chunks.emplace_back();
+            bytes = 0;
+        }
+        const std::array<std::uint64_t, unit_count> own{h.own_points, h.words(), core::ClusterLinks::words(h),
+                                                        h.groups()};
+        ChunkEntry& chunk = chunks.back();
+        ++chunk.clusters;
+        for (std::size_t u = 0; u < unit_count; ++u) chunk.counts[u] += static_cast<std::uint32_t>(own[u]);
+        bytes += 4 * own[1] + 4 * own[2] + 2 * own[3];
+    }
+    return chunks;
+}
+
+/// Of the points, in the user's coordinates.
+void find_bounds(const Packed& packed, PackedDirectory& d) {
+    d.lower.fill(std::numeric_limits<double>::max());
+    d.upper.fill(std::numeric_limits<double>::lowest());
+    std::visit(
+        [&](const auto& reals) {
+            for (std::size_t i = 0; i < reals.positions.size(); ++i) {
+                const double x = static_cast<double>(reals.positions[i]);
+                d.lower[i % 3] = std::min(d.lower[i % 3], x);
+                d.upper[i % 3] = std::max(d.upper[i % 3], x);
+            }
+        },
+        packed.reals);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (packed.points() == 0) d.lower[axis] = d.upper[axis] = 0;
+        else {
+            d.lower[axis] += packed.origin[axis];
+            d.upper[axis] += packed.origin[axis];
+        }
+    }
+}
+
+PackedDirectory directory_of(const Packed& packed, std::uint32_t chunk_bytes) {
+    PackedDirectory d;
+    d.precision = packed.single() ? Precision::float32 : Precision::float64;
+    d.point_type = packed.point_type;
+    d.wide_point_ids = !packed.wide_point_ids.empty();
+    d.cell_ids = packed.has_cell_ids();
+    d.wide_cell_ids = !packed.wide_cell_ids.empty();
+    d.ranks = !packed.point_ranks.empty();
+    d.clusters = packed.clusters();
+    d.user_points = packed.user_points;
+    d.user_cells = packed.user_cells;
+    d.origin = packed.origin;
+    d.report = packed.report;
+    d.frame = packed.frame;
+    d.chunks = cut_into_chunks(packed, chunk_bytes);
+    for (const ChunkEntry& chunk : d.chunks)
+        for (std::size_t u = 0; u < unit_count; ++u) d.counts[u] += chunk.counts[u];
+    find_bounds(packed, d);
+    return d;
+}
+
+template <class T>
+std::span<const std::byte> part_of(const core::SharedBuffer<T>& array, std::uint64_t first, std::uint64_t count) {
+    if (array.empty()) return {};
+    return std::as_bytes(std::span(array.data() + first, count));
+}
+
+} // namespace
+
+/// Writes one file.
+class PackedOutput {
+public:
+    using Parts = std::vector<std::span<const std::byte>>;
+
+    PackedOutput(OutputFile file, std::shared_ptr<const Packed> packed, std::uint32_t chunk_bytes)
+        : file_(std::move(file)),
+          packed_(std::move(packed)),
+          directory_(directory_of(*packed_, chunk_bytes)),
+          places_(ChunkPlaces::compact(directory_)) {}
+
+    Result<void> write_cells(const Progress& progress);
+    Result<void> write_field(const Packed& packed, std::uint32_t step, std::optional<double> time);
+    Result<std::uint64_t> finish();
+    std::uint32_t last_step() const { return directory_.fields.back().step; }
+    double last_time() const { return directory_.fields.back().time; }
+
+private:
+    Result<std::uint32_t> write_piece(const Parts& parts, bool aligned);
+    Result<void> write_chunk(std::size_t k);
+    Result<void> write_clusters();
+    Result<void> align();
+    Result<void> check_new_field(const Packed& packed, std::uint32_t step) const;
+    template <class Real>
+    Result<void> write_values(const Packed& packed, FieldEntry& entry);
+
+    OutputFile file_;
+    std::shared_ptr<const Packed> packed_;
+    PackedDirectory directory_;
+    ChunkPlaces places_;
+};
+
+Result<void> PackedOutput::align() {
+    static constexpr std::array<std::byte, piece_alignment> zeros{};
+    return file_.write(std::span(zeros).first(align_piece(file_.bytes()) - file_.bytes()));
+}
+
+/// Returns the checksum.
+Result<std::uint32_t> PackedOutput::write_piece(const Parts& parts, bool aligned) {
+    std::uint32_t checksum = 0;
+    for (const auto& part : parts) {
+        checksum = crc32c(part, checksum);
+        if (auto ok = file_.write(part); !ok) return ok.error();
+    }
+    if (aligned)
+        if (auto ok = align(); !ok) return ok.error();
+    return checksum;
+}
+
+Result<void> PackedOutput::write_chunk(std::size_t k) {
+    ChunkEntry& chunk = directory_.chunks[k];
+    const std::uint64_t points = places_.of(Unit::points, k), point_count = chunk.count(Unit::points);
+    const Parts own = std::visit(
+        [&](const auto& reals) {
+            return Parts{part_of(reals.positions, 3 * points, 3 * point_count),
+                         part_of(packed_->point_ids, points, point_count),
+                         part_of(packed_->wide_point_ids, points, point_count),
+                         part_of(packed_->point_ranks, points, point_count)};
+        },
+        packed_->reals);
+    const auto of_points = write_piece(own, true);
+    if (!of_points) return of_points.error();
+    chunk.points_checksum = *of_points;
+    const std::uint64_t words = places_.of(Unit::words, k), word_count = chunk.count(Unit::words);
+    const auto of_topology =
+        write_piece({part_of(packed_->cells, words, word_count),
+                     part_of(packed_->links, places_.of(Unit::links, k), chunk.count(Unit::links)),
+                     part_of(packed_->cell_ids, words, word_count), part_of(packed_->wide_cell_ids, words, word_count)},
+                    true);
+    if (!of_topology) return of_topology.error();
+    chunk.topology_checksum = *of_topology;
+    return {};
+}
+
+Result<void> PackedOutput::write_clusters() {
+    directory_.clusters_offset = file_.bytes();
+    for (std::size_t k = 0; k < directory_.chunks.size(); ++k) {
+        ChunkEntry& chunk = directory_.chunks[k];
+        std::vector<std::uint16_t> records;
+        for (std::uint64_t c = places_.first_cluster[k]; c < places_.first_cluster[k + 1]; ++c) {
+            const ClusterHeader& h = packed_->headers[c];
+            records.insert(records.end(), {h.own_points, h.ghost_points, h.cells[0], h.cells[1], h.cells[2], h.cells[3],
+                                           h.neighbours, h.own_seams, h.ghost_seams, h.wide_seams});
+        }
+        const auto checksum = write_piece({std::as_bytes(std::span(records))}, false);
+        if (!checksum) return checksum.error();
+        chunk.clusters_checksum = *checksum;
+    }
+    return align();
+}
+
+Result<void> PackedOutput::write_cells(const Progress& progress) {
+    if (auto ok = file_.write(encode_packed_header()); !ok) return ok;
+    directory_.chunks_offset = file_.bytes();
+    for (std::size_t k = 0; k < directory_.chunks.size(); ++k) {
+        if (progress.cancelled()) return Error{ErrorCode::cancelled, "saving was cancelled"};
+        if (auto ok = write_chunk(k); !ok) return ok;
+        progress("write", 0.8 * static_cast<double>(k + 1) / static_cast<double>(directory_.chunks.size()));
+    }
+    return write_clusters();
+}
+
+Result<void> PackedOutput::check_new_field(const Packed& packed, std::uint32_t step) const {
+    const std::string& name = packed.field_report.name;
+    const bool same_positions = std::visit(
+        [&]<class Values>(const Values& reals) {
+            const auto* const other = std::get_if<Values>(&packed.reals);
+            return other && other->positions.data() == reals.positions.data();
+        },
+        packed_->reals);
+    if (packed.headers.data() != packed_->headers.data() || !same_positions)
+        return invalid_argument(fmt::format("field {} is of other cells or points than the file, but must be of the same "
+                                            "packed grid",
+                                            in_quotes(name)));
+    for (const FieldEntry& field : directory_.fields)
+        if (field.step == step && field.name == name)
+            return invalid_argument(fmt::format("step {} has field {} already", step, in_quotes(name)));
+    return {};
+}
+
+template <class Real>
+Result<void> PackedOutput::write_values(const Packed& packed, FieldEntry& entry) {
+    const auto& reals = packed.as<Real>();
+    entry.ranges_offset = file_.bytes();
+    for (std::size_t k = 0; k < directory_.chunks.size(); ++k) {
+        const std::uint64_t first = places_.first_cluster[k], count = directory_.chunks[k].clusters;
+        const auto checksum =
+            write_piece({part_of(reals.ranges, first, count), part_of(packed.has_no_data, first, count)}, false);
+        if (!checksum) return checksum.error();
+        entry.ranges_checksums.push_back(*checksum);
+    }
+    if (auto ok = align(); !ok) return ok;
+    entry.values_offset = file_.bytes();
+    for (std::size_t k = 0; k < directory_.chunks.size(); ++k) {
+        const ChunkEntry& chunk = directory_.chunks[k];
+        const std::uint64_t points = places_.of(Unit::points, k), count = chunk.count(Unit::points);
+        const auto checksum = write_piece(
+            {part_of(reals.values, points, count),
+             part_of(packed.group_ranges, places_.of(Unit::groups, k), chunk.count(Unit::groups)),
+             part_of(packed.gradients, points, count)},
+            true);
+        if (!checksum) return checksum.error();
+        entry.values_checksums.push_back(*checksum);
+    }
+    return {};
+}
+
+Result<void> PackedOutput::write_field(const Packed& packed, std::uint32_t step, std::optional<double> time) {
+    if (auto ok = check_new_field(packed, step); !ok) return ok;
+    FieldEntry entry;
+    entry.name = packed.field_report.name;
+    entry.step = step;
+    if (time) entry.time = *time;
+    entry.type = packed.field.type();
+    entry.gradients = !packed.gradients.empty();
+    entry.storage = packed.storage;
+    entry.report = packed.field_report;
+    if (auto ok = packed.single() ? write_values<float>(packed, entry) : write_values<double>(packed, entry); !ok)
+        return ok;
+    directory_.fields.push_back(std::move(entry));
+    return {};
+}
+
+Result<std::uint64_t> PackedOutput::finish() {
+    const std::vector<std::byte> directory = encode_directory(directory_);
+    DirectorySlot slot{1, file_.bytes(), directory.size(), file_.bytes() + directory.size(), crc32c(directory)};
+    if (auto ok = file_.write(std::span<const std::byte>(directory)); !ok) return ok.error();
+    if (auto ok = file_.overwrite(packed_slots[0], encode_slot(slot)); !ok) return ok.error();
+    if (auto ok = file_.commit(); !ok) return ok.error();
+    return slot.file_bytes;
+}
+
+} // namespace io
+
+struct PackedWriter::Data {
+    io::PackedOutput output;
+    Run run;
+    std::optional<Error> failed = {};
+};
+
+PackedWriter::PackedWriter(std::unique_ptr<Data> data) : data_(std::move(data)) {}
+PackedWriter::PackedWriter(PackedWriter&&) noexcept = default;
+PackedWriter& PackedWriter::operator=(PackedWriter&&) noexcept = default;
+PackedWriter::~PackedWriter() = default;
+
+Result<PackedWriter> PackedWriter::create(const PackedGrid& packed, const std::string& path,
+                                          const SavePackedOptions& options, const Run& run) {
+    return core::carry_out("saving a packed grid", run, [&](const Progress& progress) -> Result<PackedWriter> {
+        if (options.chunk_bytes < 1 || options.chunk_bytes > io::most_chunk_bytes)
+            return invalid_argument(fmt::format("chunks of {} bytes, but they must have 1 to {}", options.chunk_bytes,
+                                                io::most_chunk_bytes));
+        const auto whole = core::whole_of(packed.shared_data(), progress);
+        if (!whole) return whole.error();
+        Result<io::OutputFile> file = io::OutputFile::open(path);
+        if (!file) return file.error();
+        io::PackedOutput output(*std::move(file), *whole, options.chunk_bytes);
+        if (auto ok = output.write_cells(progress); !ok) return ok.error();
+        if (auto ok = output.write_field(**whole, 0, options.time); !ok) return ok.error();
+        for (const PackedGrid& more : options.more_fields)
+            if (auto ok = output.write_field(more.data(), 0, options.time); !ok) return ok.error();
+        progress("write", 1);
+        return PackedWriter(std::make_unique<Data>(Data{std::move(output), run}));
+    });
+}
+
+Result<void> PackedWriter::add_field(const PackedGrid& packed) {
+    return core::guarded("saving a field", [&]() -> Result<void> {
+        if (!data_) return moved_from("the writer");
+        const double time = data_->output.last_time();
+        return data_->output.write_field(packed.data(), data_->output.last_step(),
+                                         std::isnan(time) ? std::nullopt : std::optional(time));
+    });
+}
+
+Result<void> PackedWriter::add_step(const PackedGrid& packed, std::optional<double> time) {
+    return core::guarded("saving a step", [&]() -> Result<void> {
+        if (!data_) return moved_from("the writer");
+        return data_->output.write_field(packed.data(), data_->output.last_step() + 1, time);
+    });
+}
+
+Result<std::uint64_t> PackedWriter::commit() {
+    return core::guarded("saving a packed grid", [&]() -> Result<std::uint64_t> {
+        if (!data_) return moved_from("the writer");
+        Result<std::uint64_t> bytes = data_->output.finish();
+        data_.reset();
+        return bytes;
+    });
+}
+
+Result<void> save_packed(const PackedGrid& packed, const std::string& path, const SavePackedOptions& options,
+                         const Run& run) {
+    Result<PackedWriter> writer = PackedWriter::create(packed, path, options, run);
+    if (!writer) return writer.error();
+    const Result<std::uint64_t> bytes = writer->commit();
+    return bytes ? Result<void>() : bytes.error();
+}
+
+} // namespace isotet

@@ -1,0 +1,195 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Surfaces from packed files: the same bytes as from memory, whatever the limit and the threads, and no more read than needed.
+#include <algorithm>
+#include <atomic>
+#include <set>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include <isotet/packed_file.hpp>
+
+#include "io/packed/piece_reader.hpp"
+#include "packed/packed_samples.hpp"
+
+namespace isotet::test {
+namespace {
+
+std::string bytes_of_all(const PackedGrid& packed, const std::vector<double>& isovalues, const ExtractOptions& options,
+                         int threads) {
+    std::string bytes;
+    for (const Extraction& extraction : extract(packed, isovalues, options, {.threads = threads}).value()) {
+        const ExtractReport& report = extraction.report;
+        bytes += bytes_of(extraction.surface) + std::to_string(report.tied_points) + " " +
+                 std::to_string(report.selected_clusters) + " " + std::to_string(report.near_tie);
+    }
+    return bytes;
+}
+
+TEST(PackedChunks, GiveTheSurfacesOfTheGridInMemory) {
+    for (const PackedSample& sample : packed_samples()) {
+        SCOPED_TRACE(sample.name);
+        const TemporaryFolder folder;
+        const std::string path = saved(sample.packed, folder);
+        for (const Ties ties : {Ties::merge, Ties::keep}) {
+            const std::string expected = bytes_of_all(sample.packed, sample.isovalues, with_all(ties), 2);
+            for (const std::uint64_t memory : {std::uint64_t{1}, std::uint64_t{200'000}, std::uint64_t{1} << 30})
+                for (const int threads : {1, 7}) {
+                    if (memory == 1 && threads == 7) continue;
+                    const PackedFile file = PackedFile::open(path, {memory}).value();
+                    const PackedGrid grid = file.grid().value();
+                    for (int again = 0; again < 2; ++again)
+                        ASSERT_TRUE(bytes_of_all(grid, sample.isovalues, with_all(ties), threads) == expected)
+                            << memory << " bytes, " << threads << " threads";
+                }
+        }
+        const PackedGrid grid = PackedFile::open(path, {100'000}).value().grid().value();
+        EXPECT_TRUE(bytes_of_all(grid, sample.isovalues, {}, 3) == bytes_of_all(sample.packed, sample.isovalues, {}, 3));
+    }
+}
+
+TEST(PackedChunks, TellTiesAsTheGridInMemoryWhereValuesAreUnchanged) {
+    const Grid grid = made_grid("kuhn", 6, {"integer"});
+    const PackedGrid packed = pack(grid, point_field(grid)).value();
+    const TemporaryFolder folder;
+    const PackedGrid from_file = PackedFile::open(saved(packed, folder), {1}).value().grid().value();
+    for (const double isovalue : {1.0, 1.2, 2.0}) {
+        const ExtractReport a = extract(packed, isovalue).value().report, b = extract(from_file, isovalue).value().report;
+        EXPECT_EQ(a.tied_points, b.tied_points);
+        EXPECT_EQ(a.false_ties, b.false_ties);
+        EXPECT_EQ(a.near_tie, b.near_tie);
+    }
+}
+
+TEST(PackedChunks, CarryFieldsOfTheFile) {
+    const Grid grid = made_grid("mixed", 6, {"gyroid", "sphere", "integer"});
+    const PackedGrid packed = pack(grid, point_field(grid)).value();
+    std::vector<PackedGrid> others;
+    for (const std::size_t i : {1, 2}) others.push_back(packed.with_field(point_field(grid, i)).value());
+    const TemporaryFolder folder;
+    const PackedFile file = PackedFile::open(saved(packed, folder, 2'000, others), {150'000}).value();
+    ExtractOptions by_user, by_memory, by_file;
+    by_user.point_fields = {grid.point_fields[1], grid.point_fields[2]};
+    by_memory.packed_fields = others;
+    by_file.packed_fields = {file.grid("sphere").value(), file.grid("integer").value()};
+    const std::string expected = bytes_of(extract(packed, 0.1, by_user).value().surface);
+    EXPECT_TRUE(bytes_of(extract(packed, 0.1, by_memory).value().surface) == expected);
+    const PackedGrid gyroid = file.grid("gyroid").value();
+    EXPECT_TRUE(bytes_of(extract(gyroid, 0.1, by_file).value().surface) == expected);
+    EXPECT_TRUE(bytes_of(extract(gyroid, 0.1, by_user).value().surface) == expected) << "arrays of the user";
+    EXPECT_EQ(extract(packed, 0.1, by_file).error().code, ErrorCode::invalid_argument) << "of other cells";
+}
+
+/// Chunks with hit clusters, and those with points that these borrow, and all.
+struct ChunksTouched {
+    std::set<std::size_t> hit, beside;
+};
+
+ChunksTouched touched(const PackedGrid& grid, const io::ChunkPlaces& places, float isovalue) {
+    const core::Packed& packed = grid.data();
+    ChunksTouched out;
+    for (std::uint32_t c = 0; c < packed.clusters(); ++c) {
+        const auto range = packed.as<float>().ranges[c];
+        if (!(range.lower <= isovalue && isovalue <= range.upper)) continue;
+        out.hit.insert(places.chunk_of(c));
+        for (const core::Neighbour& neighbour : packed.cluster_links(c).neighbours)
+            out.beside.insert(places.chunk_of(neighbour.cluster));
+    }
+    for (const std::size_t chunk : out.hit) out.beside.erase(chunk);
+    return out;
+}
+
+TEST(PackedChunks, AreReadOnlyWhereTheyAreNeeded) {
+    const Grid grid = made_grid("kuhn", 24, {"sphere", "gyroid"});
+    const PackedGrid packed = pack(grid, point_field(grid)).value();
+    const PackedGrid gyroid = packed.with_field(point_field(grid, 1)).value();
+    const TemporaryFolder folder;
+    const std::string path = saved(packed, folder, 1, {gyroid});
+    const auto source = io::PackedSource::open(path).value();
+    const auto places = io::ChunkPlaces::compact(source->directory);
+    const PackedFile file = PackedFile::open(path, {std::uint64_t{1} << 30}).value();
+    const PackedGrid sphere = file.grid("sphere").value();
+    EXPECT_EQ(file.residency().pieces_read, 0u) << "a grid reads tables only";
+
+    const ChunksTouched chunks = touched(packed, places, 0.1F);
+    ASSERT_LT(chunks.hit.size() + chunks.beside.size(), file.info().chunks / 2);
+    extract(sphere, 0.1).value();
+    const ResidencyReport first = file.residency();
+    EXPECT_EQ(first.pieces_read, 3 * chunks.hit.size() + 2 * chunks.beside.size());
+    EXPECT_LE(first.reads, 2 + 2 + 2 * (chunks.hit.size() + chunks.beside.size()) + 2);
+    extract(sphere, 0.1).value();
+    EXPECT_EQ(file.residency().reads, first.reads) << "all is in memory";
+
+    const ChunksTouched others = touched(gyroid, places, 1.4F);
+    std::size_t known = 0;
+    for (const std::size_t chunk : others.hit) known += 2 * chunks.hit.count(chunk) + chunks.beside.count(chunk);
+    for (const std::size_t chunk : others.beside) known += chunks.hit.count(chunk) + chunks.beside.count(chunk);
+    extract(file.grid("gyroid").value(), 1.4).value();
+    EXPECT_EQ(file.residency().pieces_read - first.pieces_read,
+              3 * others.hit.size() + 2 * others.beside.size() - known)
+        << "cells and points that are there are not read again for another field";
+}
+
+TEST(PackedChunks, StayWithinTheLimit) {
+    const Grid grid = made_grid("kuhn", 20, {"gyroid"});
+    const PackedGrid packed = pack(grid, point_field(grid)).value();
+    const TemporaryFolder folder;
+    const std::string path = saved(packed, folder, 4'000);
+    constexpr std::uint64_t limit = 400'000;
+    const PackedFile file = PackedFile::open(path, {limit}).value();
+    const PackedGrid from_file = file.grid().value();
+    EXPECT_TRUE(bytes_of(extract(from_file, 0).value().surface) == bytes_of(extract(packed, 0).value().surface));
+    const ResidencyReport report = file.residency();
+    EXPECT_GT(report.pieces_dropped, 0u);
+    EXPECT_LE(report.bytes, limit);
+    EXPECT_LE(report.peak_bytes, limit);
+}
+
+TEST(PackedChunks, ServeManyThreadsWhileTheyComeAndGo) {
+    const Grid grid = made_grid("mixed", 10, {"gyroid"});
+    const PackedGrid packed = pack(grid, point_field(grid)).value();
+    const TemporaryFolder folder;
+    const PackedFile file = PackedFile::open(saved(packed, folder, 2'000), {100'000}).value();
+    const PackedGrid from_file = file.grid().value();
+    std::vector<std::string> expected;
+    for (int i = 0; i < 6; ++i) expected.push_back(bytes_of(extract(packed, 0.2 * i - 0.5).value().surface));
+    std::atomic<int> wrong{0};
+    std::vector<std::thread> threads;
+    for (int t = 0; t < 6; ++t)
+        threads.emplace_back([&, t] {
+            for (int k = 0; k < 12; ++k) {
+                const int i = (t + k) % 6;
+                const auto out = extract(from_file, 0.2 * i - 0.5, {}, {.threads = 2});
+                wrong += !out || bytes_of(out->surface) != expected[static_cast<std::size_t>(i)];
+            }
+        });
+    for (std::thread& thread : threads) thread.join();
+    EXPECT_EQ(wrong, 0);
+    EXPECT_LE(file.residency().bytes, 100'000u);
+}
+
+TEST(PackedChunks, AreCancelledAndGoOn) {
+    const Grid grid = made_grid("kuhn", 10, {"gyroid"});
+    const PackedGrid packed = pack(grid, point_field(grid)).value();
+    const TemporaryFolder folder;
+    const PackedGrid from_file = PackedFile::open(saved(packed, folder)).value().grid().value();
+    const std::atomic<bool> cancel{true};
+    isotet::Run run;
+    run.progress.cancel = &cancel;
+    EXPECT_EQ(extract(from_file, 0, {}, run).error().code, ErrorCode::cancelled);
+    EXPECT_TRUE(extract(from_file, 0));
+}
+
+TEST(PackedChunks, AreBroughtForWhatNeedsTheWholeGrid) {
+    const Grid grid = made_grid("kuhn", 6, {"gyroid", "sphere"});
+    const PackedGrid packed = pack(grid, point_field(grid)).value();
+    const TemporaryFolder folder;
+    const PackedGrid from_file = PackedFile::open(saved(packed, folder), {1}).value().grid().value();
+    EXPECT_TRUE(bytes_of(from_file.with_field(point_field(grid, 1)).value()) ==
+                bytes_of(packed.with_field(point_field(grid, 1)).value()));
+    EXPECT_TRUE(bytes_of(from_file.with_points(grid.points).value()) == bytes_of(packed));
+    EXPECT_EQ(unpack(from_file).value().cells.count(), grid.cells.count());
+}
+
+} // namespace
+} // namespace isotet::test
