@@ -35,6 +35,10 @@ struct ContourInput {
     /// Set where the grid has only the cells that an ActiveCellFilter kept (active_cells.hpp) for the expected isovalues:
     /// gives the same input with all cells, and is called when something needs them.
     std::function<Result<ContourInput>(const Run& run)> all_cells = {};
+    /// In place of `grid` and `field`: a packed grid, of a PackedFile say. Surfaces come from its clusters as they are: the
+    /// options must not ask for what was not packed.
+    std::optional<PackedGrid> packed = {};
+    std::vector<PackedGrid> packed_fields = {}; ///< carried, as ExtractOptions::packed_fields; of `packed` only
 };
 
 struct ContourOptions {
@@ -73,7 +77,7 @@ struct ContourOptions {
 /// What set() had to do.
 enum class ContourUpdate : std::uint8_t {
     nothing, ///< grid and field are the ones from before
-    field,   ///< the same cells and points: only values were stored
+    field,   ///< the same cells and points: only values were stored, or are read
     points,  ///< the same cells: points moved, and values were stored
     grid,    ///< another grid: what was packed is gone
 };
@@ -90,6 +94,8 @@ struct ContourResult {
                                 ///< since the extraction before; 0 where nothing was to be done
     double extract_seconds = 0; ///< downloading included
     DeviceWork work;            ///< on the device, of the last surface
+    std::uint64_t file_bytes_read = 0; ///< of a packed file, by this call
+    std::uint64_t file_bytes_kept = 0; ///< of a packed file, in memory after it
     std::vector<std::string> notes; ///< sentences for the user
     RefinementReport refinement;    ///< of the grid that was extracted from; without curved cells nothing is counted
 };
@@ -117,7 +123,8 @@ public:
 
     /// Checks that the field fits the grid, and makes linear cells of others; nothing is packed yet.
     ///
-    /// Errors   invalid_argument when a field does not fit the grid or options contradict each other; invalid_data when
+    /// Errors   invalid_argument when a field does not fit the grid, options contradict each other, or they ask for more than
+    ///          ContourInput::packed has; invalid_data when
     ///          the arrays of the grid do not fit together; cancelled
     static Result<Contour> create(ContourInput input, const ContourOptions& options = {}, const Run& run = {});
 
@@ -171,7 +178,8 @@ public:
     };
     Result<Prediction> predict(double isovalue) const;
 
-    /// What predictions are made of: a sample of the cells that the session has, of curved ones between their corners.
+    /// What predictions are made of: a sample of the cells that the session has, of curved ones between their corners; none of
+    /// ContourInput::packed.
     /// Errors   out_of_memory
     Result<FieldSample> sample() const;
 

@@ -15,6 +15,7 @@
 #include "grid/cell_faces.hpp"
 #include "grid/cells.hpp"
 #include "packed/packed.hpp"
+#include "packed/residency.hpp"
 #include "session/contour_data.hpp"
 #include "session/exact_vertices.hpp"
 
@@ -32,6 +33,7 @@ Result<void> check(const ContourOptions& options) {
 
 /// The input, cells of degree 1 by their linear types; where it has only some of the cells, and `options` ask for more than these can do, that with all cells.
 Result<ContourInput> input_for(ContourInput input, const ContourOptions& options, const Run& run) {
+    if (input.packed) return input;
     const bool some_do = Contour::can_do_with_active_cells(options) && input.cell_fields.empty();
     if (input.all_cells && !some_do) {
         Result<ContourInput> all = input.all_cells(run);
@@ -77,6 +79,10 @@ Result<Contour> Contour::create(ContourInput given, const ContourOptions& option
         if (!enough) return enough.error();
         ContourInput input = *std::move(enough);
         auto data = std::make_unique<Data>();
+        if (input.packed) {
+            if (auto taken = data->take_packed(std::move(input), options, run); !taken) return taken.error();
+            return Contour(std::move(data));
+        }
         const auto met = data->take_met(input, options, run);
         if (!met) return met.error();
         if (*met == Data::Met::some) return Contour(std::move(data));
@@ -126,6 +132,7 @@ Result<ContourUpdate> Contour::set(ContourInput given, const ContourOptions& opt
         const std::lock_guard lock(data_->mutex);
         Data& data = *data_;
         ++data.set_count;
+        if (input.packed) return data.take_packed(std::move(input), options, run);
         if (options.refine && has_curved_cells(input.grid.cells)) {
             if (auto taken = data.take_curved(std::move(input), options); !taken) return taken.error();
             return ContourUpdate::grid;
@@ -149,6 +156,7 @@ Result<ContourUpdate> Contour::set(ContourInput given, const ContourOptions& opt
             data.range.reset();
         }
         if (data.options.engine != options.engine) data.grid.reset();
+        if (std::exchange(data.is_given, false)) data.packed.reset();
         data.options = options;
         data.behind = update;
         data.linear = std::move(linear);
@@ -192,6 +200,8 @@ Result<ContourResult> Contour::extract(std::span<const double> isovalues, const 
         const std::uint64_t set_count = data.set_count;
         const ContourOptions options = data.options;
         const std::optional<FieldReport> whole = data.curved ? std::optional(data.field_of_curved()) : std::nullopt;
+        const std::shared_ptr<const core::Residency> residency = data.packed ? data.packed->data().residency : nullptr;
+        const std::uint64_t read_before = residency ? residency->use().read : 0;
         const std::optional<ValueRange> range = data.met ? std::optional(data.met.range()) : std::nullopt;
         ContourResult head;
         head.notes = std::exchange(data.notes, {});
@@ -251,6 +261,11 @@ Result<ContourResult> Contour::extract(std::span<const double> isovalues, const 
         if (range) {
             result->field.lower = range->lower;
             result->field.upper = range->upper;
+        }
+        if (residency) {
+            const core::Residency::Use use = residency->use();
+            result->file_bytes_read = use.read - read_before;
+            result->file_bytes_kept = use.kept;
         }
         result->method = method;
         result->extract_seconds = session::seconds_since(start);

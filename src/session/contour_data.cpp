@@ -4,7 +4,11 @@
 #include <algorithm>
 #include <iterator>
 #include <utility>
+#include <variant>
 
+#include <fmt/core.h>
+
+#include "base/errors.hpp"
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
 #include "packed/frame.hpp"
@@ -20,6 +24,7 @@ ExtractOptions session::extract_options(const ContourOptions& options, const Con
     extract.edge_ends = options.edge_ends || exact;
     extract.source_cells = options.source_cells || exact;
     extract.point_fields = input.point_fields;
+    extract.packed_fields = input.packed_fields;
     extract.cell_fields = input.cell_fields;
     return extract;
 }
@@ -65,6 +70,7 @@ void Contour::Data::start_over(FieldSample next_sample, const ContourOptions& ne
     met = {};
     curved = {};
     input = {};
+    is_given = false;
     sample = std::move(next_sample);
     options = next_options;
     behind = ContourUpdate::grid;
@@ -142,10 +148,83 @@ Result<void> Contour::Data::take_curved(ContourInput next, const ContourOptions&
     return {};
 }
 
+namespace {
+
+/// A packed grid has what it has.
+Result<void> check_packed_input(const ContourInput& next, const ContourOptions& options) {
+    const PackedGrid& packed = *next.packed;
+    const PackReport& report = packed.report();
+    const auto lacks = [](bool is, const char* what) -> Result<void> {
+        if (!is) return {};
+        return invalid_argument(fmt::format("{}, but the packed grid that is given has none", what));
+    };
+    if (packed.precision() != options.precision)
+        return invalid_argument(
+            fmt::format("the packed grid that is given is in {} precision, but {} was asked for",
+                        packed.precision() == Precision::float32 ? "single" : "double",
+                        options.precision == Precision::float32 ? "single" : "double"));
+    if (options.method == Method::direct)
+        return invalid_argument("direct extraction was asked for, but a packed grid is given, which has clusters");
+    if (options.exact_vertices || options.split_cells)
+        return invalid_argument("exact vertices or split cells were asked for, but a packed grid is given, whose cells are "
+                                "as they were packed");
+    if (options.frame && packed.data().frame != options.frame)
+        return invalid_argument("a frame is given, but the packed grid that is given has another one");
+    const bool any = report.points > 0;
+    if (auto ok = lacks(any && needs_source_cells(options, next) && report.source_bytes == 0, "source cells are needed"); !ok)
+        return ok;
+    return lacks(any && options.normals == Normals::gradient && report.gradient_bytes == 0, "gradients are needed");
+}
+
+/// Engines that keep a grid carry the user's arrays only.
+Result<ContourInput> fields_for(ContourInput next, const ContourOptions& options, const Run& run) {
+    if (options.engine->is_stateless()) return next;
+    for (const PackedGrid& field : std::exchange(next.packed_fields, {})) {
+        Result<Field> values = unpack_field(field, run);
+        if (!values) return values.error();
+        next.point_fields.push_back(*std::move(values));
+    }
+    return next;
+}
+
+/// What is new in a packed grid beside one that was given before.
+ContourUpdate update_between(const PackedGrid& before, const PackedGrid& now) {
+    const core::Packed &a = before.data(), &b = now.data();
+    if (&a == &b) return ContourUpdate::nothing;
+    const bool same_cells = a.headers.data() == b.headers.data() && a.reals.index() == b.reals.index();
+    if (!same_cells) return ContourUpdate::grid;
+    const auto positions = [](const core::Packed& packed) {
+        return std::visit([](const auto& reals) { return static_cast<const void*>(reals.positions.data()); },
+                          packed.reals);
+    };
+    return positions(a) == positions(b) ? ContourUpdate::field : ContourUpdate::points;
+}
+
+} // namespace
+
+/// Starts over with a grid that is packed.
+Result<ContourUpdate> Contour::Data::take_packed(ContourInput next, const ContourOptions& next_options, const Run& run) {
+    if (auto ok = check_packed_input(next, next_options); !ok) return ok.error();
+    Result<ContourInput> fields = fields_for(std::move(next), next_options, run);
+    if (!fields) return fields.error();
+    const bool was_given = is_given && packed;
+    const ContourUpdate update = was_given ? update_between(*packed, *fields->packed) : ContourUpdate::grid;
+    std::unique_ptr<EngineGrid> kept;
+    if (update == ContourUpdate::nothing && options.engine == next_options.engine) kept = std::move(grid);
+    start_over({}, next_options);
+    grid = std::move(kept);
+    packed = fields->packed;
+    is_given = true;
+    behind = ContourUpdate::nothing;
+    input = *std::move(fields);
+    input.packed.reset();
+    return update;
+}
+
 /// What must be stored again to extract from `next`, linear cells, as `next_options` say.
 ContourUpdate Contour::Data::what_changed(const ContourInput& next, const ContourOptions& next_options,
                                           const Run& run) {
-    if (!packed || curved || met || behind == ContourUpdate::grid || options.split_cells != next_options.split_cells ||
+    if (!packed || is_given || curved || met || behind == ContourUpdate::grid || options.split_cells != next_options.split_cells ||
         !has_what_is_needed(*packed, next_options, next) || packed->user_point_count() != next.grid.points.tuples())
         return ContourUpdate::grid;
     ContourUpdate update = ContourUpdate::grid;
@@ -180,6 +259,7 @@ Result<void> Contour::Data::refine_for(std::span<const double> isovalues, const 
 }
 
 Method Contour::Data::method_of_next(std::size_t isovalues) const {
+    if (is_given) return Method::clusters;
     if (!options.engine->extracts_directly()) return Method::clusters;
     if (options.method) return *options.method;
     if (curved) return Method::direct; // for a few isovalues

@@ -40,6 +40,7 @@ struct Contour::Data {
     std::uint64_t set_count = 0; ///< how often `input` was set
     bool direct_for_memory = false;
     std::optional<PackedGrid> packed; ///< of the input, but for what `behind` says
+    bool is_given = false;            ///< ContourInput::packed
     ContourUpdate behind = ContourUpdate::grid;
     std::optional<session::CellsMark> cells;
     std::optional<session::ArrayMark> points, field;
@@ -65,6 +66,7 @@ struct Contour::Data {
     void take(Completed all);
     Result<void> complete(const Run& run);
     Result<void> take_curved(ContourInput next, const ContourOptions& next_options);
+    Result<ContourUpdate> take_packed(ContourInput next, const ContourOptions& next_options, const Run& run);
     ContourUpdate what_changed(const ContourInput& next, const ContourOptions& next_options, const Run& run);
     Result<void> refine_for(std::span<const double> isovalues, const Run& run);
     const FieldReport& field_of_curved() {
