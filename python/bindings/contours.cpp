@@ -360,7 +360,8 @@ void add_packed_grids(nb::module_& module) {
         .def(
             "extract",
             [](const PackedGrid& self, const std::vector<double>& isovalues, const FieldsIn& fields,
-               const FieldsIn& cell_fields, const ContourOptions& options, const CallOptions& how) {
+               const FieldsIn& cell_fields, const ContourOptions& options, const CallOptions& how,
+               std::vector<PackedGrid> packed_fields) {
                 ExtractOptions extraction;
                 extraction.ties = options.ties;
                 extraction.normals = options.normals;
@@ -368,6 +369,7 @@ void add_packed_grids(nb::module_& module) {
                 extraction.source_cells = options.source_cells;
                 extraction.point_fields = fields_in(fields);
                 extraction.cell_fields = fields_in(cell_fields);
+                extraction.packed_fields = std::move(packed_fields);
                 return call(how, [&](const Run& run) -> Result<Surface> {
                     std::vector<double> values = isovalues;
                     if (isovalues.empty()) values = {some_isovalue(self.field())};
@@ -377,7 +379,7 @@ void add_packed_grids(nb::module_& module) {
                     return join_all(*std::move(result), isovalues);
                 });
             },
-            "isovalues"_a, "fields"_a, "cell_fields"_a, "options"_a, "call"_a);
+            "isovalues"_a, "fields"_a, "cell_fields"_a, "options"_a, "call"_a, "packed_fields"_a);
 
     module.def(
         "pack",

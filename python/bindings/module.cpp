@@ -17,4 +17,5 @@ NB_MODULE(_isotet, module) {
     add_pieces(module);
     add_pictures(module);
     add_contours(module);
+    add_packed_files(module);
 }

@@ -23,6 +23,7 @@ Errors are ValueError (wrong arguments, broken data), TypeError (what is no numb
 from typing import TYPE_CHECKING
 
 from ._grid import Contour, Grid, PackedGrid, Solids, contour, formats, inspect, make, pack, read, solid
+from ._packed_file import PackedFile, open
 from ._picture import render
 from ._pieces import Frame, make_frame, number_points
 from ._surface import Surface, SurfaceReport, check, parts, read_surface
@@ -37,6 +38,6 @@ else:
     from ._isotet import Error, __version__
 
 __all__ = [
-    "Contour", "Error", "Frame", "Grid", "PackedGrid", "Solids", "Surface", "SurfaceReport", "__version__", "check", "contour", "formats",
-    "inspect", "make", "make_frame", "number_points", "pack", "parts", "read", "read_surface", "render", "solid",
+    "Contour", "Error", "Frame", "Grid", "PackedFile", "PackedGrid", "Solids", "Surface", "SurfaceReport", "__version__", "check", "contour", "formats",
+    "inspect", "make", "make_frame", "number_points", "open", "pack", "parts", "read", "read_surface", "render", "solid",
 ]  # fmt: skip

@@ -467,8 +467,24 @@ class PackedGrid:
         options = _isotet.ContourOptions(normals, edge_ends, source_cells, ties, self._packed.precision, None, 0)
         surface = self._packed.extract(isovalues_in(isovalues), fields_in("fields", fields),
                                        fields_in("cell_fields", cell_fields), options,
-                                       call_options(threads, progress))  # fmt: skip
+                                       call_options(threads, progress), [])  # fmt: skip
         return Surface._of(surface, {"method": "clusters"})
+
+    def save(self, path: str | os.PathLike[str], *, fields: Mapping[str, Any] | None = None, time: float | None = None,
+             threads: int = 0, progress: Progress | None = None) -> None:  # fmt: skip
+        """Saves the packed grid into a file (.isotet) that `open` reads in parts.
+
+        fields
+            More fields: a mapping from names to arrays of one value a point.
+        time
+            Of the step.
+
+        Raises OSError where it cannot be written, ValueError for wrong arrays, MemoryError.
+        """
+        call = call_options(threads, progress)
+        more = [self._packed.with_field(_isotet.PointField(name, scalars_in(name, values)), call)
+                for name, values in (fields or {}).items()]  # fmt: skip
+        _isotet.save_packed(self._packed, os.fspath(path), more, time, call)
 
     def set_field(self, values, *, name: str = "values", frame: Frame | None = None, threads: int = 0,
                   progress: Progress | None = None) -> None:  # fmt: skip
