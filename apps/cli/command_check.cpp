@@ -10,6 +10,7 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "json_output.hpp"
+#include "packed_report.hpp"
 #include "report.hpp"
 
 namespace isotet::cli {
@@ -127,8 +128,26 @@ Json check_json(const CheckedFiles& checked, const CheckJob& job) {
 
 } // namespace
 
+namespace {
+
+/// A packed file itself: broken ones are errors.
+Result<ExitCode> check_packed(const CheckCommand& command, Console& console) {
+    const auto file = PackedFile::open(command.surface, {}, console.run());
+    if (!file) return file.error();
+    if (auto checked = file->check(console.run()); !checked) return checked.error();
+    Table verdict = facts();
+    verdict.row({"verdict", "sound: checksums, numbers and ranges of all chunks, fields and steps"});
+    Json report = packed_json(file->info(), command.surface, "check");
+    report["sound"] = true;
+    return finish(console, command.common, packed_table(file->info(), command.surface) + verdict.text(),
+                  std::move(report));
+}
+
+} // namespace
+
 Result<ExitCode> run_check(const CheckCommand& command) {
     Console console(command.common);
+    if (PackedFile::is_one(command.surface)) return check_packed(command, console);
     CheckJob job = command;
     job.other_outputs = {command.common.json};
     const Result<CheckedFiles> checked = check_files(job, console);

@@ -15,6 +15,7 @@
 #include "console.hpp"
 #include "info_chart.hpp"
 #include "json_output.hpp"
+#include "packed_report.hpp"
 #include "report.hpp"
 
 namespace isotet::cli {
@@ -280,6 +281,13 @@ Json json_of(const GridSummary& found, const std::string& path) {
 
 Result<ExitCode> run_info(const InfoCommand& command) {
     Console console(command.common);
+    const bool needs_cells = command.survey || command.chart;
+    if (!needs_cells && PackedFile::is_one(command.grid.file)) {
+        const auto file = PackedFile::open(command.grid.file, {}, console.run());
+        if (!file) return file.error();
+        return finish(console, command.common, packed_table(file->info(), command.grid.file),
+                      packed_json(file->info(), command.grid.file, "info"));
+    }
     InfoJob job = command;
     job.other_outputs = {command.common.json};
     const Result<GridSummary> found = look_into(job, console);

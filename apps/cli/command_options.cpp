@@ -111,6 +111,17 @@ STL has no vertex numbers: its vertices are merged by exact coordinates first. W
 defect. So are several surfaces, pieces of one (isotet extract --piece): they are checked as if they were one file.
 )";
 
+constexpr const char* pack_details = R"(
+A packed file holds the grid as isotet works on it: half the size of the grid's raw arrays, read without packing again.
+Every command takes it for a grid. extract reads only what its isovalues meet.
+
+Examples:
+  isotet pack grid.vtu grid.isotet
+  isotet extract grid.isotet -f pressure -i 0.5 -o front.vtp
+  isotet pack run.pvd run.isotet --all-steps --fields p,T
+  isotet check grid.isotet
+)";
+
 constexpr const char* make_details = R"(
 Shapes, on the cube from -1 to 1: kuhn (six tets a cube), perturbed (inner points moved), shuffled (perturbed, points
 and tets in random order), layer (cells of aspect ratio up to 1000), hex, wedge, pyramid, mixed (all four cell types), tet10
@@ -326,6 +337,13 @@ void add_extract(const Command& program, ExtractCommand& extract) {
     add_surface_options(command, extract,
                         "Closed solids: the part of the grid where the field is at least the isovalue, below it, or "
                         "from A to B, with the grid's boundary there; cell field boundary: 1 there, 0 on isosurfaces");
+    command.add_value(
+        "--memory",
+        [&extract](const std::string& text) {
+            extract.memory = parse_bytes(text);
+            if (!extract.memory || *extract.memory == 0) refuse_value("--memory", text, "bytes, such as 2GB");
+        },
+        "BYTES", "Of a packed file, keep at most so much in memory, such as 2GB; default: half of what is free");
     add_common(command, extract.common);
     command.set_details(extract_details);
 }
@@ -410,6 +428,32 @@ void add_check(const Command& program, CheckCommand& check) {
     }
     add_common(command, check.common);
     command.set_details(check_details);
+}
+
+void add_pack(const Command& program, PackCommand& pack) {
+    const Command command = program.add_command("pack", "Pack a grid into a file that opens at once");
+    command.add_file("FILE", pack.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]").required();
+    command.add_file("OUT", pack.out, "OUT_FILE", "The packed file: .isotet").required();
+    command.add_texts(
+        "--fields", [&](const std::vector<std::string>& names) { pack.fields = names; }, "FIELD[,...]",
+        "The fields to pack, separated by commas; may be repeated. Default: all point fields of one component, or else the "
+        "field that info says is shown first");
+    command.add_flag("--cell-field", pack.cell_field, "A name that is both a point and a cell field means the cell field");
+    add_time(command, pack.grid);
+    command.add_flag("--all-steps", pack.all_steps, "All time steps; they must have the same cells and points")
+        .excludes(command.option("--time"))
+        .excludes(command.option("--step"));
+    command.add_flag("--source-cells", pack.source_cells,
+                     "Keep the numbers of cells, for extract --source-cells: 4 bytes a tet, 8 another cell");
+    command.add_flag("--gradients", pack.gradients,
+                     "Keep gradients, for --normals gradient: 4 bytes a point, a field and a step");
+    command.add_flag("--split-cells", pack.split_cells, "Split pyramids, wedges and hexahedra into tets first");
+    command.add_choice<Precision>("--precision", pack.precision,
+                                  {{"float", Precision::float32}, {"double", Precision::float64}},
+                                  "Precision of the packed grid");
+    add_reading(command, pack.grid, "--format");
+    add_common(command, pack.common);
+    command.set_details(pack_details);
 }
 
 void add_make(const Command& program, MakeCommand& make) {
@@ -767,6 +811,7 @@ void add_commands(const Command& program, CommandLine& line) {
     add_view(program, line.view);
     add_bench(program, line.bench);
     add_check(program, line.check);
+    add_pack(program, line.pack);
     add_make(program, line.make);
     add_formats(program, line.formats);
     add_devices(program, line.devices);

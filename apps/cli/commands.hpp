@@ -21,6 +21,7 @@ Result<ExitCode> run_render(const RenderCommand& command);
 Result<ExitCode> run_view(const ViewCommand& command);
 Result<ExitCode> run_bench(const BenchCommand& command);
 Result<ExitCode> run_check(const CheckCommand& command);
+Result<ExitCode> run_pack(const PackCommand& command);
 Result<ExitCode> run_make(const MakeCommand& command);
 Result<ExitCode> run_formats(const FormatsCommand& command);
 Result<ExitCode> run_devices(const DevicesCommand& command);

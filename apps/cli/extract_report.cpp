@@ -118,6 +118,11 @@ std::string facts_table(const ExtractNumbers& numbers, bool verbose) {
                                      numbers.precision == Precision::float32 ? "single" : "double", numbers.threads,
                                      numbers.threads == 1 ? "" : "s")});
     table.row({"memory", memory_text(numbers)});
+    if (numbers.packed_file)
+        table.row({"packed file", fmt::format("read {} of {}, {} reads; {} in memory at most",
+                                              format_bytes(numbers.packed_file->bytes_read),
+                                              format_bytes(numbers.packed_file_bytes), grouped(numbers.packed_file->reads),
+                                              format_bytes(numbers.packed_file->peak_bytes))});
     table.row({"time", time_text(numbers)});
     if (numbers.on_device()) table.row({"device", device_text(numbers)});
     return table.text();
@@ -187,6 +192,12 @@ Json extract_json(const char* command, const ExtractNumbers& numbers) {
     report["predicted"] = numbers.predicted
                               ? Json({{"seconds", numbers.predicted->seconds}, {"bytes", numbers.predicted->bytes}})
                               : Json(nullptr);
+    report["packed_file"] = numbers.packed_file ? Json{{"bytes", numbers.packed_file_bytes},
+                                                       {"bytes_read", numbers.packed_file->bytes_read},
+                                                       {"reads", numbers.packed_file->reads},
+                                                       {"bytes_in_memory", numbers.packed_file->bytes},
+                                                       {"peak_bytes_in_memory", numbers.packed_file->peak_bytes}}
+                                                : Json(nullptr);
     report["measured"] = {{"seconds", numbers.work_seconds()},
                           {"bytes", numbers.peak_bytes ? Json(*numbers.peak_bytes) : Json(nullptr)}};
     report["precision"] = numbers.precision == Precision::float32 ? "float" : "double";

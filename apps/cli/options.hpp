@@ -12,6 +12,7 @@
 #include <isotet/jobs/extract_files.hpp>
 #include <isotet/jobs/look_into.hpp>
 #include <isotet/jobs/measure_methods.hpp>
+#include <isotet/jobs/pack_file.hpp>
 #include <isotet/jobs/slice_files.hpp>
 #include <isotet/make.hpp>
 
@@ -69,6 +70,10 @@ struct CheckCommand : CheckJob {
     CommonOptions common;
 };
 
+struct PackCommand : PackJob {
+    CommonOptions common;
+};
+
 struct MakeCommand {
     CommonOptions common;
     MakeOptions grid;
@@ -107,6 +112,7 @@ struct CommandLine {
     ViewCommand view;
     BenchCommand bench;
     CheckCommand check;
+    PackCommand pack;
     MakeCommand make;
     FormatsCommand formats;
     DevicesCommand devices;

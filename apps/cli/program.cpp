@@ -52,6 +52,7 @@ Result<ExitCode> run_command(const CommandLine& line, const OptionTree& tree) {
     if (line.command == "view") return run_view(line.view);
     if (line.command == "bench") return run_bench(line.bench);
     if (line.command == "check") return run_check(line.check);
+    if (line.command == "pack") return run_pack(line.pack);
     if (line.command == "make") return run_make(line.make);
     if (line.command == "formats") return run_formats(line.formats);
     if (line.command == "devices") return run_devices(line.devices);
@@ -71,7 +72,7 @@ Result<ExitCode> parse_and_run(std::vector<std::string> words) {
     if (Result<void> completed = complete_bare_file(words, tree); !completed) return completed.error();
     if (Result<void> parsed = tree.parse(words); !parsed) return parsed.error();
     for (GridOptions* grid : {&line.info.grid, &line.extract.grid, &line.slice.grid, &line.render.grid,
-                              &line.view.grid, &line.bench.grid})
+                              &line.view.grid, &line.bench.grid, &line.pack.grid})
         grid->other_inputs = line.number_files;
     return run_command(line, tree);
 }

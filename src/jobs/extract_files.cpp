@@ -40,6 +40,9 @@ private:
     Result<void> open_device();
     Result<std::optional<std::uint64_t>> read_grid(std::size_t step);
     Result<bool> load(std::size_t step);
+    Result<void> open_packed();
+    Result<bool> load_packed(std::size_t step);
+    Result<void> prepare_and_look(std::size_t step);
     Result<std::optional<std::uint64_t>> read_field_of(std::size_t step, bool& found);
     void note_what_steps_miss();
     Result<Contour> start(ContourInput input);
@@ -67,6 +70,7 @@ private:
     ExtractJob job_; ///< with the field that was chosen where none is named
     Caller& caller_;
     std::optional<GridSource> source_;
+    std::optional<PackedFile> packed_; ///< where chunks of it are read in place of a grid
     ExtractPlan plan_;
     std::shared_ptr<const Engine> device_; ///< null: the CPU extracts
     std::optional<Contour> contour_;
@@ -124,10 +128,11 @@ Result<void> ExtractRun::open() {
     Result<ExtractPlan> plan = plan_extract(job_, *source_, caller_);
     if (!plan) return plan.error();
     plan_ = *std::move(plan);
+    if (Result<void> packed = open_packed(); !packed) return packed;
     numbers_.grid = job_.grid.file;
     numbers_.format = source_->info().format;
     numbers_.steps = plan_.steps.size();
-    numbers_.precision = job_.precision;
+    numbers_.precision = plan_.contour.precision;
     numbers_.threads = caller_.threads();
     numbers_.read_seconds = reading.seconds();
     return {};
@@ -144,12 +149,14 @@ Result<Contour> ExtractRun::start(ContourInput input) {
     ContourOptions& options = plan_.contour;
     if (device_) options.engine = device_;
     options.engine_required = job_.engine == EngineChoice::vulkan;
-    numbers_.why = device_          ? "devices take packed grids"
+    numbers_.why = packed_          ? "the file is packed"
+                   : device_        ? "devices take packed grids"
                    : options.method ? "asked for"
                                     : fmt::format("{} surface{}", options.surfaces, options.surfaces == 1 ? "" : "s");
     numbers_.process_bytes = peak_resident_memory().value_or(0);
     if (reset_peak_memory()) resident_before_ = resident_memory();
-    const bool linear = !has_cells_to_linearize(input.grid.cells); // else it is not known how many tets they become
+    const bool has_cells = !input.packed;
+    const bool linear = has_cells && !has_cells_to_linearize(input.grid.cells); // else it is not known how many tets they become
     const double kept =
         static_cast<double>(input.grid.cells.count()) / static_cast<double>(std::max<std::size_t>(numbers_.cells, 1));
     Result<Contour> contour = Contour::create(std::move(input), options, caller_.run());
@@ -287,10 +294,15 @@ Result<bool> ExtractRun::load(std::size_t step) {
     if (job_.piece)
         if (Result<void> taken = take_piece_of(input); !taken) return taken.error();
     if (Result<void> taken = set(std::move(input)); !taken) return taken.error();
-    if (contour_ && contour_->method() == Method::clusters) {
-        caller_.detail("packing");
-        if (Result<void> ready = contour_->prepare(caller_.run()); !ready) return ready.error();
-    }
+    if (contour_ && contour_->method() == Method::clusters) caller_.detail("packing");
+    if (Result<void> ready = prepare_and_look(step); !ready) return ready.error();
+    return true;
+}
+
+/// What is packed, the range of the field, and the isovalues.
+Result<void> ExtractRun::prepare_and_look(std::size_t step) {
+    if (contour_ && contour_->method() == Method::clusters)
+        if (Result<void> ready = contour_->prepare(caller_.run()); !ready) return ready;
     if (job_.isovalues.empty() && job_.shares.empty()) {
         const core::Stopwatch looking;
         caller_.detail("looking at the field");
@@ -305,7 +317,70 @@ Result<bool> ExtractRun::load(std::size_t step) {
         if (method() == Method::direct) numbers_.look_seconds += looking.seconds(); // else it is packing
     }
     if (!grid_.point_fields.empty() || !grid_.cell_fields.empty()) grid_.point_fields = grid_.cell_fields = {};
-    if (auto chosen = choose_values(step); !chosen) return chosen.error();
+    return choose_values(step);
+}
+
+/// Opens the grid as a packed file, where surfaces as the job asks for them come from its chunks.
+Result<void> ExtractRun::open_packed() {
+    if (source_->info().format != "isotet") return {};
+    Result<PackedFile> file = PackedFile::open(job_.grid.file, {job_.memory.value_or(0)}, caller_.run());
+    if (!file) return file.error();
+    const PackedFileInfo& info = file->info();
+    const bool reworks_cells = job_.piece || job_.solid || job_.volumes || !job_.shares.empty() ||
+                               job_.exact_vertices || job_.split_cells || job_.grid.merge_points ||
+                               !job_.grid.displace.empty() || job_.method == Method::direct ||
+                               job_.engine == EngineChoice::reference || job_.field.shape;
+    const auto has_field = [&](const PackedFieldInfo& field) {
+        return field.report.name == plan_.field.name && (job_.normals != Normals::gradient || field.gradients);
+    };
+    const bool has_all = std::ranges::any_of(info.fields, has_field) && (!job_.source_cells || info.source_cells) &&
+                         (!plan_.carried || (plan_.carried->components.empty() && plan_.carried->cell.empty()));
+    if (reworks_cells || !has_all) {
+        caller_.note(
+            "all of the packed file is read and unpacked: what was asked for needs its cells, or is not packed");
+        return {};
+    }
+    plan_.contour.precision = info.precision;
+    plan_.contour.method.reset();
+    packed_ = *std::move(file);
+    numbers_.packed_file_bytes = info.file_bytes;
+    return {};
+}
+
+/// Gives a step of a packed file to the session.
+Result<bool> ExtractRun::load_packed(std::size_t step) {
+    const core::Stopwatch reading;
+    const std::string& name = plan_.field.name;
+    const auto& fields = packed_->info().fields;
+    const auto is_there = [&](const std::string& wanted) {
+        return std::ranges::any_of(
+            fields, [&](const PackedFieldInfo& field) { return field.step == step && field.report.name == wanted; });
+    };
+    if (!is_there(name)) return false;
+    Result<PackedGrid> grid = packed_->grid(name, step, caller_.run());
+    if (!grid) return grid.error();
+    ContourInput input;
+    input.packed = *grid;
+    for (const PackedFieldInfo& field : fields) {
+        const std::string& carried = field.report.name;
+        const bool is_wanted =
+            !plan_.carried || std::ranges::find(plan_.carried->point, carried) != plan_.carried->point.end();
+        if (field.step != step || !is_wanted || !plan_.out_holds_fields) continue;
+        Result<PackedGrid> other = carried == name ? grid : packed_->grid(carried, step, caller_.run());
+        if (!other) return other.error();
+        input.packed_fields.push_back(*std::move(other));
+    }
+    if (plan_.carried)
+        for (const std::string& carried : plan_.carried->point)
+            if (!is_there(carried)) not_carried_.insert(carried);
+    numbers_.cells = packed_->info().user_cells;
+    numbers_.read_seconds += reading.seconds();
+    coarse_tets_ = 0;
+    const auto info = std::ranges::find_if(
+        fields, [&](const PackedFieldInfo& field) { return field.step == step && field.report.name == name; });
+    field_ = {name, Array(info->type, nullptr, 0, 1, nullptr), false, {}};
+    if (Result<void> taken = set(std::move(input)); !taken) return taken.error();
+    if (Result<void> ready = prepare_and_look(step); !ready) return ready.error();
     return true;
 }
 
@@ -582,7 +657,7 @@ Result<void> ExtractRun::run() {
     if (Result<void> opened = open(); !opened) return opened;
     for (const std::size_t step : plan_.steps) {
         if (caller_.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
-        const Result<bool> loaded = load(step);
+        const Result<bool> loaded = packed_ ? load_packed(step) : load(step);
         if (!loaded) return loaded.error();
         if (!*loaded) {
             skipped_.push_back(step);
@@ -592,6 +667,7 @@ Result<void> ExtractRun::run() {
     }
     if (skipped_.size() == plan_.steps.size()) return source_->no_such_field(plan_.field.name);
     note_what_steps_miss();
+    if (packed_) numbers_.packed_file = packed_->residency();
     if (const auto peak = peak_resident_memory()) {
         if (resident_before_) numbers_.peak_bytes = *peak - std::min(*peak, *resident_before_);
         numbers_.process_bytes = std::max(numbers_.process_bytes, *peak);

@@ -14,6 +14,7 @@
 #include <isotet/jobs/device_choice.hpp>
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
+#include <isotet/packed_file.hpp>
 #include <isotet/parts.hpp>
 #include <isotet/pieces.hpp>
 #include <isotet/reduce.hpp>
@@ -86,6 +87,7 @@ struct ExtractJob {
     std::optional<PartChoice> keep;                        ///< nothing: all parts
     std::optional<ReduceOptions> reduce; ///< nothing: all triangles
     std::string parts_table; ///< a CSV file with a row for each part; empty: none, and parts are not looked for
+    std::optional<std::uint64_t> memory; ///< as PackedFileOptions::memory, where the grid is a packed file
 };
 
 /// What is told of a solid.
@@ -144,6 +146,8 @@ struct ExtractNumbers {
     std::string collection;           ///< of a series; empty: none
     std::string parts_table;          ///< the file that was written; empty: none
     RefinementReport refinement = {}; ///< of the last surface
+    std::optional<ResidencyReport> packed_file; ///< where the grid is one that was read in parts
+    std::uint64_t packed_file_bytes = 0;        ///< of it, whole
 
     std::uint64_t transient_peak() const;
     double work_seconds() const; ///< packing, uploading, extracting: what is predicted

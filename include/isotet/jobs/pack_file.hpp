@@ -1,0 +1,48 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// From a grid file to a packed file: what `isotet pack` does.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <isotet/jobs/field_choice.hpp>
+#include <isotet/jobs/grid_source.hpp>
+#include <isotet/pack.hpp>
+#include <isotet/result.hpp>
+
+namespace isotet::jobs {
+
+struct PackJob {
+    GridOptions grid;
+    bool all_steps = false;
+    std::string out;                        ///< .isotet
+    std::vector<std::string> other_outputs; ///< of the caller: OUT may not be one
+    std::vector<std::string> fields; ///< as FieldChoice::name; empty: all point fields of one component, or if there are
+                                     ///< none the one that is shown first
+    bool cell_field = false;         ///< as FieldChoice
+    Precision precision = Precision::float32;
+    bool source_cells = false;
+    bool gradients = false;
+    bool split_cells = false;
+};
+
+/// What was done.
+struct PackNumbers {
+    std::string grid, format;
+    std::size_t cells = 0;
+    PackReport pack;
+    std::vector<FieldReport> fields; ///< of the last step
+    std::size_t steps = 1;
+    std::uint64_t bytes = 0; ///< of the file
+    double read_seconds = 0, pack_seconds = 0, write_seconds = 0;
+};
+
+/// Packs the grid once and saves it with all fields and steps. Polyhedra and quadratic cells are made linear first, these
+/// split at their nodes.
+///
+/// Errors   invalid_argument: a field or step is not there, source cells are asked for of cells that are made linear;
+///          invalid_data: a step has other cells or points than the first; as of reading, Contour and save_packed()
+Result<PackNumbers> pack_file(const PackJob& job, Caller& caller);
+
+} // namespace isotet::jobs

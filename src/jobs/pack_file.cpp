@@ -1,0 +1,178 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/jobs/pack_file.hpp>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include <isotet/contour.hpp>
+#include <isotet/jobs/first_choice.hpp>
+#include <isotet/jobs/output_names.hpp>
+#include <isotet/packed_file.hpp>
+
+#include "base/stopwatch.hpp"
+#include "jobs/refuse.hpp"
+
+namespace isotet::jobs {
+
+namespace {
+
+class PackRun {
+public:
+    PackRun(const PackJob& job, Caller& caller) : job_(job), caller_(caller) {}
+
+    Result<void> run();
+    PackNumbers take_numbers() { return std::move(numbers_); }
+
+private:
+    Result<void> open();
+    Result<void> choose_names();
+    Result<void> pack_step(std::size_t step);
+    Result<PackedGrid> packed_with(const Grid& grid, PointField field, std::size_t step);
+    Result<void> write(const PackedGrid& packed, std::size_t step, bool first_field);
+    FieldChoice choice(const std::string& name) const { return {name, job_.cell_field, false, {}}; }
+
+    const PackJob& job_;
+    Caller& caller_;
+    std::optional<GridSource> source_;
+    std::vector<std::size_t> steps_;
+    std::vector<std::string> names_; ///< of fields
+    std::optional<Contour> contour_; ///< which knows what must be packed again
+    std::optional<PackedWriter> writer_;
+    PackNumbers numbers_;
+};
+
+Result<void> PackRun::open() {
+    if (ending_of(job_.out) != ".isotet")
+        return refusal("OUT, '{}', is a packed file, so its name must end in .isotet", job_.out);
+    std::vector<std::string> outputs{job_.out};
+    outputs.insert(outputs.end(), job_.other_outputs.begin(), job_.other_outputs.end());
+    if (auto paths = check_output_paths({job_.grid.file}, outputs); !paths) return paths;
+    Result<GridSource> source = GridSource::open(job_.grid, caller_);
+    if (!source) return source.error();
+    source_ = *std::move(source);
+    if (auto paths = check_output_paths(source_->info().files, outputs); !paths) return paths;
+    const Steps which = job_.all_steps ? Steps::all : Steps::one;
+    auto steps = choose_steps(source_->info(), job_.grid, which, caller_);
+    if (!steps) return steps.error();
+    steps_ = *std::move(steps);
+    numbers_.grid = job_.grid.file;
+    numbers_.format = source_->info().format;
+    numbers_.steps = steps_.size();
+    return choose_names();
+}
+
+Result<void> PackRun::choose_names() {
+    names_ = job_.fields;
+    if (!names_.empty()) return {};
+    if (auto looked = source_->look_at_steps({steps_.front()}, caller_); !looked) return looked;
+    for (const FieldInfo& field : source_->info().fields)
+        if (field.association == Association::point && field.components == 1) names_.push_back(field.name);
+    if (!names_.empty()) return {};
+    const auto first = choose_first(*source_, job_.grid, {Steps::one, {}, {}, true, true}, caller_, caller_.run());
+    if (!first) return first.error();
+    if (first->view.field.empty()) return refusal("the grid has no field to pack with; `fields` x packs a coordinate");
+    names_ = {first->view.field};
+    caller_.note(note_of(first->view));
+    return {};
+}
+
+/// The step as the session has it: packed once, with another field where only that is new.
+Result<PackedGrid> PackRun::packed_with(const Grid& grid, PointField field, std::size_t step) {
+    ContourOptions options;
+    options.method = Method::clusters;
+    options.precision = job_.precision;
+    options.source_cells = job_.source_cells;
+    options.split_cells = job_.split_cells;
+    options.normals = job_.gradients ? Normals::gradient : Normals::none;
+    ContourInput input{grid, std::move(field), {}, {}};
+    if (!contour_) {
+        Result<Contour> started = Contour::create(std::move(input), options, caller_.run());
+        if (!started) return started.error();
+        contour_ = *std::move(started);
+        if (contour_->linear_grid() && job_.source_cells)
+            return refusal("`source_cells` of polyhedra and quadratic cells are not kept in packed files: these cells are "
+                           "split first");
+    } else {
+        const Result<ContourUpdate> update = contour_->set(std::move(input), caller_.run());
+        if (!update) return update.error();
+        if (*update > ContourUpdate::field)
+            return Error{ErrorCode::invalid_data,
+                         fmt::format("step {} has other {} than step {}, but a packed file has one grid for all steps: "
+                                     "pack it into a file of its own",
+                                     step, *update == ContourUpdate::points ? "points" : "cells", steps_.front())};
+    }
+    if (auto ready = contour_->prepare(caller_.run()); !ready) return ready.error();
+    const std::optional<PackedGrid> packed = contour_->packed();
+    if (!packed) return Error{ErrorCode::internal, "the session packed nothing"};
+    return *packed;
+}
+
+Result<void> PackRun::write(const PackedGrid& packed, std::size_t step, bool first_field) {
+    const core::Stopwatch writing;
+    const std::optional<double> time = time_of(source_->info(), step);
+    Result<void> written;
+    if (!writer_) {
+        SavePackedOptions options;
+        options.time = time;
+        Result<PackedWriter> writer = PackedWriter::create(packed, job_.out, options, caller_.run());
+        if (!writer) return writer.error();
+        writer_ = *std::move(writer);
+    } else {
+        written = first_field ? writer_->add_step(packed, time) : writer_->add_field(packed);
+    }
+    numbers_.write_seconds += writing.seconds();
+    return written;
+}
+
+Result<void> PackRun::pack_step(std::size_t step) {
+    const core::Stopwatch reading;
+    caller_.detail(fmt::format("reading step {}", step));
+    FieldsToRead read{std::vector<std::string>(), std::vector<std::string>()};
+    for (const std::string& name : names_) {
+        Result<FoundField> found = choose_field(*source_, choice(name));
+        if (!found) return found.error();
+        add_names(*read.point, found->point);
+        add_names(*read.cell, found->cell);
+    }
+    const Result<Grid> grid = source_->read(read, step, caller_);
+    if (!grid) return grid.error();
+    numbers_.cells = grid->cells.count();
+    numbers_.read_seconds += reading.seconds();
+    numbers_.fields.clear();
+    for (const std::string& name : names_) {
+        const core::Stopwatch packing;
+        caller_.detail("packing " + name);
+        Result<PointField> field = find_chosen(*grid, name, choice(name), caller_);
+        if (!field) return field.error();
+        const Result<PackedGrid> packed = packed_with(*grid, *std::move(field), step);
+        if (!packed) return packed.error();
+        numbers_.pack_seconds += packing.seconds();
+        if (auto written = write(*packed, step, &name == &names_.front()); !written) return written;
+        numbers_.fields.push_back(packed->field());
+        numbers_.pack = packed->report();
+    }
+    return {};
+}
+
+Result<void> PackRun::run() {
+    if (auto opened = open(); !opened) return opened;
+    for (const std::size_t step : steps_)
+        if (auto packed = pack_step(step); !packed) return packed;
+    const core::Stopwatch writing;
+    const Result<std::uint64_t> bytes = writer_->commit();
+    if (!bytes) return bytes.error();
+    numbers_.bytes = *bytes;
+    numbers_.write_seconds += writing.seconds();
+    return {};
+}
+
+} // namespace
+
+Result<PackNumbers> pack_file(const PackJob& job, Caller& caller) {
+    PackRun run(job, caller);
+    if (auto done = run.run(); !done) return done.error();
+    return run.take_numbers();
+}
+
+} // namespace isotet::jobs
