@@ -31,6 +31,8 @@ Examples:
   isotet render grid.vtu -f pressure -i 0.5 --orbit 90 -o 'frame{frame}.png'
   isotet render grid.vtu -f pressure --slice x=0 --clip x=0 --view 30,20
   isotet render model.vtu --boundary-color-by region --edges --scale 1,1,20
+  isotet render grid.vtu -f pressure --volume --opacity 0:0,0.4:0.1,0.5:0.8
+  isotet render grid.vtu -f pressure --volume --opacity peaks:2 -i 0.5 --orbit 60 -o film.webp
 )";
 
 void add_size(const Command& command, PictureOptions& picture) {
@@ -170,6 +172,49 @@ void add_cuts(const Command& command, RenderCommand& render) {
         "each triangle flat; default: vertex");
 }
 
+/// A number is the opacity of surfaces, all else that of a volume.
+void set_opacity(RenderCommand& render, const std::string& text) {
+    const std::vector<double> numbers = parse_numbers(text);
+    if (numbers.size() == 1) {
+        if (numbers[0] < 0 || numbers[0] > 1) refuse_value("--opacity", text, "a number from 0 to 1");
+        render.opacity = numbers[0];
+        return;
+    }
+    Result<OpacityText> parsed = parse_opacity(text);
+    if (!parsed) refuse_value("--opacity", text, parsed.error().message);
+    render.volume_opacity = *std::move(parsed);
+}
+
+void add_opacity(const Command& command, RenderCommand& render) {
+    command.add_texts(
+        "--opacity",
+        [&render](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) set_opacity(render, text);
+        },
+        "OPACITY",
+        "Opacity of the surfaces, 0 to 1; default: 1, and of several isosurfaces 0.35 for those that may hide others. "
+        "Of a "
+        "volume: VALUE:OPACITY,VALUE:OPACITY,... with lines between, values of the field ascending; ramp; peaks or "
+        "peaks:N, at N values; shell, transparent near the ends of the range; default: ramp. May be given for both");
+    command.add_flag(
+        "--volume", render.volume,
+        "Draw the field as a volume; isosurfaces only with -i or --levels, the boundary only with --boundary. "
+        "--sweep moves a peak of opacity through it");
+    command.add_number(
+        "--opacity-length",
+        [&render](double length) {
+            if (length <= 0) refuse_value("--opacity-length", shortest(length), "a number above 0");
+            render.opacity_length = length;
+        },
+        "LENGTH",
+        "What the opacity of a volume is of: so much of one value hides so much; default: a tenth of the diagonal of "
+        "the "
+        "grid's box");
+    command.add_numbers("--dirac", render.dirac, "V[,W...]",
+                        "Draw isosurfaces by rays through the volume, opaque, without extracting them; its opacity is "
+                        "only drawn where --opacity is given");
+}
+
 } // namespace
 
 Command add_render_command(const Command& program, RenderCommand& render) {
@@ -203,9 +248,7 @@ Command add_render_command(const Command& program, RenderCommand& render) {
         "RATE", "Pictures a second of an animated OUT; default: 12");
     add_part(command, "--boundary", render.boundary, "Opacity of the grid's boundary, 0 to 1; default: 0.1");
     command.add_flag("--outline", render.outline, "Draw the edges of the box around");
-    add_part(command, "--opacity", render.opacity,
-             "Opacity of the surfaces, 0 to 1; default: 1, and of several isosurfaces 0.35 for those that may hide "
-             "others");
+    add_opacity(command, render);
     add_size(command, render.picture);
     add_camera(command, render);
     add_cuts(command, render);

@@ -32,6 +32,28 @@ std::string_view method_name(const DrawJob& job, const DrawInput& input) {
     return job.method.draw ? name_of(*job.method.draw) : name_of(input.scene->report().method);
 }
 
+/// As `opacity` takes it.
+std::string opacity_text(const OpacityCurve& opacity) {
+    std::string text;
+    for (const OpacityPoint& point : opacity.points)
+        text += fmt::format("{}{}:{}", text.empty() ? "" : ",", rounded(point.value), rounded(point.opacity));
+    return text;
+}
+
+Json volume_json(const DrawInput& input, const PictureNumbers& picture) {
+    if (!input.volume) return nullptr;
+    Json opacity = Json::array();
+    for (const OpacityPoint& point : input.volume->opacity.points)
+        opacity.push_back(Json::array({point.value, point.opacity}));
+    return {{"opacity", std::move(opacity)},
+            {"opacity_length", input.scene->report().opacity_length},
+            {"isovalues", input.volume->isosurfaces},
+            {"clusters", picture.volume.clusters},
+            {"tets", picture.volume.tets},
+            {"segments", picture.volume.segments},
+            {"bytes", picture.volume.bytes}};
+}
+
 std::string_view index_name(const DrawJob& job) { return name_of(job.index.value_or(default_index)); }
 
 Json json_of(const DeviceWork& work) {
@@ -72,6 +94,15 @@ std::string render_table(const DrawJob& job, const DrawReport& drawn) {
         table.row({what, report.store ? fmt::format("{} drawn, {} sent", counted(surface.tets, "tet"),
                                                     format_bytes(surface.sent_bytes))
                                       : counted(surface.triangles, "triangle")});
+    }
+    if (input.volume) {
+        const VolumeWork& work = picture.volume;
+        if (!input.volume->opacity.points.empty())
+            table.row({"opacity",
+                       fmt::format("{} of {}", opacity_text(input.volume->opacity), rounded(report.opacity_length))});
+        table.row(
+            {"volume", fmt::format("{} in {}, {}, {}", counted(work.tets, "tet"), counted(work.clusters, "cluster"),
+                                   counted(work.segments, "segment"), format_bytes(work.bytes))});
     }
     if (input.colors)
         table.row(
@@ -122,6 +153,7 @@ Json render_json(const DrawJob& job, const DrawReport& drawn) {
                             {"bytes_sent", tets ? Json(surface.sent_bytes) : Json(nullptr)}});
     }
     report["surfaces"] = std::move(surfaces);
+    report["volume"] = volume_json(input, picture);
     report["camera"] = picture.camera;
     report["step"] = input.step ? Json(*input.step) : Json(nullptr);
     report["time"] = input.time ? Json(*input.time) : Json(nullptr);
@@ -143,6 +175,7 @@ Json render_json(const DrawJob& job, const DrawReport& drawn) {
                          {"write", picture.write_seconds}};
     report["extracting"] = json_of(made.extract_work);
     report["drawing"] = json_of(picture.drawing);
+    report["peak_memory"] = picture.peak_memory ? Json(*picture.peak_memory) : Json(nullptr);
     report["pictures"] = picture.pictures;
     report["file"] = json_text(picture.file);
     report["width"] = job.picture.width;

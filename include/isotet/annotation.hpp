@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <isotet/export.hpp>
+#include <isotet/opacity.hpp>
 #include <isotet/picture.hpp>
 #include <isotet/scene.hpp>
 #include <isotet/result.hpp>
@@ -38,6 +39,8 @@ struct Orientation {
 struct Annotation {
     std::string title;
     std::optional<ColorScale> scale;
+    OpacityCurve opacity = {}; ///< of a volume, a line over the scale: transparent at its left edge, the most opaque at
+                               ///< its right; without points: none
     std::string no_data; ///< what the scale's colour for no data means; empty: it is not shown
     std::vector<LegendEntry> legend;
     std::string caption; ///< cut off with an ellipsis where it is too long

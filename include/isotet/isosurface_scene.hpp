@@ -17,6 +17,7 @@
 #include <isotet/export.hpp>
 #include <isotet/field_statistics.hpp>
 #include <isotet/grid.hpp>
+#include <isotet/opacity.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/refine.hpp>
 #include <isotet/render.hpp>
@@ -34,6 +35,18 @@ enum class ShadeBy : std::uint8_t {
     faces     ///< every triangle is flat
 };
 
+/// How the field is drawn as a volume.
+///
+/// `opacity`          without points: nothing but the isosurfaces that rays meet
+/// `opacity_length`   that the opacity is of; nothing: a tenth of the diagonal of the box around the grid
+/// `isosurfaces`      isovalues of surfaces that rays meet, opaque, with the colours of isosurfaces
+struct VolumeLook {
+    ColorScale scale;
+    OpacityCurve opacity;
+    std::optional<double> opacity_length = {};
+    std::vector<double> isosurfaces = {};
+};
+
 /// How a scene looks.
 struct SceneLook {
     std::optional<ColorField> colors; ///< of isosurfaces and slices; nothing: each isovalue has its own colour of `map`
@@ -49,6 +62,7 @@ struct SceneLook {
                                    ///< drawn
     std::vector<Plane> clips;      ///< of isosurfaces and boundary only normal . p <= offset is shown
     std::vector<Plane> slices;     ///< through the grid; not clipped
+    std::optional<VolumeLook> volume = {}; ///< of the field; curved cells are then split at their nodes
 };
 
 /// Colour and opacity of one of several isosurfaces.
@@ -114,6 +128,7 @@ struct SceneReport {
     Method method = Method::direct;        ///< of the last surfaces
     DeviceWork extract_work;               ///< of the last ones on the device
     std::optional<TetStoreReport> store;   ///< with IsosurfaceOptions::draw
+    double opacity_length = 0;             ///< with SceneLook::volume
 };
 
 /// A scene of isosurfaces of one grid, or of one surface. Moving is cheap; it keeps the device open, if it has one.
@@ -124,9 +139,11 @@ class ISOTET_API IsosurfaceScene {
 public:
     /// Finds the boundary, starts the session, and packs and uploads what all isovalues share.
     ///
+    /// `look`     with a volume the grid is packed, and the scene is one for draw()
     /// `device`   that will draw the scene; nothing: surfaces stay in the machine's memory, for draw()
     /// Errors   as Contour::create(), Contour::prepare(), boundary_of(), TetStore::upload() and TetIndex::create();
-    ///          invalid_argument when options need a device and there is none
+    ///          invalid_argument when options need a device and there is none, or a volume is to be drawn by one, or
+    ///          has no field
     static Result<IsosurfaceScene> create(const std::optional<Device>& device, IsosurfaceOptions options,
                                           SceneLook look, const Run& run = {});
 
@@ -141,6 +158,9 @@ public:
     /// Errors   as Contour::extract(), DeviceMesh::upload() and DeviceColors; the CPU replaces a
     ///          device that fails, with a note, unless it is required
     Result<void> show(std::span<const double> isovalues, const Run& run = {});
+
+    /// Changes how the volume looks, from the next show() on. Nothing where the scene was made without one.
+    void set_volume(const VolumeLook& look);
 
     /// Points a camera at the whole grid or surface: the same for all isovalues, and with `orbit` from all sides at one
     /// distance.

@@ -12,7 +12,10 @@
 #include <isotet/camera.hpp>
 #include <isotet/export.hpp>
 #include <isotet/grid.hpp>
+#include <isotet/opacity.hpp>
+#include <isotet/pack.hpp>
 #include <isotet/picture.hpp>
+#include <isotet/slice.hpp>
 #include <isotet/surface.hpp>
 
 namespace isotet {
@@ -46,6 +49,7 @@ struct ISOTET_API ColorScale {
 
     /// The place of a value in the map, not limited to 0 to 1; NaN for what is no number.
     double place_of(double value) const noexcept;
+    double value_of(double place) const noexcept; ///< the value at a place of the map
 };
 
 /// Values that colour a surface in memory.
@@ -79,6 +83,24 @@ struct DrawnLines {
     double lift = 0;  ///< nearer by this part of the depth of the picture: edges of a surface are then before it
 };
 
+/// An isosurface that is met by rays through a volume, opaque, and not extracted.
+struct DrawnIsosurface {
+    double isovalue = 0; ///< in the unit of the field; finite
+    Color color{0.70F, 0.75F, 0.80F, 1};
+};
+
+/// The field of a packed grid as a medium that absorbs and emits light, linear in each tet. Other cells are seen as the
+/// tets of PackOptions::split_cells. Cells with a corner whose value is NaN or infinite are empty; where cells overlap
+/// each is seen. On a logarithmic scale the logarithm is linear in each tet, and values below 0 are far below the scale.
+struct DrawnVolume {
+    const PackedGrid* grid = nullptr; ///< borrowed; with its field
+    ColorScale scale;
+    OpacityCurve opacity;                     ///< without points: only `isosurfaces` are seen
+    double opacity_length = 1;                ///< that `opacity` is of, in the unit of coordinates; above 0
+    std::vector<DrawnIsosurface> isosurfaces; ///< shaded by the gradient of the field in each tet
+    std::vector<Plane> clips;                 ///< only normal . p <= offset is seen; rays are cut, not cells
+};
+
 /// The twelve edges of a box.
 ISOTET_API DrawnLines outline_of(const Box& box);
 
@@ -89,6 +111,7 @@ struct Scene {
     std::vector<DrawnSurface> surfaces;
     std::vector<DrawnLines> lines;
     Box bounds;
+    std::vector<DrawnVolume> volumes = {}; ///< that do not overlap; the CPU draws them
 };
 
 struct PictureOptions {

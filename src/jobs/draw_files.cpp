@@ -8,8 +8,10 @@
 #include <fmt/format.h>
 
 #include <isotet/compare_pictures.hpp>
+#include <isotet/jobs/number_text.hpp>
 #include <isotet/jobs/output_names.hpp>
 #include <isotet/picture_file.hpp>
+#include <isotet/process_memory.hpp>
 
 #include "base/stopwatch.hpp"
 #include "jobs/frame_drawer.hpp"
@@ -31,6 +33,17 @@ std::string name_of_picture(const DrawJob& job) {
     return std::filesystem::path(file).stem().string() + ".png";
 }
 
+/// Shows the isovalues of a frame: as surfaces, or of a sweep through a volume as its peak of opacity or its isosurface.
+Result<void> show_frame(const DrawJob& job, DrawInput& input, const std::vector<double>& isovalues, const Run& run) {
+    if (!input.volume || job.sweep.empty()) return input.scene->show(isovalues, run);
+    const FieldReport& field = input.scene->report().field;
+    if (job.dirac.empty())
+        input.volume->opacity = opacity_of(OpacityPreset::peaks, {field.lower, field.upper}, isovalues);
+    else input.volume->isosurfaces = isovalues;
+    input.scene->set_volume(*input.volume);
+    return input.scene->show({}, run);
+}
+
 /// Extracts, draws and writes one picture after another; returns the last one.
 Result<Picture> draw_frames(const std::vector<Frame>& frames, const DrawJob& job, Drawer& drawer, PictureSource& source,
                             DrawInput& input, PictureFiles& files, PictureNumbers& numbers, Caller& caller) {
@@ -48,7 +61,7 @@ Result<Picture> draw_frames(const std::vector<Frame>& frames, const DrawJob& job
             input = *std::move(next);
         }
         if (i == 0 || next_step || frames[i].isovalues != frames[i - 1].isovalues) {
-            if (auto shown = input.scene->show(frames[i].isovalues, caller.run()); !shown) return shown.error();
+            if (auto shown = show_frame(job, input, frames[i].isovalues, caller.run()); !shown) return shown.error();
             caller.notes(input.scene->take_notes());
             note_what_is_empty(job, input, caller);
         }
@@ -66,6 +79,8 @@ Result<Picture> draw_frames(const std::vector<Frame>& frames, const DrawJob& job
     numbers.write_seconds += writing.seconds();
     numbers.bytes = files.bytes();
     numbers.drawing = drawer.work();
+    numbers.volume = drawer.volume_work();
+    numbers.peak_memory = peak_resident_memory();
     numbers.camera = to_text(frame_drawer.camera());
     caller.detail("`camera` " + numbers.camera);
     if (const std::string film = files.film_command(job.frames_per_second); !film.empty())
@@ -113,10 +128,29 @@ Result<void> check_method(const DrawJob& job) {
     return {};
 }
 
+/// Refuses what does not go with a volume, or needs one.
+Result<void> check_volume(const DrawJob& job) {
+    if (!draws_volume(job)) {
+        if (job.volume_opacity) return refusal("`opacity` by values of the field is that of a volume: `volume`");
+        if (job.opacity_length) return refusal("`opacity_length` is that of a volume: `volume`");
+        return {};
+    }
+    if (job.method.draw)
+        return refusal("`volume` draws a volume, but `method` {} draws tets", name_of(*job.method.draw));
+    if (job.method.extract == Method::direct)
+        return refusal("`volume` needs the grid in clusters, but `method` direct packs nothing");
+    if (job.opacity_length && !(*job.opacity_length > 0))
+        return refusal("`opacity_length` is {}, but it must be above 0", shortest(*job.opacity_length));
+    if (!job.sweep.empty() && job.volume_opacity && job.volume_opacity->preset != OpacityPreset::peaks)
+        return refusal("`sweep` moves a peak of opacity through the volume, but `opacity` says where it is");
+    return {};
+}
+
 } // namespace
 
 Result<DrawReport> draw_files(const DrawJob& job, Caller& caller) {
     if (Result<void> fits = check_method(job); !fits) return fits.error();
+    if (Result<void> fits = check_volume(job); !fits) return fits.error();
     // The number of steps is known only when the file was looked into; all else is checked before.
     std::optional<PictureFiles> files;
     const auto open = [&](std::size_t steps) -> Result<void> {

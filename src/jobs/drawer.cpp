@@ -10,7 +10,9 @@ Result<Drawer> Drawer::open(const DrawJob& job, Caller& caller) {
     Drawer drawer;
     const std::string& name = job.device.name;
     const bool wanted = (!name.empty() && name != "none") || job.engine == EngineChoice::vulkan || job.method.draw;
-    if (!wanted) return drawer;
+    if (wanted && draws_volume(job))
+        caller.note("the CPU draws volumes, and extracts what is drawn with them: no device is used");
+    if (!wanted || draws_volume(job)) return drawer;
     Result<Device> device = open_drawing_device(job.device, caller);
     if (!device) return device.error();
     Result<Renderer> renderer = Renderer::create(*device);
@@ -21,7 +23,7 @@ Result<Drawer> Drawer::open(const DrawJob& job, Caller& caller) {
 }
 
 Result<Picture> Drawer::draw(const Scene& scene, const PictureOptions& options, const Run& run) {
-    return renderer_ ? renderer_->draw(scene, options, run) : isotet::draw(scene, options, run);
+    return renderer_ ? renderer_->draw(scene, options, run) : isotet::draw(scene, options, run, volume_work_);
 }
 
 } // namespace isotet::jobs

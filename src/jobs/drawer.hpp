@@ -10,18 +10,21 @@ namespace isotet::jobs {
 
 class Drawer {
 public:
-    /// The CPU, unless a device, `engine` vulkan or a method that draws tets asks for a device.
+    /// The CPU, unless a device, `engine` vulkan or a method that draws tets asks for a device. Volumes are drawn by the
+    /// CPU in any case, which is noted.
     /// Errors   no_device when one is asked for and there is none
     static Result<Drawer> open(const DrawJob& job, Caller& caller);
 
     const std::optional<Device>& device() const noexcept { return device_; } ///< nothing: the CPU draws
     DeviceWork work() const { return renderer_ ? renderer_->work() : DeviceWork(); }
+    const VolumeWork& volume_work() const noexcept { return volume_work_; } ///< of the last picture
 
     Result<Picture> draw(const Scene& scene, const PictureOptions& options, const Run& run);
 
 private:
     std::optional<Device> device_;
     std::optional<Renderer> renderer_;
+    VolumeWork volume_work_;
 };
 
 } // namespace isotet::jobs

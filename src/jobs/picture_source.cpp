@@ -27,6 +27,9 @@ bool names_isovalues(const DrawJob& job) {
     return !job.isovalues.empty() || !job.shares.empty() || job.levels > 0 || !job.sweep.empty() || job.method.draw;
 }
 
+/// Whether isovalues were asked for, or a volume, which is one of a field as well.
+bool asks_for_field(const DrawJob& job) { return names_isovalues(job) || draws_volume(job); }
+
 Result<std::vector<double>> choose_levels(const DrawJob& job, const PointField& field, const ValueRange& range) {
     std::vector<double> levels = evenly_spaced_levels(
         range.lower, range.upper, job.levels > 0 ? job.levels : default_levels, LevelRounding::short_decimals);
@@ -65,6 +68,8 @@ struct PictureSource::Contents {
     Grid grid;
     std::optional<PointField> field; ///< that is contoured
     std::optional<ColorField> colors;
+    std::optional<VolumeLook> volume;
+    std::optional<ColorField> volume_colors;
     bool model = false; ///< the boundary is what is shown: opaque, coloured where there are colours
 };
 
@@ -98,7 +103,7 @@ Result<PictureSource> PictureSource::open(const DrawJob& job, Caller& caller) {
 
 /// Whether isosurfaces are drawn, as far as options say: else the boundary or slices.
 bool PictureSource::wants_surfaces() const {
-    return names_isovalues(job_) ||
+    return asks_for_field(job_) ||
            (job_.slices.empty() && (job_.boundary_color_by.empty() || !job_.field.name.empty()));
 }
 
@@ -159,7 +164,9 @@ SceneLook PictureSource::look_of(const Contents& contents) const {
         look.isovalue_range = {std::min(job_.sweep[0], job_.sweep[1]), std::max(job_.sweep[0], job_.sweep[1])};
     look.map = job_.scale.map;
     look.opacity = job_.opacity;
-    look.boundary_opacity = job_.boundary.value_or(contents.model ? 1 : default_boundary_opacity);
+    look.volume = contents.volume;
+    if (contents.volume) look.isovalue_range = {contents.volume->scale.lower, contents.volume->scale.upper};
+    look.boundary_opacity = job_.boundary.value_or(contents.model ? 1 : contents.volume ? 0 : default_boundary_opacity);
     look.outline = job_.outline;
     look.line_width = std::max(1.0, job_.picture.height / 600.0);
     look.edges = job_.edges;
@@ -174,10 +181,10 @@ SceneLook PictureSource::look_of(const Contents& contents) const {
 }
 
 Result<DrawInput> PictureSource::take_surface(const std::optional<Device>& device, Caller& caller) {
-    if (names_isovalues(job_) || !job_.field.name.empty() || job_.boundary || job_.method.extract ||
+    if (asks_for_field(job_) || !job_.field.name.empty() || job_.boundary || job_.method.extract ||
         !job_.boundary_color_by.empty() || !job_.slices.empty()) {
         return refusal("{} is a surface: it has no isovalues, no field to contour (`color_by` colours it), no "
-                       "boundary, no slices and no tets",
+                       "boundary, no volume, no slices and no tets",
                        job_.grid.file);
     }
     DrawInput input;
@@ -258,12 +265,12 @@ void PictureSource::read_ahead(std::size_t step, Caller& caller) {
 /// What is drawn where no field is named: what first_view() says, unless isovalues or colours are asked for.
 Result<void> PictureSource::take_first_view(bool& contours, std::string& field, std::string& color, Contents& contents,
                                             Caller& caller) const {
-    if (first_.field.empty() && names_isovalues(job_))
+    if (first_.field.empty() && asks_for_field(job_))
         return Error{ErrorCode::invalid_data,
                      fmt::format("none of the {} fields has two different values: there is nothing to contour; "
                                  "`field` x, y or z contours a coordinate",
                                  source_->info().fields.size())};
-    const bool as_model = contours && !names_isovalues(job_) && color.empty() && first_.draw != FirstDraw::isosurfaces;
+    const bool as_model = contours && !asks_for_field(job_) && color.empty() && first_.draw != FirstDraw::isosurfaces;
     caller.note(first_.field.empty() ? std::string("no field varies: the boundary of the grid is drawn")
                                      : note_of(first_));
     if (as_model) {
@@ -310,7 +317,59 @@ Result<PictureSource::Contents> PictureSource::read_contents(std::size_t step, C
         if (!colors) return colors.error();
         contents.colors = *std::move(colors);
     }
+    if (draws_volume(job_))
+        if (auto taken = take_volume(contents, caller); !taken) return taken.error();
     return contents;
+}
+
+/// The colours and the opacity of a volume. All steps have those of the first, by the range of all.
+Result<void> PictureSource::take_volume(Contents& contents, Caller& caller) {
+    const PointField& field = *contents.field;
+    for (const std::string* name : {&job_.color_by, &job_.boundary_color_by})
+        if (!name->empty() && *name != field.name)
+            return refusal(
+                "colours are those of '{}', but the volume is one of '{}', and a picture has one colour scale", *name,
+                field.name);
+    if (auto widened = widen_range(field.name, caller); !widened) return widened;
+    Result<ColorOptions> options = color_options(job_.scale, job_.range);
+    if (!options) return options.error();
+    const Result<ColorScale> scale = color_scale(std::span(&field.values, 1), *options, caller.run());
+    if (!scale) return scale.error();
+    VolumeLook look{*scale, {}, job_.opacity_length, job_.dirac};
+    if (volume_opacity_) look.opacity = *volume_opacity_;
+    else if (job_.volume_opacity && !job_.volume_opacity->preset) look.opacity = job_.volume_opacity->curve;
+    else if (job_.volume_opacity || job_.dirac.empty()) {
+        const Result<ValueRange> range = typical_range_of_steps(field, caller);
+        if (!range) return range.error();
+        const OpacityText wish = job_.volume_opacity.value_or(OpacityText{{}, OpacityPreset::ramp, 0});
+        const std::vector<double> levels =
+            evenly_spaced_levels(range->lower, range->upper, wish.peaks > 0 ? wish.peaks : default_levels);
+        if (levels.empty())
+            return Error{ErrorCode::invalid_data,
+                         fmt::format("field '{}' has no finite value: there is nothing to draw", field.name)};
+        look.opacity = opacity_of(*wish.preset, *range, levels);
+    }
+    volume_opacity_ = look.opacity;
+    contents.volume_colors = ColorField{field.name, field.values, Association::point, *scale};
+    contents.volume = std::move(look);
+    return {};
+}
+
+Result<void> PictureSource::choose_isovalues(const Contents& contents, DrawInput& input, Caller& caller) {
+    if (job_.isovalues.empty() && job_.shares.empty()) {
+        const Result<ValueRange> range = typical_range_of_steps(*contents.field, caller);
+        if (!range) return range.error();
+        Result<std::vector<double>> levels = choose_levels(job_, *contents.field, *range);
+        if (!levels) return levels.error();
+        input.isovalues = *std::move(levels);
+        if (steps_.size() > 1) job_.isovalues = input.isovalues;
+        return {};
+    }
+    const auto found = isovalues_at(contents.grid, *contents.field, job_.shares, caller.run());
+    if (!found) return found.error();
+    input.isovalues = job_.isovalues;
+    input.isovalues.insert(input.isovalues.end(), found->begin(), found->end());
+    return {};
 }
 
 Result<DrawInput> PictureSource::read(std::size_t which, const std::optional<Device>& device, Caller& caller) {
@@ -326,23 +385,13 @@ Result<DrawInput> PictureSource::read(std::size_t which, const std::optional<Dev
     input.time = time_of(source_->info(), step);
     if (source_->info().times.size() > 1) input.step = step;
     input.cells = contents->grid.cells.count();
-    input.colors = contents->colors;
+    input.colors = contents->volume ? contents->volume_colors : contents->colors;
+    input.volume = contents->volume;
     IsosurfaceOptions options;
     if (contents->field) {
         input.field = contents->field->name;
-        if (job_.isovalues.empty() && job_.shares.empty()) {
-            const Result<ValueRange> range = typical_range_of_steps(*contents->field, caller);
-            if (!range) return range.error();
-            Result<std::vector<double>> levels = choose_levels(job_, *contents->field, *range);
-            if (!levels) return levels.error();
-            input.isovalues = *std::move(levels);
-            if (steps_.size() > 1) job_.isovalues = input.isovalues;
-        } else {
-            const auto found = isovalues_at(contents->grid, *contents->field, job_.shares, caller.run());
-            if (!found) return found.error();
-            input.isovalues = job_.isovalues;
-            input.isovalues.insert(input.isovalues.end(), found->begin(), found->end());
-        }
+        if (!contents->volume || (names_isovalues(job_) && job_.sweep.empty()))
+            if (auto chosen = choose_isovalues(*contents, input, caller); !chosen) return chosen.error();
         options.field = *contents->field;
     }
     options.grid = contents->grid;
@@ -355,9 +404,10 @@ Result<DrawInput> PictureSource::read(std::size_t which, const std::optional<Dev
     if (options.field.averaged && !job_.refine_averaged) options.refine.reset();
     options.index = job_.index.value_or(default_index);
     options.picture = job_.picture;
-    options.where = job_.engine == EngineChoice::vulkan ? ExtractOn::device
-                    : job_.engine == EngineChoice::cpu  ? ExtractOn::cpu
-                                                        : ExtractOn::best;
+    options.where = draws_volume(job_)                    ? ExtractOn::cpu
+                    : job_.engine == EngineChoice::vulkan ? ExtractOn::device
+                    : job_.engine == EngineChoice::cpu    ? ExtractOn::cpu
+                                                          : ExtractOn::best;
     const SceneLook look = look_of(*contents);
     contents->grid = {};
     Result<IsosurfaceScene> scene = IsosurfaceScene::create(device, std::move(options), look, caller.run());

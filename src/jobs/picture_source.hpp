@@ -40,6 +40,8 @@ private:
                                  Caller& caller) const;
     Result<void> keep_steps_with_fields(Caller& caller);
     Result<Contents> read_contents(std::size_t step, Caller& caller);
+    Result<void> take_volume(Contents& contents, Caller& caller);
+    Result<void> choose_isovalues(const Contents& contents, DrawInput& input, Caller& caller);
     Result<void> widen_range(const std::string& color, Caller& caller);
     Result<ValueRange> typical_range_of_steps(const PointField& first, Caller& caller);
     Result<Grid> read_grid(const FieldsToRead& fields, std::size_t step, Caller& caller);
@@ -53,6 +55,7 @@ private:
     std::optional<GridSource> source_;
     std::vector<std::size_t> steps_;
     FirstView first_; ///< where no field is named
+    std::optional<OpacityCurve> volume_opacity_; ///< of the first step
 
     FieldsToRead last_read_;          ///< of the last step
     std::future<Result<Grid>> ahead_; ///< the next step, with the same fields

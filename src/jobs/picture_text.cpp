@@ -33,6 +33,14 @@ std::string plane_text(const Plane& plane) {
                        rounded(plane.normal[2]), rounded(plane.offset));
 }
 
+/// "gyroid", or with the isovalues of surfaces that rays meet "gyroid = 0.2".
+std::string volume_text(const DrawInput& input) {
+    const std::vector<double>& isovalues = input.volume->isosurfaces;
+    constexpr std::size_t few_isovalues = 6;
+    if (isovalues.empty() || isovalues.size() > few_isovalues) return input.field;
+    return fmt::format("{} = {}", input.field, fmt::join(told_apart(isovalues), ", "));
+}
+
 } // namespace
 
 std::string percent_text(double share) { return rounded(100 * share) + " %"; }
@@ -78,6 +86,7 @@ Annotation annotation_of(const DrawJob& job, const DrawInput& input) {
     if (!input.field.empty() && surfaces.size() == 1)
         add(fmt::format("{} = {}", input.field,
                         rounded(*surfaces.front().isovalue, (field.upper - field.lower) / 1000)));
+    else if (!input.field.empty() && surfaces.empty() && input.volume) add(volume_text(input));
     else if (!input.field.empty() && (input.colors || job.method.draw) && surfaces.size() <= few)
         add(fmt::format("{} = {}", input.field, fmt::join(values, ", ")));
     else if (!input.field.empty()) add(fmt::format("{} at {} isovalues", input.field, surfaces.size()));
@@ -101,6 +110,7 @@ Annotation annotation_of(const DrawJob& job, const DrawInput& input) {
     if (input.colors) {
         annotation.title = input.colors->name;
         annotation.scale = input.colors->scale;
+        if (input.volume) annotation.opacity = input.volume->opacity;
         if (input.colors->has_no_data) annotation.no_data = "no data";
     } else if (surfaces.size() > 1) {
         annotation.title = input.field;

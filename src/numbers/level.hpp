@@ -6,6 +6,8 @@
 #include <optional>
 #include <string_view>
 
+#include <isotet/export.hpp>
+
 namespace isotet::core {
 
 enum class Level : std::uint8_t {
@@ -15,13 +17,13 @@ enum class Level : std::uint8_t {
 };
 
 /// The best level of this machine, or the forced one.
-Level level();
+ISOTET_API Level level();
 
 /// The best level of this machine.
-Level best_level();
+ISOTET_API Level best_level();
 
 /// For tests and benchmarks: uses this level from now on; nothing lifts it. Must not be above best_level().
-void force_level(std::optional<Level> level);
+ISOTET_API void force_level(std::optional<Level> level);
 
 std::string_view name_of(Level level);
 

@@ -74,6 +74,7 @@ private:
     void paint_orientation(Picture& picture, const Color& ink) const;
     double bar_height() const { return std::round(0.55 * whole_.height); }
     void paint_bar(Picture& picture, double x, double y, const Color& ink) const;
+    void paint_opacity(Picture& picture, double x, double y, double stroke) const;
     void paint_entry(Picture& picture, double x, double y, const LegendEntry& entry, const Color& ink) const;
 
     const Annotation& annotation_;
@@ -149,10 +150,28 @@ void Layout::paint_bar(Picture& picture, double x, double y, const Color& ink) c
     for (double row = 0; row < height; ++row)
         fill(picture, x, y + row, swatch_, 1, color_at(scale.map, 1 - (row + 0.5) / height));
     const double stroke = std::max(1.0, std::round(size_ / 16));
+    paint_opacity(picture, x, y, stroke);
     for (const Tick& tick : ticks_) {
         const double at = std::round(y + (1 - std::clamp(scale.place_of(tick.value), 0.0, 1.0)) * (height - stroke));
         fill(picture, x + swatch_, at, 0.35 * size_, stroke, ink);
         text_->paint(picture, x + swatch_ + 0.8 * size_, std::round(at + text_->ascent() / 2), tick.label, ink);
+    }
+}
+
+/// The curve of opacity over the scale, dark on light colours and light on dark ones.
+void Layout::paint_opacity(Picture& picture, double x, double y, double stroke) const {
+    const OpacityCurve& opacity = annotation_.opacity;
+    if (opacity.is_transparent()) return;
+    const double height = bar_height(), most = std::ranges::max(opacity.points, {}, &OpacityPoint::opacity).opacity;
+    double before = -1;
+    for (double row = 0; row < height; ++row) {
+        const double place = 1 - (row + 0.5) / height;
+        const double at = opacity.at(annotation_.scale->value_of(place)) / most * (swatch_ - stroke);
+        const double from = before < 0 ? at : std::min(before, at), to = before < 0 ? at : std::max(before, at);
+        const bool on_light = is_light(color_at(annotation_.scale->map, place));
+        fill(picture, x + std::round(from), y + row, std::round(to) - std::round(from) + stroke, 1,
+             on_light ? dark : light);
+        before = at;
     }
 }
 

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "base/errors.hpp"
 #include "base/guard.hpp"
 #include "base/stopwatch.hpp"
 #include "scene/scene_data.hpp"
@@ -18,6 +19,9 @@ Result<IsosurfaceScene> IsosurfaceScene::create(const std::optional<Device>& dev
                                                 SceneLook look, const Run& run) {
     return core::guarded("making a scene", [&]() -> Result<IsosurfaceScene> {
         auto data = std::make_unique<Data>(Data{device, std::move(look)});
+        if (data->look.volume && (device || options.draw || options.field.values.empty()))
+            return invalid_argument(options.field.values.empty() ? "a volume without a field"
+                                                                 : "a volume on a device, but the CPU draws volumes");
         options.grid.point_fields = options.grid.cell_fields = {};
         if (auto looked = data->look_around(options.grid, run); !looked) return looked.error();
         const IsosurfaceOptions tets{{}, {}, 1, {}, ExtractOn::cpu, options.draw, options.index, options.picture};
@@ -54,6 +58,10 @@ Result<void> IsosurfaceScene::show(std::span<const double> isovalues, const Run&
         data.dress();
         return {};
     });
+}
+
+void IsosurfaceScene::set_volume(const VolumeLook& look) {
+    if (data_->look.volume) data_->look.volume = look;
 }
 
 void IsosurfaceScene::fit(Camera& camera, double aspect, Fit fit) const {

@@ -47,6 +47,7 @@ struct IsosurfaceScene::Data {
     Scene scene = {};
     std::vector<ShownSurface> shown = {};
     SceneReport report = {};
+    std::optional<PackedGrid> volume_grid = {}; ///< that is drawn as a volume
     bool pack_is_told = false; ///< the report has what the next extraction tells of packing
     std::vector<std::string> notes = {};
 
@@ -62,6 +63,7 @@ struct IsosurfaceScene::Data {
     bool hides_another(std::size_t which) const;
     std::uint64_t smallest_size() const;
     void dress();
+    void add_volume();
     void clear();
 };
 

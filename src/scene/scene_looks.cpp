@@ -1,5 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Colours and opacities of isosurfaces that are shown together.
+#include <cmath>
+
 #include "scene/scene_data.hpp"
 
 namespace isotet {
@@ -67,6 +69,27 @@ void IsosurfaceScene::Data::dress() {
     if (look.outline) scene.lines.push_back(outline_of(bounds));
     for (DrawnLines& lines : scene.lines) lines.width = look.line_width * (lines.lift > 0 ? 0.6 : 1);
     scene.surfaces.insert(scene.surfaces.end(), fixed.begin(), fixed.end());
+    scene.volumes.clear();
+    if (volume_grid) add_volume();
+}
+
+/// The field as a volume; the isosurfaces that its rays meet have the colours of others.
+void IsosurfaceScene::Data::add_volume() {
+    const VolumeLook& volume = *look.volume;
+    DrawnVolume& drawn = scene.volumes.emplace_back();
+    drawn.grid = &*volume_grid;
+    drawn.scale = volume.scale;
+    drawn.opacity = volume.opacity;
+    double square = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double length = bounds.upper[axis] - bounds.lower[axis];
+        square += length * length;
+    }
+    drawn.opacity_length = report.opacity_length = volume.opacity_length.value_or(0.1 * std::sqrt(square));
+    drawn.clips = look.clips;
+    const auto value_at = [&](std::size_t at) { return std::optional(volume.isosurfaces[at]); };
+    for (std::size_t i = 0; i < volume.isosurfaces.size(); ++i)
+        drawn.isosurfaces.push_back({volume.isosurfaces[i], color_among(volume.isosurfaces.size(), i, value_at, look)});
 }
 
 std::vector<SurfaceLook> looks_of(std::span<const double> isovalues, std::span<const Box> boxes,

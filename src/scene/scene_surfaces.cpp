@@ -29,7 +29,7 @@ Result<void> IsosurfaceScene::Data::start(IsosurfaceOptions wanted, const Run& r
     options.normals = look.shade_by == ShadeBy::gradient || wanted.draw || wanted.where == ExtractOn::device
                           ? Normals::gradient
                           : Normals::none;
-    options.method = wanted.draw ? Method::clusters : wanted.method;
+    options.method = wanted.draw || look.volume ? Method::clusters : wanted.method;
     options.surfaces = wanted.surfaces;
     const bool by_cells = look.colors && look.colors->association == Association::cell;
     const bool by_points = look.colors && !by_cells;
@@ -45,7 +45,7 @@ Result<void> IsosurfaceScene::Data::start(IsosurfaceOptions wanted, const Run& r
     const bool card = device && device->info().kind != DeviceKind::software &&
                       options.method.value_or(method_for(options.surfaces, true)) == Method::clusters;
     const bool use_device = !wanted.draw && (required || (card && !in_memory && wanted.where == ExtractOn::best));
-    if (!use_device && !wanted.draw) options.refine = wanted.refine;
+    if (!use_device && !wanted.draw && !look.volume) options.refine = wanted.refine;
     if (use_device) {
         options.engine = vulkan_engine(*device);
         options.engine_required = required;
@@ -58,6 +58,8 @@ Result<void> IsosurfaceScene::Data::start(IsosurfaceOptions wanted, const Run& r
     if (!created) return created.error();
     contour = *std::move(created);
     if (Result<void> ready = contour->prepare(run); !ready) return ready;
+    if (look.volume) volume_grid = contour->packed();
+    if (volume_grid) report.field = volume_grid->field();
     if (!contour->packed() && !contour->linear_grid()) return {};
     report.pack_seconds = packing.seconds();
     pack_is_told = true;

@@ -154,5 +154,51 @@ TEST_F(RenderOnCpu, ShadesByTheNormalsThatAreAskedFor) {
     EXPECT_GT(unlike(vertex, gradient), 0.01);
 }
 
+TEST_F(RenderOnCpu, DrawsAVolumeWithWhatIsInIt) {
+    const std::vector<std::string> base{"-f", "gyroid", "--plain", "--volume"};
+    const auto with = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), base.begin(), base.end());
+        return more;
+    };
+    const Picture ramp = picture("r.png", with({}));
+    EXPECT_EQ(unlike(picture("a.png", with({"--opacity", "ramp", "--threads", "1"})), ramp), 0);
+    for (const char* opacity : {"peaks", "peaks:1", "shell", "-1:0,0:0.5,1:0"})
+        EXPECT_GT(unlike(picture("b.png", with({std::string("--opacity=") + opacity})), ramp), 0.01) << opacity;
+    EXPECT_GT(unlike(picture("b.png", with({"--opacity-length", "9"})), ramp), 0.01);
+    EXPECT_GT(unlike(picture("b.png", with({"-i", "0.5", "--opacity", "0.9"})), ramp), 0.01) << "a surface inside";
+    EXPECT_GT(unlike(picture("b.png", with({"--clip", "x=0"})), ramp), 0.01);
+    EXPECT_GT(unlike(picture("b.png", with({"--log", "--range", "0.1,1"})), ramp), 0.01);
+    auto words = command("c.png", with({"--dirac", "0.2,0.5"}));
+    const auto report = json_of(words)["volume"];
+    EXPECT_EQ(report["isovalues"].size(), 2u);
+    EXPECT_EQ(report["opacity"].size(), 0u) << "the surfaces alone";
+    for (const char* number : {"clusters", "tets", "segments", "bytes", "opacity_length"})
+        EXPECT_GT(report[number], 0) << number;
+    const RunResult film = isotet({"render", "make:kuhn:6:gyroid", "--volume", "--sweep=-0.5,0.5,3", "-o",
+                                   path("v{frame}.png"), "--size", "60x40"});
+    EXPECT_EQ(film.status, 0) << film.err;
+    EXPECT_GT(unlike(read_picture(path("v1.png")).value(), read_picture(path("v3.png")).value()), 0.01);
+}
+
+TEST_F(RenderOnCpu, RefusesWhatDoesNotGoWithAVolume) {
+    const auto says = [&](std::vector<std::string> more, const char* text) {
+        more.insert(more.begin(), {"-f", "gyroid"});
+        const std::string told = error(std::move(more));
+        EXPECT_NE(told.find(text), std::string::npos) << told;
+    };
+    says({"--opacity", "ramp"}, "that of a volume: --volume");
+    says({"--opacity-length", "1"}, "that of a volume: --volume");
+    says({"--volume", "--opacity-length", "0"}, "a number above 0");
+    says({"--volume", "--opacity", "0:0,1:3"}, "point 2 of the opacity has 3");
+    says({"--volume", "--opacity", "2"}, "a number from 0 to 1");
+    says({"--volume", "--method", "direct"}, "needs the grid in clusters");
+    says({"--volume", "--method", "textures"}, "draws tets");
+    says({"--volume", "--color-by", "sphere"}, "one colour scale");
+    says({"--volume", "--sweep", "0,1,2", "--opacity", "0:1"}, "moves a peak");
+    const RunResult surface =
+        isotet({"render", "make:kuhn:4:gyroid", "-i", "0", "-o", path("s.png"), "--device", "none", "-q"});
+    EXPECT_EQ(surface.status, 0) << surface.err;
+}
+
 } // namespace
 } // namespace isotet::test

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <isotet/color_field.hpp>
+#include <isotet/draw.hpp>
 #include <isotet/isosurface_scene.hpp>
 #include <isotet/isovalue_shares.hpp>
 #include <isotet/jobs/device_choice.hpp>
@@ -59,6 +60,10 @@ struct DrawJob {
     std::string boundary_color_by; ///< a field; empty: none
     bool all_steps = false;
     bool outline = false;                    ///< the box around
+    bool volume = false;                     ///< the field as a volume; isosurfaces only where isovalues are given
+    std::optional<OpacityText> volume_opacity; ///< nothing: a ramp, and with `dirac` none
+    std::optional<double> opacity_length;      ///< that it is of; nothing: a tenth of the diagonal of the grid's box
+    std::vector<double> dirac;                 ///< isovalues of surfaces that rays meet; asks for a volume, too
     bool plain = false;                      ///< no text
     std::string color_by;                    ///< a field; empty: each isovalue has its colour
     ColorScale scale;                        ///< the map, the logarithm and the colour for no data
@@ -86,10 +91,14 @@ struct DrawInput {
     std::optional<std::size_t> step; ///< where there are several
     std::vector<double> isovalues;
     std::optional<ColorField> colors; ///< of whatever is coloured
+    std::optional<VolumeLook> volume;
     std::uint64_t cells = 0;          ///< of the grid
     double read_seconds = 0;
     std::optional<IsosurfaceScene> scene; ///< always there
 };
+
+/// Whether the field is drawn as a volume.
+inline bool draws_volume(const DrawJob& job) { return job.volume || !job.dirac.empty(); }
 
 /// Pictures that were drawn and written.
 struct PictureNumbers {
@@ -97,6 +106,8 @@ struct PictureNumbers {
     std::size_t pictures = 1;
     std::uint64_t bytes = 0;                    ///< of all
     double draw_seconds = 0, write_seconds = 0; ///< for all
+    VolumeWork volume;                          ///< of the last one
+    std::optional<std::uint64_t> peak_memory;   ///< of the process
     DeviceWork drawing;                         ///< of the last one
     std::string camera;                         ///< of the last one, as parse_camera() takes it
     std::optional<double> differs;              ///< share of the pixels, with a reference
@@ -108,8 +119,8 @@ struct DrawReport {
     PictureNumbers pictures;
 };
 
-/// One picture, or one for each isovalue of `sweep`, each direction of `orbit` or each step: read and extracted one
-/// after another, each written while the next one is drawn.
+/// One picture, or one for each isovalue of `sweep` (of a volume a peak of opacity there, or with `dirac` its surface),
+/// each direction of `orbit` or each step: read and extracted one after another, each written while the next one is drawn.
 ///
 /// Memory   one step, with `all_steps` two
 /// Errors   invalid_argument: what is asked for does not fit together or with the file, told before anything large is

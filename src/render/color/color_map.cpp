@@ -60,4 +60,9 @@ double ColorScale::place_of(double value) const noexcept {
     return std::log(value / lower) / std::log(upper / lower);
 }
 
+double ColorScale::value_of(double place) const noexcept {
+    if (!logarithmic) return (1 - place) * lower + place * upper;
+    return lower * std::exp(place * std::log(upper / lower));
+}
+
 } // namespace isotet

@@ -3,11 +3,19 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <memory>
+#include <mutex>
+
+#include <fmt/core.h>
 
 #include "base/carry_out.hpp"
+#include "base/errors.hpp"
+#include "base/memory.hpp"
 #include "base/parallel.hpp"
 #include "render/check_drawing.hpp"
 #include "render/cpu/bins.hpp"
+#include "render/cpu/draw_tuned.hpp"
 #include "render/cpu/tile.hpp"
 
 namespace isotet {
@@ -15,6 +23,8 @@ namespace isotet {
 namespace {
 
 using render::Sheet;
+
+constexpr std::uint64_t volume_bytes_per_thread = 3 << 20; ///< of a tile
 
 /// What is opaque before what is translucent.
 Result<std::vector<Sheet>> sheets_of(const Scene& scene, const render::Space& space, const render::Screen& screen) {
@@ -34,7 +44,45 @@ Result<std::vector<Sheet>> sheets_of(const Scene& scene, const render::Space& sp
     return sheets;
 }
 
-Result<Picture> draw_on_cpu(const Scene& scene, const PictureOptions& options, const Progress& progress) {
+/// Refuses a volume that cannot be drawn.
+Result<void> check_volume(const DrawnVolume& volume) {
+    if (!volume.grid) return invalid_argument("a volume without a grid");
+    if (Result<void> right = render::check_scale(volume.scale); !right) return right;
+    if (Result<void> right = volume.opacity.check(); !right) return right;
+    if (!(volume.opacity_length > 0 && std::isfinite(volume.opacity_length)))
+        return invalid_argument(
+            fmt::format("the length of the opacity is {}, but it must be positive", volume.opacity_length));
+    for (const DrawnIsosurface& one : volume.isosurfaces)
+        if (!std::isfinite(one.isovalue))
+            return invalid_argument(
+                fmt::format("an isosurface of a volume at {}, but it must be finite", one.isovalue));
+    return {};
+}
+
+/// The volumes of a scene, placed; nothing where there are none, or none with a value.
+Result<std::unique_ptr<render::VolumeScene>> volumes_of(const Scene& scene, const render::Space& space,
+                                                        const render::Sight& sight, const render::Tiling& tiling,
+                                                        const render::VolumeTuning& tuning, const Progress& progress) {
+    std::uint64_t bytes = 0;
+    Scene known;
+    for (const DrawnVolume& volume : scene.volumes) {
+        if (Result<void> right = check_volume(volume); !right) return right.error();
+        if (!(volume.grid->field().lower <= volume.grid->field().upper)) continue;
+        const core::Packed& packed = volume.grid->data();
+        bytes +=
+            packed.groups() * sizeof(render::TileBox) + packed.clusters() * sizeof(render::PlacedVolume::ClusterPlace);
+        known.volumes.push_back(volume);
+    }
+    if (known.volumes.empty()) return std::unique_ptr<render::VolumeScene>();
+    const auto threads = static_cast<std::uint64_t>(core::threads_here());
+    if (Result<void> enough = core::require_memory("drawing a volume", bytes + threads * volume_bytes_per_thread);
+        !enough)
+        return enough.error();
+    return std::make_unique<render::VolumeScene>(known, space, sight, tiling, tuning, progress);
+}
+
+Result<Picture> draw_on_cpu(const Scene& scene, const PictureOptions& options, const render::VolumeTuning& tuning,
+                            const Progress& progress, VolumeWork& work) {
     if (Result<void> right = render::check_options(options); !right) return right.error();
     const render::Space space(scene.bounds);
     const render::Screen screen{space.look(options.camera, options.width, options.height), options.width,
@@ -44,31 +92,58 @@ Result<Picture> draw_on_cpu(const Scene& scene, const PictureOptions& options, c
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "drawing was cancelled"};
 
     // A tile's samples fit a core's cache.
-    const render::Tiling tiling{options.width, options.height, options.samples, options.samples > 3 ? 16U : 32U};
+    const render::Tiling tiling{options.width, options.height, options.samples,
+                                options.samples > 3 && scene.volumes.empty() ? 16U : 32U};
+    const Result<std::unique_ptr<render::VolumeScene>> volumes =
+        volumes_of(scene, space, screen.sight, tiling, tuning, progress);
+    if (!volumes) return volumes.error();
+    if (progress.cancelled()) return Error{ErrorCode::cancelled, "drawing was cancelled"};
     const render::Bins bins(*sheets, tiling, screen.sight, progress);
     render::TileScene shared{*sheets,
                              screen,
                              tiling,
                              render::linear_light(options.background),
                              std::clamp(options.background.opacity, 0.0F, 1.0F),
-                             {}};
+                             {},
+                             volumes->get()};
     Picture picture{options.width, options.height, {}};
     picture.pixels.resize(std::size_t{options.width} * options.height);
     std::atomic<std::size_t> done = 0;
+    std::mutex mutex;
+    work = {};
     core::parallel_pieces(tiling.tiles(), 4, progress, [&](std::size_t begin, std::size_t end) {
         render::Tile tile(shared);
-        for (std::size_t i = begin; i < end; ++i) tile.draw(i, bins.of(i), picture);
+        for (std::size_t i = begin; i < end && !progress.cancelled(); ++i) tile.draw(i, bins.of(i), picture);
         progress("draw", static_cast<double>(done += end - begin) / static_cast<double>(tiling.tiles()));
+        const VolumeWork part = tile.volume_work();
+        const std::lock_guard lock(mutex);
+        work.tets += part.tets;
+        work.segments += part.segments;
+        work.bytes = std::max(work.bytes, part.bytes);
     });
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "drawing was cancelled"};
+    if (*volumes) {
+        work.bytes = work.bytes * static_cast<std::uint64_t>(core::threads_here()) + (*volumes)->bytes();
+        work.clusters = (*volumes)->clusters();
+    }
     return picture;
 }
 
 } // namespace
 
+Result<Picture> render::draw_tuned(const Scene& scene, const PictureOptions& options, const VolumeTuning& tuning,
+                                   const Run& run, VolumeWork& work) {
+    return core::carry_out(
+        "drawing", run, [&](const Progress& progress) { return draw_on_cpu(scene, options, tuning, progress, work); });
+}
+
+Result<Picture> draw(const Scene& scene, const PictureOptions& options, const Run& run, VolumeWork& work) {
+    return render::draw_tuned(scene, options, {}, run, work);
+}
+
 Result<Picture> draw(const Scene& scene, const PictureOptions& options, const Run& run) {
-    return core::carry_out("drawing", run,
-                           [&](const Progress& progress) { return draw_on_cpu(scene, options, progress); });
+    VolumeWork work;
+    return draw(scene, options, run, work);
 }
 
 } // namespace isotet

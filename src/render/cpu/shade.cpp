@@ -2,10 +2,10 @@
 #include "render/cpu/shade.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "render/color/color_places.hpp"
+#include "render/cpu/power_of_2.hpp"
 
 namespace isotet::render {
 
@@ -22,15 +22,6 @@ Place cross_of(const Place& a, const Place& b) {
 }
 Place float_place(const Vector& v) {
     return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
-}
-
-/// 2^x for x from -126 to 0, to 2^-22; no library's, which differ in their last bits.
-float power_of_2(float x) {
-    const float whole = std::floor(x), part = x - whole;
-    float power = 1.8937541e-03F;
-    for (const float term : {8.9495904e-03F, 5.5860337e-02F, 2.4014182e-01F, 6.9315449e-01F, 9.9999990e-01F})
-        power = power * part + term;
-    return power * std::bit_cast<float>((static_cast<std::int32_t>(whole) + 127) << 23);
 }
 
 /// How much of each corner there is at a place of the triangle: in the scene, not in the picture.
@@ -72,7 +63,15 @@ Light color_in(const Sheet& sheet, const std::array<float, 3>& values, const std
     return color;
 }
 
+float facing_of(const Place& towards, const Place& to_eye) { return std::clamp(dot_of(towards, to_eye), 0.0F, 1.0F); }
+
 } // namespace
+
+float light_on(const std::array<float, 3>& towards, const std::array<float, 3>& to_eye, const Sight& sight) {
+    const float facing = facing_of(towards, to_eye);
+    const float sky = 0.5F + 0.5F * dot_of(towards, float_place(sight.up));
+    return 0.16F + 0.84F * facing + 0.22F * sky * (1 - facing);
+}
 
 Shade shade(const Sheet& sheet, std::uint32_t triangle, double x, double y, const Sight& sight) {
     if (!sheet.lit) return {sheet.color, 1};
@@ -102,9 +101,7 @@ Shade shade(const Sheet& sheet, std::uint32_t triangle, double x, double y, cons
         if (dot_of(mean, mean) > 0.25F) towards = unit_of(mean);
         if (dot_of(towards, face) < 0) towards = times(towards, -1);
     }
-    const float facing = std::clamp(dot_of(towards, to_eye), 0.0F, 1.0F);
-    const float sky = 0.5F + 0.5F * dot_of(towards, float_place(sight.up));
-    const float light = 0.16F + 0.84F * facing + 0.22F * sky * (1 - facing);
+    const float facing = facing_of(towards, to_eye), light = light_on(towards, to_eye, sight);
 
     Shade shade{sheet.color, 1};
     if (sheet.coloring == Coloring::by_vertex) {

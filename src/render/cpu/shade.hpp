@@ -14,4 +14,7 @@ struct Shade {
 /// `x`, `y`   in samples, from the upper left corner of the picture; inside the triangle
 Shade shade(const Sheet& sheet, std::uint32_t triangle, double x, double y, const Sight& sight);
 
+/// How much light a sheet gives that turns `towards`, which faces the eye at `to_eye`; both are unit vectors.
+float light_on(const std::array<float, 3>& towards, const std::array<float, 3>& to_eye, const Sight& sight);
+
 } // namespace isotet::render

@@ -29,6 +29,7 @@ Tile::Tile(const TileScene& scene)
         down_[i] = static_cast<float>(i / s) - 0.5F * static_cast<float>(s - 1);
     }
     opaque_.resize(count_);
+    if (scene.volumes) volumes_ = std::make_unique<VolumeTile>(*scene.volumes);
 }
 
 void Tile::draw(std::size_t number, std::span<const BinEntry> entries, Picture& picture) {
@@ -41,10 +42,11 @@ void Tile::draw(std::size_t number, std::span<const BinEntry> entries, Picture& 
         }
         add(entry);
     }
+    if (volumes_) follow_rays();
     const auto s = static_cast<std::int64_t>(scene_.screen.samples);
     for (std::int32_t y = 0; y < frame_.height; ++y) {
         for (std::int32_t x = 0; x < frame_.width; ++x) {
-            Blend sum = resolve(x, y);
+            Blend sum = volumes_ ? blend_ray(x, y) : resolve(x, y);
             sum.add_behind(scene_.background, scene_.background_opacity);
             std::array<std::uint8_t, 4>& pixel =
                 picture.pixels[static_cast<std::size_t>((frame_.y / s + y) * picture.width + frame_.x / s + x)];
@@ -67,6 +69,7 @@ void Tile::start(std::size_t number) {
     const std::size_t pixels = static_cast<std::size_t>(frame_.width) * static_cast<std::size_t>(frame_.height);
     facets_.clear();
     farthest_ = INFINITY;
+    if (volumes_) volumes_->start(number, column, row);
     fragments_.clear();
     depths_.assign(pixels * count_, INFINITY);
     owners_.assign(pixels * count_, 0);
@@ -211,8 +214,7 @@ void Tile::take_layers(std::int32_t x, std::int32_t y) {
         const Facet& facet = facets_[fragment.facet];
         const DepthPlane& plane = facet.depth;
         Layer layer;
-        layer.depth = static_cast<float>(plane.at_first + (x * frame_.samples + middle) * plane.per_x +
-                                         (y * frame_.samples + middle) * plane.per_y);
+        layer.depth = depth_in_middle(plane, x, y);
         layer.per_x = static_cast<float>(plane.per_x);
         layer.per_y = static_cast<float>(plane.per_y);
         layer.lower = plane.lower;

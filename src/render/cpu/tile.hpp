@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "render/cpu/encode.hpp"
 #include "render/cpu/raster.hpp"
 #include "render/cpu/shade.hpp"
+#include "render/volume/volume_tile.hpp"
 
 namespace isotet::render {
 
@@ -25,6 +27,7 @@ struct TileScene {
     Light background{};
     float background_opacity = 1;
     LightBytes bytes;
+    const VolumeScene* volumes = nullptr; ///< or null
 };
 
 class Tile {
@@ -33,6 +36,8 @@ public:
 
     /// Draws the tile of this number into the picture. `entries`: what is opaque comes before what is translucent.
     void draw(std::size_t number, std::span<const BinEntry> entries, Picture& picture);
+
+    VolumeWork volume_work() const { return volumes_ ? volumes_->work() : VolumeWork(); } ///< of all tiles so far
 
 private:
     /// A triangle, or the piece of one that is in view, which covers samples of the tile.
@@ -76,6 +81,21 @@ private:
     SampleMask in_front(const DepthPlane& plane, std::size_t pixel, float depth, SampleMask mask) const;
     Shade shade_of(const Facet& facet, std::int32_t x, std::int32_t y, SampleMask mask) const;
     Blend resolve(std::int32_t x, std::int32_t y);
+    void follow_rays();
+    void end_rays();
+    void cut_rays();
+    void take_sheet_distances(std::int32_t x, std::int32_t y, std::size_t ray);
+    Blend blend_ray(std::int32_t x, std::int32_t y);
+    Blend blend_sample(std::uint32_t sample, float end, std::size_t ray, const RayHit& hit) const;
+    float distance_of(float depth) const { return static_cast<float>(scene_.volumes->rays.distance(double{depth})); }
+    float depth_in_middle(const DepthPlane& plane, std::int32_t x, std::int32_t y) const {
+        const double middle = 0.5 * (scene_.screen.samples - 1);
+        return static_cast<float>(plane.at_first + (x * frame_.samples + middle) * plane.per_x +
+                                  (y * frame_.samples + middle) * plane.per_y);
+    }
+    std::size_t pixel_of(std::int32_t x, std::int32_t y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(frame_.width) + static_cast<std::size_t>(x);
+    }
     void take_opaque(std::int32_t x, std::int32_t y);
     void take_layers(std::int32_t x, std::int32_t y);
     Blend blend_whole() const;
@@ -100,6 +120,9 @@ private:
     std::vector<std::pair<float, const Layer*>> order_;
     std::vector<Blend> opaque_; ///< a sample
     Blend mean_opaque_;
+
+    std::unique_ptr<VolumeTile> volumes_;  ///< where the scene has some
+    std::vector<float> distances_;         ///< of the sheets of a pixel
 };
 
 } // namespace isotet::render

@@ -141,6 +141,8 @@ Result<render::Draws> Renderer::Data::plan(const Scene& scene, const PictureOpti
 Result<Picture> Renderer::Data::draw(const Scene& scene, const PictureOptions& options, const Progress& progress) {
     work = {};
     if (Result<void> right = render::check_options(options); !right) return right.error();
+    if (!scene.volumes.empty())
+        return invalid_argument("a scene with a volume on a device, but the CPU draws volumes: draw()");
     const render::Space space(scene.bounds);
     Result<render::Draws> draws = plan(scene, options, space);
     if (!draws) return draws.error();

@@ -1,0 +1,352 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "render/volume/volume_tile.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "numbers/at_level.hpp"
+#include "packed/stored_cells.hpp"
+#include "render/cpu/shade.hpp"
+
+namespace isotet::render {
+
+namespace {
+
+/// The direction in which the values of a tet rise or fall, of length 1; 0 where they do not.
+std::array<float, 3> gradient_direction(const PlacedPoints& points, const std::array<TetCorner, 4>& corners) {
+    const auto edge = [&](std::size_t i) {
+        return minus(points.position[corners[i].local], points.position[corners[0].local]);
+    };
+    const auto rise = [&](std::size_t i) { return corners[i].value - corners[0].value; };
+    const Vector a = edge(1), b = edge(2), c = edge(3);
+    const Vector sum = plus(plus(plus({}, cross(b, c), rise(1)), cross(c, a), rise(2)), cross(a, b), rise(3));
+    const double length = std::sqrt(dot(sum, sum));
+    if (!(length > 0)) return {};
+    return {static_cast<float>(sum[0] / length), static_cast<float>(sum[1] / length),
+            static_cast<float>(sum[2] / length)};
+}
+
+std::array<float, 3> in_float(const Vector& v) {
+    return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+}
+
+/// A number for each of 4 x 4 pixels.
+struct alignas(64) Lane : std::array<float, 16> {};
+
+constexpr Lane lane_x{{0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3}},
+    lane_y{{0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3}};
+
+void find_nearness(const FacePlane& plane, const Lane& x, const Lane& y, std::array<float, 16>& near,
+                   std::array<float, 16>& value) {
+    for (std::size_t i = 0; i < 16; ++i)
+        near[i] = plane.near + plane.near_per_x * (x[i] - plane.x) + plane.near_per_y * (y[i] - plane.y);
+    for (std::size_t i = 0; i < 16; ++i)
+        value[i] = plane.value + plane.value_per_x * (x[i] - plane.x) + plane.value_per_y * (y[i] - plane.y);
+}
+
+/// Of planes that are equal at a pixel the smaller value counts: rounding may tell them apart.
+void take_least(const Lane& near, const Lane& value, std::array<float, 16>& least, std::array<float, 16>& its_value) {
+    for (std::size_t i = 0; i < 16; ++i) {
+        const float smaller = value[i] < its_value[i] ? value[i] : its_value[i];
+        const float kept = near[i] == least[i] ? smaller : its_value[i];
+        its_value[i] = near[i] < least[i] ? value[i] : kept;
+        least[i] = near[i] < least[i] ? near[i] : least[i];
+    }
+}
+
+/// From nearness to distances within those of the corners, and from values times nearness to values.
+template <bool parallel>
+void find_distances(const TetPlanes& p, std::array<float, 16>& near, std::array<float, 16>& value) {
+    for (std::size_t i = 0; i < 16; ++i) {
+        const float below = near[i] < p.nearest ? near[i] : p.nearest;
+        const float within = below > p.farthest ? below : p.farthest;
+        near[i] = parallel ? -within : 1 / within;
+    }
+    for (std::size_t i = 0; i < 16; ++i) {
+        const float whole = parallel ? value[i] : value[i] * near[i];
+        const float below = whole < p.highest ? whole : p.highest;
+        value[i] = below > p.lowest ? below : p.lowest;
+    }
+}
+
+} // namespace
+
+VolumeScene::VolumeScene(const Scene& scene, const Space& space, const Sight& sight, const Tiling& tiling,
+                         const VolumeTuning& how, const Progress& progress)
+    : rays(sight, tiling.width, tiling.height), tuning(how) {
+    for (const DrawnVolume& volume : scene.volumes) {
+        if (!volume.opacity.is_transparent())
+            media.emplace_back(volume, space, rays, Seek::medium, how.skips, progress);
+        if (!volume.isosurfaces.empty())
+            surfaces.emplace_back(volume, space, rays, Seek::isosurfaces, how.skips, progress);
+    }
+    if (progress.cancelled()) return;
+    if (!media.empty()) media_bins.emplace(media, tiling, progress);
+    if (!surfaces.empty()) surface_bins.emplace(surfaces, tiling, progress);
+}
+
+std::uint64_t VolumeScene::bytes() const {
+    std::uint64_t bytes = (media_bins ? media_bins->bytes() : 0) + (surface_bins ? surface_bins->bytes() : 0);
+    for (const std::vector<PlacedVolume>* volumes : {&media, &surfaces})
+        for (const PlacedVolume& volume : *volumes) bytes += volume.bytes();
+    return bytes;
+}
+
+VolumeTile::VolumeTile(const VolumeScene& scene) : scene_(scene), lists_(scene.tuning.lists) {}
+
+void VolumeTile::start(std::size_t number, std::uint32_t column, std::uint32_t row) {
+    number_ = number;
+    column_ = column;
+    row_ = row;
+    const Rays& rays = scene_.rays;
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+        const std::size_t x = pixel % 32, y = pixel / 32, index = index_of(pixel);
+        rays_[index] = rays.at(static_cast<double>(column + x) + ray_x, static_cast<double>(row + y) + ray_y);
+        const bool inside = column + x < rays.width() && row + y < rays.height();
+        ends_[index] = inside ? static_cast<float>(rays.farthest()) : -INFINITY;
+        hits_[index] = {};
+    }
+    stops_.clear();
+    first_stops_.assign(1, 0);
+}
+
+/// The parts of rays that clipping planes leave of each volume.
+void VolumeTile::clip_rays(const std::vector<PlacedVolume>& volumes) {
+    parts_.clear();
+    if (std::ranges::all_of(volumes, [](const PlacedVolume& one) { return one.clips().empty(); })) return;
+    for (const PlacedVolume& volume : volumes)
+        for (const Ray& ray : rays_) {
+            RayPart& part = parts_.emplace_back(scene_.rays.nearest(), INFINITY);
+            for (const Plane& plane : volume.clips()) part.cut(ray, plane);
+        }
+}
+
+/// No ray goes as far as this.
+bool VolumeTile::is_done(float nearest) const {
+    float farthest = -INFINITY;
+    for (const float end : ends_) farthest = std::max(farthest, end);
+    return !(nearest < farthest);
+}
+
+void VolumeTile::find_hits() {
+    if (!scene_.surface_bins) return;
+    seek_ = Seek::isosurfaces;
+    clip_rays(scene_.surfaces);
+    core::at_level([&] { draw_clusters(scene_.surface_bins->of(number_), scene_.surfaces); });
+}
+
+RayHit VolumeTile::hit(std::size_t pixel) const {
+    const FoundHit& found = hits_[index_of(pixel)];
+    if (!(found.distance < INFINITY)) return {};
+    const Ray& ray = rays_[index_of(pixel)];
+    const double backwards = -1 / ray.stretch;
+    const std::array<float, 3> to_eye = in_float(plus({}, ray.along, backwards));
+    std::array<float, 3> normal = found.normal;
+    const float facing = normal[0] * to_eye[0] + normal[1] * to_eye[1] + normal[2] * to_eye[2];
+    if (facing < 0)
+        for (float& part : normal) part = -part;
+    RayHit hit{found.distance, scene_.surfaces[found.volume].isosurfaces()[found.isosurface].color};
+    const float light = light_on(normal, to_eye, scene_.rays.sight());
+    for (float& part : hit.color) part *= light;
+    return hit;
+}
+
+void VolumeTile::add_stops(std::span<const float> stops) {
+    stops_.insert(stops_.end(), stops.begin(), stops.end());
+    first_stops_.push_back(static_cast<std::uint32_t>(stops_.size()));
+}
+
+std::span<const float> VolumeTile::stops(std::size_t pixel) const {
+    return std::span(stops_).subspan(first_stops_[pixel], first_stops_[pixel + 1] - first_stops_[pixel]);
+}
+
+std::span<const Slab> VolumeTile::slabs(std::size_t pixel) const {
+    return std::span(slabs_).subspan(first_stops_[pixel] + pixel, first_stops_[pixel + 1] - first_stops_[pixel] + 1);
+}
+
+void VolumeTile::compose_media() {
+    slabs_.assign(stops_.size() + pixels, Slab{});
+    if (!scene_.media_bins) return;
+    seek_ = Seek::medium;
+    clip_rays(scene_.media);
+    const auto per_scene = static_cast<float>(scene_.media.front().lengths());
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+        const std::size_t index = index_of(pixel);
+        states_[index] = {per_scene * static_cast<float>(rays_[index].stretch), 1, false, stops(pixel),
+                          std::span(slabs_).subspan(first_stops_[pixel] + pixel, stops(pixel).size() + 1)};
+    }
+    core::at_level([&] {
+        draw_clusters(scene_.media_bins->of(number_), scene_.media);
+        for (std::size_t index = 0; index < pixels; ++index)
+            if (lists_.count(index) > 0) compose_pixel(index, INFINITY);
+    });
+    work_.bytes = std::max(work_.bytes, sizeof(VolumeTile) + lists_.bytes());
+    lists_.clear();
+}
+
+/// Composes long lists, as far as nothing of the clusters to come can be before.
+void VolumeTile::compose_full(float horizon) {
+    const std::uint32_t full = scene_.tuning.lists.compose_from;
+    for (std::size_t index = 0; index < pixels; ++index)
+        if (lists_.count(index) >= full) compose_pixel(index, horizon);
+}
+
+void VolumeTile::compose_pixel(std::size_t index, float horizon) {
+    RayState& state = states_[index];
+    media_.clear();
+    for (std::size_t i = 0; i < scene_.media.size(); ++i) {
+        Medium medium{&scene_.media[i].transfer(), static_cast<float>(scene_.rays.nearest()), ends_[index]};
+        if (!parts_.empty()) {
+            const RayPart& part = parts_[i * pixels + index];
+            medium.enter = std::max(medium.enter, static_cast<float>(part.from));
+            medium.end = std::min(medium.end, static_cast<float>(part.to));
+        }
+        media_.push_back(medium);
+    }
+    lists_.set_count(index, compose(lists_.of(index), horizon, media_, state, scratch_));
+    if (state.done) ends_[index] = -INFINITY;
+}
+
+void VolumeTile::draw_clusters(std::span<const ClusterEntry> entries, const std::vector<PlacedVolume>& volumes) {
+    for (const ClusterEntry& entry : entries) {
+        if (seek_ == Seek::medium) compose_full(entry.nearest);
+        if (is_done(entry.nearest)) return;
+        if (scene_.rays.parallel()) draw_cluster<true>(entry, volumes[entry.volume]);
+        else draw_cluster<false>(entry, volumes[entry.volume]);
+    }
+}
+
+template <bool parallel>
+void VolumeTile::draw_cluster(const ClusterEntry& entry, const PlacedVolume& volume) {
+    const core::Packed& packed = volume.packed();
+    bool placed = false;
+    for_groups(packed, entry.cluster,
+               [&](std::size_t group, core::CellKind kind, const std::uint8_t* corners, std::size_t count) {
+                   if (!volume.group(group).holds(column_ / 32, row_ / 32)) return;
+                   if (!placed) volume.place(entry.cluster, column_, row_, points_);
+                   placed = true;
+                   for (std::size_t i = 0; i < count; ++i, corners += 4 * core::words_of(kind)) {
+                       if (kind == core::CellKind::tetrahedron) {
+                           draw_tet<parallel>(volume, entry.volume, {corners[0], corners[1], corners[2], corners[3]});
+                           continue;
+                       }
+                       const core::StoredCell cell{kind, {corners, core::corner_count(kind)}, 0};
+                       for (const auto& tet :
+                            core::split_locally(core::ranked_cell(packed, points_.points.data(), cell)))
+                           draw_tet<parallel>(volume, entry.volume,
+                                              {corners[tet[0]], corners[tet[1]], corners[tet[2]], corners[tet[3]]});
+                   }
+               });
+}
+
+template <bool parallel>
+void VolumeTile::draw_tet(const PlacedVolume& volume, std::uint32_t number, const std::array<std::uint8_t, 4>& locals) {
+    const auto value = [&](std::size_t k) { return points_.value[locals[k]]; };
+    const auto [lower, upper] = std::minmax({value(0), value(1), value(2), value(3)});
+    if (core::is_nan(value(0)) || core::is_nan(value(1)) || core::is_nan(value(2)) || core::is_nan(value(3))) return;
+    if (volume.hides(lower, upper)) return;
+    std::array<TetCorner, 4> corners;
+    bool cut = false;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const std::size_t i = locals[k];
+        corners[k] = {points_.x[i],      points_.y[i],    points_.near[i], double{points_.value[i]},
+                      points_.across[i], points_.down[i], points_.w[i],    locals[k]};
+        cut = cut || points_.w[i] < scene_.rays.nearest();
+    }
+    sort_corners(corners);
+    if (!parallel && cut) {
+        if (planes_of_cut(corners, scene_.rays.nearest(), planes_))
+            draw_blocks<false, TetPlanes::most>(volume, number, corners);
+    } else if (planes_of<parallel>(corners, planes_)) {
+        draw_blocks<parallel, 3>(volume, number, corners);
+    }
+}
+
+template <bool parallel, std::size_t faces>
+void VolumeTile::draw_blocks(const PlacedVolume& volume, std::uint32_t number,
+                             const std::array<TetCorner, 4>& corners) {
+    ++work_.tets;
+    Lanes lanes;
+    for (std::int32_t y = planes_.top & ~3; y <= planes_.bottom; y += 4)
+        for (std::int32_t x = planes_.left & ~3; x <= planes_.right; x += 4) {
+            find_lanes<parallel, faces>(x, y, lanes);
+            std::uint32_t mask = 0;
+            for (std::uint32_t i = 0; i < 16; ++i) mask |= static_cast<std::uint32_t>(lanes.inside[i]) << i;
+            if (mask == 0) continue;
+            const auto block = static_cast<std::size_t>(y / 4 * 8 + x / 4);
+            if (seek_ == Seek::medium) add_segments(lanes, mask, block, number);
+            else add_hits(lanes, mask, block, volume, number, corners);
+        }
+}
+
+/// Where the rays of 4 x 4 pixels enter the tet and leave it, and its values there. Short loops without branches.
+template <bool parallel, std::size_t faces>
+void VolumeTile::find_lanes(std::int32_t x, std::int32_t y, Lanes& out) const {
+    const TetPlanes& p = planes_;
+    Lane at_x, at_y;
+    for (std::size_t i = 0; i < 16; ++i) {
+        at_x[i] = static_cast<float>(x) + lane_x[i];
+        at_y[i] = static_cast<float>(y) + lane_y[i];
+    }
+    find_nearness(p.front[0], at_x, at_y, out.enter, out.from);
+    find_nearness(p.back[0], at_x, at_y, out.leave, out.to);
+    for (std::size_t k = 1; k < faces; ++k) {
+        Lane near, value;
+        find_nearness(p.front[k], at_x, at_y, near, value);
+        take_least(near, value, out.enter, out.from);
+        find_nearness(p.back[k], at_x, at_y, near, value);
+        for (std::size_t i = 0; i < 16; ++i) near[i] = -near[i];
+        for (std::size_t i = 0; i < 16; ++i) out.leave[i] = -out.leave[i];
+        take_least(near, value, out.leave, out.to);
+        for (std::size_t i = 0; i < 16; ++i) out.leave[i] = -out.leave[i];
+    }
+    find_distances<parallel>(p, out.enter, out.from);
+    find_distances<parallel>(p, out.leave, out.to);
+    const float* const ends = ends_.data() + static_cast<std::size_t>(y / 4 * 8 + x / 4) * 16;
+    const auto left = static_cast<float>(p.left), right = static_cast<float>(p.right), top = static_cast<float>(p.top),
+               bottom = static_cast<float>(p.bottom);
+    for (std::size_t i = 0; i < 16; ++i)
+        out.inside[i] = static_cast<std::int32_t>(out.enter[i] < out.leave[i]) &
+                        static_cast<std::int32_t>(out.enter[i] < ends[i]) & static_cast<std::int32_t>(at_x[i] >= left) &
+                        static_cast<std::int32_t>(at_x[i] <= right) & static_cast<std::int32_t>(at_y[i] >= top) &
+                        static_cast<std::int32_t>(at_y[i] <= bottom);
+}
+
+void VolumeTile::add_segments(const Lanes& lanes, std::uint32_t mask, std::size_t block, std::uint32_t volume) {
+    work_.segments += static_cast<std::uint64_t>(std::popcount(mask));
+    for (; mask; mask &= mask - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(mask));
+        lists_.add(16 * block + i, {lanes.enter[i], lanes.leave[i], lanes.from[i], lanes.to[i], volume});
+    }
+}
+
+/// A value that equals an isovalue counts as above it, as in extraction.
+void VolumeTile::add_hits(const Lanes& lanes, std::uint32_t mask, std::size_t block, const PlacedVolume& volume,
+                          std::uint32_t number, const std::array<TetCorner, 4>& corners) {
+    work_.segments += static_cast<std::uint64_t>(std::popcount(mask));
+    std::array<float, 3> normal{};
+    bool has_normal = false;
+    for (; mask; mask &= mask - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(mask));
+        const std::size_t index = 16 * block + i;
+        for (std::uint32_t which = 0; which < volume.isosurfaces().size(); ++which) {
+            const float height = volume.isosurfaces()[which].height, from = lanes.from[i], to = lanes.to[i];
+            if ((from < height) == (to < height)) continue;
+            const float distance = lanes.enter[i] + (height - from) / (to - from) * (lanes.leave[i] - lanes.enter[i]);
+            if (distance > ends_[index] || distance < static_cast<float>(scene_.rays.nearest())) continue;
+            if (!parts_.empty()) {
+                const RayPart& part = parts_[number * pixels + index];
+                if (distance < static_cast<float>(part.from) || distance > static_cast<float>(part.to)) continue;
+            }
+            if (!has_normal) normal = gradient_direction(points_, corners);
+            has_normal = true;
+            const FoundHit hit{distance, normal, number, which};
+            if (hit.key() < hits_[index].key()) hits_[index] = hit;
+            // What is equally far may still come.
+            ends_[index] = std::min(ends_[index], std::nextafter(hits_[index].distance, INFINITY));
+        }
+    }
+}
+
+} // namespace isotet::render
