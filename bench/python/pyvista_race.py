@@ -26,7 +26,7 @@ start = time.perf_counter()
 packed_grid.isotet.pack("gyroid")
 packing = time.perf_counter() - start
 packed = isotet.pack(points, cells, values)
-contour = IsotetContour()
+contour = IsotetContour(compute_normals=False)
 contour.SetInputDataObject(grid)
 contour.SetInputArrayToProcess(0, 0, 0, 0, "gyroid")
 contour.SetExpectedSurfaces(1000)

@@ -165,7 +165,7 @@ class Scalars(NamedTuple):
         return self.name if self.name == self.array.GetName() else None
 
 
-_MAGNITUDE = -2  # vtkArrayComponents::L2Norm
+MAGNITUDE = -2  # vtkArrayComponents::L2Norm
 
 
 def _one_component(array, component: int) -> tuple[str, np.ndarray]:
@@ -173,7 +173,7 @@ def _one_component(array, component: int) -> tuple[str, np.ndarray]:
     values, name = vtk_to_numpy(array), array.GetName() or "scalars"
     if values.ndim == 1:
         return name, values
-    if component == _MAGNITUDE:
+    if component == MAGNITUDE:
         return f"{name}_Magnitude", np.linalg.norm(values.astype(np.float64), axis=1)
     if not 0 <= component < values.shape[1]:
         raise ValueError(f"component {component} of '{name}' is asked for, but it has {values.shape[1]}")

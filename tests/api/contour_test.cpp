@@ -3,7 +3,9 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <memory>
+#include <numeric>
 #include <thread>
 #include <vector>
 
@@ -223,6 +225,23 @@ TEST(Contour, PacksAgainForCellFieldsThatNobodyAskedForBefore) {
     input.cell_fields = {{"zero", Array::own(std::vector<float>(grid.cells.count()))}};
     EXPECT_EQ(contour.set(input).value(), ContourUpdate::grid);
     EXPECT_EQ(contour.extract(0.2).value().surfaces[0].surface.cell_fields.size(), 1u);
+}
+
+TEST(Contour, PackedForAllDoesNotPackAgainForNormalsAndCellFields) {
+    const Grid grid = kuhn();
+    ContourOptions options{.method = Method::clusters, .pack_all = true};
+    Contour contour = Contour::create(input_of(grid), options).value();
+    contour.extract(0.5).value();
+    options.normals = Normals::gradient;
+    ContourInput input = input_of(grid);
+    std::vector<std::int32_t> marks(grid.cells.count());
+    std::iota(marks.begin(), marks.end(), 0);
+    input.cell_fields = {{"mark", Array::own(marks)}};
+    EXPECT_EQ(contour.set(input, options).value(), ContourUpdate::nothing);
+    const ContourResult result = contour.extract(0.5).value();
+    EXPECT_EQ(result.pack_seconds, 0);
+    EXPECT_FALSE(result.surfaces[0].surface.normals.empty());
+    EXPECT_EQ(result.surfaces[0].surface.cell_fields.size(), 1u);
 }
 
 TEST(Contour, TakesOtherOptionsWithTheSameGrid) {

@@ -383,6 +383,11 @@ def test_a_slider_takes_what_pyvista_has():
     assert plotter.widgets.isovalue_meshes[1].n_cells > 0
     with pytest.raises(TypeError, match="only works on point data"):
         plotter.isotet.add_isovalue(grid, "number")
+    for name in ("v:y", "v:mag", "v"):
+        plotter.isotet.add_isovalue(grid, name, False, False, True, "point", value=7.0)
+        assert plotter.widgets.isovalue_meshes[-1].area == pytest.approx(grid.isotet.contour([7.0], name).area)
+    with pytest.raises(ValueError, match="a component is x, y, z, mag or a number"):
+        plotter.isotet.add_isovalue(grid, "v:w")
     plotter.close()
 
 
