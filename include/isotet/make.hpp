@@ -23,7 +23,8 @@ struct MakeOptions {
 
 /// Test grids of any size with analytic fields of known surface, on the cube [-1, 1]^3 (float32 points).
 ///
-/// All cells are upright in VTK's order of corners, and neighbours agree on the faces between them.
+/// All cells are upright in VTK's order of corners, and neighbours agree on the faces between them,
+/// but for those of different size in an octree.
 ///
 /// `shape`    "kuhn": six tets a cube, side^3 cubes (Kuhn 1960); points and cubes along x first, then y, then z
 ///            "perturbed": kuhn with each inner point moved, in any direction, by up to a fifth of the spacing
@@ -37,6 +38,11 @@ struct MakeOptions {
 ///            smooth image of the cube; "hex27": triquadratic hexahedra
 ///            "kelvin": truncated octahedra, polyhedra of 14 faces (Kelvin 1887), two a cube, up to 512 cubes along an edge;
 ///            within the cube, which they do not fill at its faces
+///            "octree": hexahedra; cubes that the sphere of radius 0.6 meets are cut into eight, and of these those that it
+///            meets once more: with hanging points. "octree-random": half of the cubes and a quarter of their eighths, drawn,
+///            so edges of neighbours differ up to four times; "octree-bent": the same, inner corners of the cubes moved by
+///            up to 0.15 of their edge along each axis, and what is in them trilinearly; "octree-tets": octree-random with six
+///            tets a cube. Up to 256 cubes along an edge
 /// `side`     cubes along an edge, 1 to 4096
 /// `fields`   names, each once; float32, computed in double:
 ///            "sphere"   sqrt(x^2 + y^2 + z^2)
@@ -45,7 +51,8 @@ struct MakeOptions {
 ///            "gyroid"   sin X cos Y + sin Y cos Z + sin Z cos X, with X = 2 pi x and so on
 ///            "wavelet"  255 exp(-(x^2 + y^2 + z^2) / 2) + 10 sin 30x + 18 sin 15y + 5 cos 20z (VTK's wavelet source)
 ///            "integer"  int32, 0 to 4, drawn for each point: many ties
-/// `seed`     of everything that is drawn: it changes perturbed and shuffled grids, and the field integer
+/// `seed`     of everything that is drawn: it changes perturbed, shuffled and drawn octree grids, and the field
+///            integer
 ///
 /// Guarantees   the same bytes for any thread count; points, cells, sphere, torus, plane and integer are the same on
 ///              every machine, gyroid and wavelet as far as its sin, cos and exp are

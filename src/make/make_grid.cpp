@@ -16,6 +16,7 @@
 #include "make/analytic_field.hpp"
 #include "make/foam.hpp"
 #include "make/lattice.hpp"
+#include "make/octree.hpp"
 #include "make/permutation.hpp"
 #include "make/shape.hpp"
 
@@ -262,10 +263,18 @@ Error unknown(std::string_view what, const std::string& name, std::vector<std::s
     return {ErrorCode::invalid_argument, std::move(message)};
 }
 
+const OctreeShape* find_octree(std::string_view name) {
+    const auto* const found = std::ranges::find(octree_shapes, name, &OctreeShape::name);
+    return found == octree_shapes.end() ? nullptr : found;
+}
+
 std::optional<Error> fault_in(const MakeOptions& options) {
-    if (options.shape != foam && std::ranges::find(shapes, options.shape, &Shape::name) == shapes.end())
+    const bool octree = find_octree(options.shape) != nullptr;
+    if (!octree && options.shape != foam && std::ranges::find(shapes, options.shape, &Shape::name) == shapes.end())
         return unknown("the shape", options.shape, make_shapes());
-    const std::uint64_t largest = options.shape == foam ? largest_foam_side : largest_side;
+    const std::uint64_t largest = octree                  ? largest_octree_side
+                                  : options.shape == foam ? largest_foam_side
+                                                          : largest_side;
     if (options.side < 1 || options.side > largest)
         return Error{ErrorCode::invalid_argument,
                      fmt::format("the side is {}, but must be 1 to {}", options.side, largest)};
@@ -284,6 +293,7 @@ std::optional<Error> fault_in(const MakeOptions& options) {
 std::vector<std::string> make_shapes() {
     std::vector<std::string> names = names_in(make::shapes);
     names.emplace_back(foam);
+    for (const make::OctreeShape& octree : make::octree_shapes) names.emplace_back(octree.name);
     return names;
 }
 std::vector<std::string> make_fields() { return names_in(make::analytic_fields); }
@@ -292,6 +302,7 @@ Result<Grid> make_grid(const MakeOptions& options, const Run& run) {
     if (const auto fault = fault_in(options)) return *fault;
     return core::carry_out("making the grid", run, [&](const Progress& progress) {
         if (options.shape == foam) return make_foam(options, progress);
+        if (const OctreeShape* octree = find_octree(options.shape)) return make_octree(*octree, options, progress);
         return Maker(*std::ranges::find(shapes, options.shape, &Shape::name), options, progress).make();
     });
 }

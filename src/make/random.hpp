@@ -7,7 +7,7 @@
 namespace isotet::make {
 
 /// What a number is drawn for; different streams are independent.
-enum class Stream : std::uint64_t { position = 1, integer, point_order, tet_order, corner_order };
+enum class Stream : std::uint64_t { position = 1, integer, point_order, tet_order, corner_order, refinement };
 
 /// The finalizer of SplitMix64 (Steele, Lea, Flood 2014): a bijection of 64-bit numbers.
 constexpr std::uint64_t mix(std::uint64_t x) noexcept {
