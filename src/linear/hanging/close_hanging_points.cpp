@@ -1,0 +1,152 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/hanging_points.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+#include <fmt/format.h>
+
+#include "base/buffer.hpp"
+#include "base/carry_out.hpp"
+#include "base/errors.hpp"
+#include "base/parallel.hpp"
+#include "grid/cell_faces.hpp"
+#include "linear/derived.hpp"
+#include "linear/hanging/covers.hpp"
+#include "linear/hanging/hanging_rows.hpp"
+#include "linear/hanging/listed_cells.hpp"
+#include "linear/hanging/open_faces.hpp"
+
+namespace isotet {
+
+namespace linear {
+
+namespace {
+
+/// A checked grid, and its faces without a neighbour.
+struct OpenGrid {
+    core::CellReader cells;
+    core::FaceReader faces;
+    OpenFaces open;
+};
+
+Result<OpenGrid> open_faces_of(const Grid& grid, const Progress& progress) {
+    const auto cells = core::CellReader::open(grid);
+    if (!cells) return cells.error();
+    if (auto sound = core::check_cells(grid, *cells, progress); !sound) return sound.error();
+    if (auto sound = core::check_faces(grid, *cells, progress); !sound) return sound.error();
+    const auto faces = core::FaceReader::open(grid.cells);
+    if (!faces) return faces.error();
+    auto open = find_open_faces(*cells, *faces, progress);
+    if (!open) return open.error();
+    return OpenGrid{*cells, *faces, *std::move(open)};
+}
+
+Result<ClosedGrid> close_hanging(const Grid& grid, const Progress& progress) {
+    ClosedGrid out{grid, {}, {}, {}};
+    if (has_curved_cells(grid.cells)) return out;
+    const auto all = open_faces_of(grid, progress);
+    if (!all) return all.error();
+    progress("check", 0.6);
+    const core::PointReader points(grid.points);
+    const auto covers = find_covers(all->open, all->cells, points, progress);
+    if (!covers) return covers.error();
+    out.report.open_faces = covers->open;
+    if (covers->whole.empty()) return out;
+    describe_hanging(all->open, *covers, points, grid.points.type() == ScalarType::float32, out);
+    const std::vector<ListedCell> listed = list_cells(all->cells, all->faces, all->open, *covers, progress);
+    out.report.cells = listed.size();
+    if (progress.cancelled()) return Error{ErrorCode::cancelled, "looking for hanging points was cancelled"};
+    progress("check", 0.8);
+    auto made = with_listed_cells(all->cells, all->faces, listed, progress);
+    if (!made) return made.error();
+    out.grid.cells = *std::move(made);
+    progress("check", 1);
+    return out;
+}
+
+/// Calls use(point, component, the larger cell's value) in the order of hanging points. `values` may change meanwhile.
+template <class T, class Use>
+void each_interpolated(const ClosedGrid& closed, const std::vector<T>& values, std::size_t components, const Use& use) {
+    if (closed.points.empty()) return;
+    const auto points = closed.points.as<std::uint64_t>(), corners = closed.parents.points.as<std::uint64_t>();
+    const auto first = closed.parents.first.as<std::uint64_t>();
+    const auto weights = closed.parents.weights.as<double>();
+    for (std::size_t row = 0; row < points.size(); ++row)
+        for (std::size_t c = 0; c < components; ++c) {
+            const std::size_t begin = first[row], count = first[row + 1] - begin;
+            use(points[row], c,
+                weighted_sum(
+                    count, [&](std::size_t i) { return weights[begin + i]; },
+                    [&](std::size_t i) { return static_cast<double>(values[corners[begin + i] * components + c]); }));
+        }
+}
+
+Error wrong_tuples(const Array& values, std::size_t points) {
+    return invalid_argument(
+        fmt::format("the array has {} tuples, but the grid has {} points", values.tuples(), points));
+}
+
+} // namespace
+} // namespace linear
+
+Result<Array> ClosedGrid::interpolated(const Array& values, const Run& run) const {
+    return core::carry_out("interpolating at hanging points", run, [&](const Progress&) -> Result<Array> {
+        if (values.tuples() != grid.points.tuples()) return linear::wrong_tuples(values, grid.points.tuples());
+        if (points.empty()) return values;
+        return values.visit([&]<class T>(std::span<const T> from) {
+            using To = std::conditional_t<std::is_floating_point_v<T>, T, double>;
+            std::vector<To> to(from.begin(), from.end());
+            const std::size_t components = values.components();
+            linear::each_interpolated(*this, to, components, [&](std::uint64_t point, std::size_t c, double value) {
+                to[point * components + c] = static_cast<To>(value);
+            });
+            return Array::own(std::move(to), components);
+        });
+    });
+}
+
+Result<double> ClosedGrid::largest_difference(const Array& values, const Run& run) const {
+    const Result<Array> other = interpolated(values, run);
+    if (!other) return other.error();
+    double largest = 0;
+    if (points.empty()) return largest;
+    for (const std::uint64_t point : points.as<std::uint64_t>())
+        for (std::size_t c = 0; c < values.components(); ++c)
+            if (const double apart = std::abs(values.at(point, c) - other->at(point, c)); apart > largest)
+                largest = apart;
+    return largest;
+}
+
+std::vector<std::string> HangingReport::notes() const {
+    std::vector<std::string> out;
+    if (points > 0)
+        out.push_back(fmt::format("{} points hang on faces or edges of larger cells: {} cells list them as polyhedra, "
+                                  "so that the surface is closed there (docs/cells.md)",
+                                  points, cells));
+    if (near_faces > 0)
+        out.push_back(fmt::format("hanging points of {} of {} faces are beside these, by up to {:.3g}: the surface "
+                                  "follows the smaller cells",
+                                  near_faces, faces, largest_distance));
+    if (open_faces > 0)
+        out.push_back(fmt::format("{} faces lie on smaller ones that do not cover them: the surface may be open there",
+                                  open_faces));
+    return out;
+}
+
+Result<bool> may_have_hanging_points(const Grid& grid, const Run& run) {
+    return core::carry_out("looking for hanging points", run, [&](const Progress& progress) -> Result<bool> {
+        if (has_curved_cells(grid.cells)) return false;
+        const auto all = linear::open_faces_of(grid, progress);
+        if (!all) return all.error();
+        return linear::has_smaller_faces(all->open, all->cells, core::PointReader(grid.points));
+    });
+}
+
+Result<ClosedGrid> close_hanging_points(const Grid& grid, const Run& run) {
+    return core::carry_out("looking for hanging points", run,
+                           [&](const Progress& progress) { return linear::close_hanging(grid, progress); });
+}
+
+} // namespace isotet

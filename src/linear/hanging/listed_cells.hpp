@@ -1,0 +1,35 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Cells with hanging points as polyhedra that list them.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <isotet/grid.hpp>
+#include <isotet/progress.hpp>
+#include <isotet/result.hpp>
+
+#include "linear/hanging/covers.hpp"
+
+namespace isotet::linear {
+
+/// A cell by its faces: as Cells::faces have them.
+struct ListedCell {
+    std::uint64_t cell;
+    std::vector<std::uint64_t> faces;
+};
+
+/// Cells with a covered face or an edge with points on it: covered faces are those that cover them, with the points on their
+/// edges. A cell whose faces would not close is none of these.
+///
+/// Guarantees   ascending; the same for any thread count
+/// Cost         a pass over the cells, a byte a point
+std::vector<ListedCell> list_cells(const core::CellReader& cells, const core::FaceReader& faces,
+                                   const OpenFaces& open, const Covers& covers, const Progress& progress);
+
+/// The cells with some of them as polyhedra.
+/// Errors   out_of_memory; cancelled
+Result<Cells> with_listed_cells(const core::CellReader& cells, const core::FaceReader& faces,
+                                const std::vector<ListedCell>& listed, const Progress& progress);
+
+} // namespace isotet::linear
