@@ -81,6 +81,13 @@ std::size_t open_polyhedra(const GridReport& report) {
     return std::min(polyhedra->second, report.cells_left_out - of_other_types);
 }
 
+/// ", 12 nearly, points up to 0.01 beside"; empty where all match.
+std::string nearly_matched(const HangingReport& report) {
+    if (report.near_faces == 0) return "";
+    return fmt::format(", {} nearly, points up to {} beside them", grouped(report.near_faces),
+                       shortest(report.largest_distance));
+}
+
 std::string grid_table(const GridSummary& found, const std::string& path) {
     const GridReport& report = found.report;
     Table table = facts();
@@ -102,9 +109,14 @@ std::string grid_table(const GridSummary& found, const std::string& path) {
           {report.duplicate_points, "duplicate points"},
           {report.quads_on_triangles, "quadrilaterals that meet triangles of other cells: the "
                                       "surface may be open there; --split-cells"},
-          {found.hanging_points, "hanging points, in a face or edge of a larger cell: the surface is open there"}}) {
+          {found.hanging_points, "hanging points, in a face or edge of a larger cell"},
+          {found.hanging.cells, "cells that list them for extraction"},
+          {found.hanging.open_faces, "faces on smaller ones that do not cover them: the surface may be open there"}}) {
         if (count > 0) table.row({"", fmt::format("{} {}", grouped(count), what)});
     }
+    if (found.hanging.points > 0)
+        table.row({"levels", fmt::format("{} apart; {} faces matched{}", found.hanging.levels,
+                                         grouped(found.hanging.faces), nearly_matched(found.hanging))});
     if (found.surveyed) table.row({"boundary faces", grouped(report.boundary_faces)});
     const ScalarType type = found.point_type;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -270,6 +282,13 @@ Json json_of(const GridSummary& found, const std::string& path) {
         report["boundary_faces"] = grid.boundary_faces;
         report["quads_on_triangles"] = grid.quads_on_triangles;
         report["hanging_points"] = found.hanging_points;
+        report["hanging"] = {{"points", found.hanging.points},
+                             {"levels", found.hanging.levels},
+                             {"cells", found.hanging.cells},
+                             {"faces", found.hanging.faces},
+                             {"near_faces", found.hanging.near_faces},
+                             {"largest_distance", found.hanging.largest_distance},
+                             {"open_faces", found.hanging.open_faces}};
     }
     report["bounds"] = {{"lower", grid.lower}, {"upper", grid.upper}};
     report["times"] = found.file.times;

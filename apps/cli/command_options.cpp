@@ -101,7 +101,8 @@ point array edge_ends, which isotet extract --edge-ends writes into .vtp and .vt
 a face with two tets on one side. A tet is valid when the field has a value (not NaN) at its four points. Where
 quadratic cells were refined for the surface, their points are derived again: the file says how they were refined
 (field data isotet:refinement), unless -i and the tolerances do, as for isotet extract: all isovalues of that call.
-Edges at hanging points, where the face of a larger cell meets smaller ones, are excused, too; the verdict counts them.
+With --hanging-points leave, edges at hanging points, where the face of a larger cell meets smaller ones, are excused, too; the
+verdict counts them. The grid is closed as for isotet extract: give the same --hanging-points.
 
 With --strict it also fails for: triangles of zero area, edges with more than two triangles, double sheets (two
 triangles on the same corners in opposite directions), touching vertices (triangles that are not one fan), coincident
@@ -125,7 +126,9 @@ Examples:
 constexpr const char* make_details = R"(
 Shapes, on the cube from -1 to 1: kuhn (six tets a cube), perturbed (inner points moved), shuffled (perturbed, points
 and tets in random order), layer (cells of aspect ratio up to 1000), hex, wedge, pyramid, mixed (all four cell types), tet10
-(quadratic tets), curved (bent ones), hex27 (triquadratic hexahedra), kelvin (polyhedra of 14 faces, two a cube).
+(quadratic tets), curved (bent ones), hex27 (triquadratic hexahedra), kelvin (polyhedra of 14 faces, two a cube). With hanging
+points: octree (hexahedra, smaller ones near the sphere), octree-random (any cut into eight, edges up to four times
+as long as their neighbours'), octree-bent (the same, warped), octree-tets (the same, six tets a cube).
 The same bytes for any number of threads.
 
 Fields: sphere, torus, plane, gyroid, wavelet, integer (many ties).
@@ -185,6 +188,13 @@ void add_reading(const Command& command, GridOptions& grid, const std::string& f
             "--merge-values", grid.merge_values, {{"lowest", MergedValues::lowest}, {"mean", MergedValues::mean}},
             "What merged points have where a field jumps: the value of the lowest-numbered, or the mean")
         .needs(command.option("--merge-points"));
+    command.add_choice<HangingChoice>(
+        "--hanging-points", grid.hanging_points,
+        {{"close", HangingChoice::close},
+         {"interpolate", HangingChoice::interpolate},
+         {"leave", HangingChoice::leave}},
+        "Points on faces and edges of larger cells: close, these cells list them; interpolate, and the points have the "
+        "values of these cells; leave, the surface is open there");
     command.add_flag("--keep-pieces", grid.keep_pieces,
                      "Keep points of different pieces apart, which are joined where their coordinates are equal");
     command.add_flag("--allow-outside", grid.allow_outside,
@@ -423,7 +433,7 @@ void add_check(const Command& program, CheckCommand& check) {
     command.add_flag("--strict", check.strict, "Fail for more: see below");
     command.add_text("--format", check.format, "FORMAT", "Format of the surface; default: the name decides");
     add_reading(command, check.grid, "--grid-format");
-    for (const char* name : {"--time", "--step", "--grid-format", "--displace", "--merge-points", "--keep-pieces"}) {
+    for (const char* name : {"--time", "--step", "--grid-format", "--displace", "--merge-points", "--hanging-points", "--keep-pieces"}) {
         command.option(name).needs(grid);
     }
     add_common(command, check.common);
@@ -460,7 +470,8 @@ void add_make(const Command& program, MakeCommand& make) {
     const Command command = program.add_command("make", "Make a test grid with analytic fields");
     command
         .add_text("SHAPE", make.grid.shape, "SHAPE",
-                  "kuhn, perturbed, shuffled, layer, hex, wedge, pyramid, mixed, tet10, curved, hex27 or kelvin")
+                  "kuhn, perturbed, shuffled, layer, hex, wedge, pyramid, mixed, tet10, curved, hex27, kelvin, octree, "
+                  "octree-random, octree-bent or octree-tets")
         .required();
     command.add_count(
                "--side", {1}, [&](std::uint64_t n) { make.grid.side = n; }, "N", "Cubes along an edge, 1 to 4096")

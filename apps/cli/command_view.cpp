@@ -33,6 +33,8 @@ std::vector<std::string> reading_options(const GridOptions& grid, const RefineCh
     if (!grid.format.empty()) add("--format", grid.format);
     if (grid.merge_points) add("--merge-points", shortest(*grid.merge_points));
     if (grid.merge_values == MergedValues::mean) add("--merge-values", "mean");
+    if (grid.hanging_points != HangingChoice::close)
+        add("--hanging-points", grid.hanging_points == HangingChoice::leave ? "leave" : "interpolate");
     if (grid.keep_pieces) words.emplace_back("--keep-pieces");
     if (grid.allow_outside) words.emplace_back("--allow-outside");
     if (!grid.displace.empty()) add("--displace", grid.displace);

@@ -15,6 +15,7 @@
 #include <isotet/contour_spectrum.hpp>
 #include <isotet/first_view.hpp>
 #include <isotet/grid.hpp>
+#include <isotet/hanging_points.hpp>
 #include <isotet/isovalue_shares.hpp>
 #include <isotet/linear_cells.hpp>
 #include <isotet/make.hpp>
@@ -289,6 +290,30 @@ void add_grids(nb::module_& module) {
             return nb::make_tuple(std::move(merged.grid), report);
         },
         "grid"_a, "tolerance"_a, "means"_a, "call"_a);
+
+    module.def(
+        "close_hanging_points",
+        [](const Grid& grid, bool interpolate, const CallOptions& options) {
+            ClosedGrid closed = call(options, [&](const Run& run) { return close_hanging_points(grid, run); });
+            nb::dict report, differences;
+            report["points"] = closed.report.points;
+            report["levels"] = closed.report.levels;
+            report["cells"] = closed.report.cells;
+            report["faces"] = closed.report.faces;
+            report["near_faces"] = closed.report.near_faces;
+            report["largest_distance"] = closed.report.largest_distance;
+            report["open_faces"] = closed.report.open_faces;
+            for (Field& field : closed.grid.point_fields) {
+                const Array& values = field.values;
+                differences[field.name.c_str()] =
+                    call(options, [&](const Run& run) { return closed.largest_difference(values, run); });
+                if (interpolate)
+                    field.values = call(options, [&](const Run& run) { return closed.interpolated(values, run); });
+            }
+            report["differences"] = differences;
+            return nb::make_tuple(std::move(closed.grid), report);
+        },
+        "grid"_a, "interpolate"_a, "call"_a);
 
     module.def(
         "write_grid",

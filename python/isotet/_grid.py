@@ -387,6 +387,18 @@ class Grid:
         grid, report = _isotet.merge_points(self._grid, tolerance, values == "mean", call_options(threads, None))
         return Grid._of(grid, self.info, self.step, self.notes), report
 
+    def close_hanging_points(self, *, interpolate: bool = False, threads: int = 0) -> tuple[Grid, dict[str, Any]]:
+        """The grid with points on faces and edges of larger cells listed by these, as polyhedra, so that surfaces are closed
+        there, and a report of it: hanging `points`, `levels` (n: an edge meets up to 2^n smaller ones), `cells` that list them,
+        `faces` that smaller ones cover, `near_faces` of these whose points are up to `largest_distance` beside them,
+        `open_faces` that stay open, and `differences`: by how much each point field differs from the larger cells there.
+
+        interpolate
+            Hanging points get the values of the larger cells.
+        """
+        grid, report = _isotet.close_hanging_points(self._grid, interpolate, call_options(threads, None))
+        return Grid._of(grid, self.info, self.step, self.notes), report
+
     def write(self, path: str | os.PathLike[str], *, format: str = "", compression: str = "none",
               progress: Progress | None = None) -> list[str]:  # fmt: skip
         """Writes the grid as .vtu or legacy .vtk, whole or not at all. Returns sentences on what the format could not hold.

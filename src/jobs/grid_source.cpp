@@ -13,6 +13,7 @@
 #include <isotet/contour.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/grid_counts.hpp>
+#include <isotet/hanging_points.hpp>
 #include <isotet/jobs/number_text.hpp>
 #include <isotet/jobs/output_names.hpp>
 #include <isotet/linear_cells.hpp>
@@ -83,6 +84,49 @@ Result<Grid> merged(const Grid& grid, const MergeOptions& options, Caller& calle
                                 shortest(options.tolerance), counted(result->collapsed_cells, "cell")));
     caller.note(jumps_note(*result, options.values));
     return std::move(result->grid);
+}
+
+/// Whether values at hanging points differ from those of the larger cells by more than roundings.
+bool is_apart(double difference, const Array& values, const Array& hanging) {
+    constexpr double rounding = 1e-5; // of the largest value there
+    double largest = 0;
+    for (const std::uint64_t point : hanging.as<std::uint64_t>())
+        for (std::size_t c = 0; c < values.components(); ++c)
+            if (const double value = std::abs(values.at(point, c)); std::isfinite(value))
+                largest = std::max(largest, value);
+    return difference > rounding * largest;
+}
+
+/// Gives hanging points the values of the larger cells where these are asked for, and says how they differ.
+Result<void> choose_hanging_values(ClosedGrid& closed, HangingChoice choice, Caller& caller, const Run& run) {
+    std::string list;
+    for (Field& field : closed.grid.point_fields) {
+        const Result<double> largest = closed.largest_difference(field.values, run);
+        if (!largest) return largest.error();
+        if (!is_apart(*largest, field.values, closed.points)) continue;
+        list += fmt::format("{}'{}' by up to {:.3g}", list.empty() ? "" : ", ", field.name, *largest);
+        if (choice != HangingChoice::interpolate) continue;
+        Result<Array> values = closed.interpolated(field.values, run);
+        if (!values) return values.error();
+        field.values = *std::move(values);
+    }
+    if (!list.empty())
+        caller.note(fmt::format("values at hanging points differ from those of the larger cells: {}; {}", list,
+                                choice == HangingChoice::interpolate
+                                    ? "they have those of the larger cells"
+                                    : "they have their own, `hanging_points` interpolate takes those of the cells"));
+    return {};
+}
+
+/// Cells list their hanging points, and what was found is noted.
+Result<Grid> closed(Grid grid, HangingChoice choice, Caller& caller, const Run& run) {
+    if (choice == HangingChoice::leave) return grid;
+    Result<ClosedGrid> found = close_hanging_points(grid, run);
+    if (!found) return found.error();
+    caller.notes(found->report.notes());
+    if (found->report.points > 0)
+        if (auto chosen = choose_hanging_values(*found, choice, caller, run); !chosen) return chosen.error();
+    return std::move(found->grid);
 }
 
 /// "0, 0.1, 0.2 ... 4": the first few and the last.
@@ -316,9 +360,14 @@ Result<Grid> GridSource::read(const FieldsToRead& fields, std::size_t step, Call
         caller.notes(result->notes);
         grid = std::move(result->grid);
     }
-    if (options_.merge_points) return merged(grid, {*options_.merge_points, options_.merge_values}, caller, run);
-    caller.note(coincident_points_note(grid));
-    return grid;
+    if (options_.merge_points) {
+        Result<Grid> joined = merged(grid, {*options_.merge_points, options_.merge_values}, caller, run);
+        if (!joined) return joined;
+        grid = *std::move(joined);
+    } else {
+        caller.note(coincident_points_note(grid));
+    }
+    return closed(std::move(grid), options_.hanging_points, caller, run);
 }
 
 Result<ReadResult> GridSource::read_active(const FieldsToRead& fields, std::size_t step, const ReadActiveCells& active,
@@ -334,15 +383,34 @@ Result<ReadResult> GridSource::read_active(const FieldsToRead& fields, std::size
     options.active_cells = active;
     Result<ReadResult> result = read_file(fields, step, std::move(options), caller.run());
     if (!result) return result;
+    if (result->cells_in_file && options_.hanging_points != HangingChoice::leave) {
+        const Result<bool> hanging = may_have_hanging_points(result->grid, caller.run());
+        if (!hanging) return hanging.error();
+        if (*hanging) {
+            caller.detail("cells may have hanging points: all are read");
+            Result<Grid> grid = read(fields, step, caller);
+            if (!grid) return grid.error();
+            ReadResult whole;
+            whole.grid = *std::move(grid);
+            return whole;
+        }
+    }
     caller.notes(result->notes);
-    if (!result->cells_in_file) caller.note(coincident_points_note(result->grid));
+    if (result->cells_in_file) return result;
+    caller.note(coincident_points_note(result->grid));
+    Result<Grid> grid = closed(std::move(result->grid), options_.hanging_points, caller, caller.run());
+    if (!grid) return grid.error();
+    result->grid = *std::move(grid);
     return result;
 }
 
 Result<Grid> GridSource::read_the_rest(const FieldsToRead& fields, std::size_t step, const Run& run) const {
     Result<ReadResult> result = read_file(fields, step, read_options_, run);
     if (!result) return result.error();
-    return std::move(result->grid);
+    if (options_.hanging_points == HangingChoice::leave) return std::move(result->grid);
+    Result<ClosedGrid> all = close_hanging_points(result->grid, run);
+    if (!all) return all.error();
+    return std::move(all->grid);
 }
 
 Result<ReadResult> GridSource::read_file(const FieldsToRead& fields, std::size_t step, ReadOptions options,

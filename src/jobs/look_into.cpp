@@ -1,6 +1,8 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <isotet/jobs/look_into.hpp>
 
+#include <algorithm>
+
 #include <isotet/grid_counts.hpp>
 #include <isotet/jobs/first_choice.hpp>
 #include <isotet/jobs/output_names.hpp>
@@ -70,11 +72,13 @@ Result<std::optional<FieldChart>> make_chart(const InfoJob& job, const Grid& gri
 
 Result<GridSummary> look_into(const InfoJob& job, Caller& caller) {
     if (auto paths = check_output_paths({job.grid.file}, job.other_outputs); !paths) return paths.error();
-    Result<GridSource> source = GridSource::open(job.grid, caller);
+    GridOptions options = job.grid;
+    options.hanging_points = HangingChoice::leave; // cells are counted as the file has them
+    Result<GridSource> source = GridSource::open(options, caller);
     if (!source) return source.error();
     if (auto paths = check_output_paths(source->info().files, job.other_outputs); !paths) return paths.error();
     const ChoiceWish wish{Steps::one, {}, {}, false};
-    const Result<FirstChoice> choice = choose_first(*source, job.grid, wish, caller, caller.run());
+    const Result<FirstChoice> choice = choose_first(*source, options, wish, caller, caller.run());
     if (!choice) return choice.error();
     GridSummary summary;
     summary.file = source->info();
@@ -89,7 +93,10 @@ Result<GridSummary> look_into(const InfoJob& job, Caller& caller) {
     if (job.survey) {
         const Result<std::uint64_t> hanging = count_hanging_points(*grid, caller.run());
         if (!hanging) return hanging.error();
-        summary.hanging_points = *hanging;
+        const Result<ClosedGrid> closed = close_hanging_points(*grid, caller.run());
+        if (!closed) return closed.error();
+        summary.hanging = closed->report;
+        summary.hanging_points = std::max(*hanging, closed->report.points); // the latter of strongly warped faces, too
     }
     Result<std::vector<FieldSummary>> fields = summarize(*grid, caller.run());
     if (!fields) return fields.error();

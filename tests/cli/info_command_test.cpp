@@ -29,7 +29,7 @@ TEST_F(Program, InfoTellsCellsFieldsAndRanges) {
 
 TEST_F(Program, InfoCountsFacesAndPlacesOnlyInASurvey) {
     const std::vector<std::string> of_survey{"repeated_tets", "duplicate_points", "boundary_faces",
-                                             "quads_on_triangles", "hanging_points"};
+                                             "quads_on_triangles", "hanging_points", "hanging"};
     const json quick = json_of({"info", "make:kuhn:3"});
     const json survey = json_of({"info", "make:kuhn:3", "--survey"});
     for (const std::string& key : of_survey) {

@@ -18,6 +18,13 @@
 
 namespace isotet::jobs {
 
+/// What becomes of cells that have hanging points (hanging_points.hpp).
+enum class HangingChoice : std::uint8_t {
+    close,       ///< they list them
+    interpolate, ///< and the points have the values of the larger cells
+    leave,       ///< nothing: the surface is open there
+};
+
 /// Which grid, and how it is read.
 struct GridOptions {
     std::string file; ///< or "make:SHAPE:SIDE[:FIELDS]"
@@ -26,6 +33,7 @@ struct GridOptions {
     std::optional<std::uint64_t> step;
     std::optional<double> merge_points; ///< tolerance
     MergedValues merge_values = MergedValues::lowest;
+    HangingChoice hanging_points = HangingChoice::close;
     bool keep_pieces = false;
     bool allow_outside = false;
     std::string displace;
@@ -72,13 +80,15 @@ public:
     /// A step that was read is given out by the next read() of the same step that asks for no more than `fields`.
     void keep(Grid grid, const FieldsToRead& fields, std::size_t step);
 
-    /// Reads one time step, merges points if asked to, and notes what the reader reports, and points that coincide.
+    /// Reads one time step, merges points if asked to, closes the grid at hanging points, and notes what the reader reports, and
+    /// points that coincide.
     Result<Grid> read(const FieldsToRead& fields, std::size_t step, Caller& caller) const {
         return read(fields, step, caller, caller.run());
     }
     Result<Grid> read(const FieldsToRead& fields, std::size_t step, Caller& caller, const Run& run) const;
 
-    /// The same; where that can be done, only the active cells (ReadResult::cells_in_file). Points are never merged then.
+    /// The same; where that can be done, only the active cells (ReadResult::cells_in_file). Points are never merged then; where
+    /// some of the cells may have hanging points, all are read.
     Result<ReadResult> read_active(const FieldsToRead& fields, std::size_t step, const ReadActiveCells& active,
                                    Caller& caller) const;
     /// The grid of which read_active() gave some cells. Nothing is noted again.

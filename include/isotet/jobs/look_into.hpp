@@ -12,6 +12,7 @@
 #include <isotet/contour_spectrum.hpp>
 #include <isotet/field_statistics.hpp>
 #include <isotet/first_view.hpp>
+#include <isotet/hanging_points.hpp>
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
 
@@ -62,7 +63,8 @@ struct GridSummary {
     ScalarType point_type = ScalarType::float32;
     GridReport report;
     bool surveyed = false; ///< whether faces and places were counted, too
-    std::uint64_t hanging_points = 0; ///< if so: places in a face of a larger cell, where the surface is open
+    std::uint64_t hanging_points = 0; ///< if so: places in a face or edge of a larger cell
+    HangingReport hanging;            ///< if so: which of them extraction closes
     std::vector<FieldSummary> fields;
     std::vector<VectorSummary> vectors;
     FirstView first; ///< what render and view show, and extract contours, where no field is named
