@@ -79,6 +79,12 @@ void add_packed_files(nb::module_& module) {
                 return call(how, [&](const Run& run) { return self.grid(field, step, run); });
             },
             "field"_a, "step"_a, "call"_a)
+        .def(
+            "load",
+            [](const PackedFile& self, std::string_view field, std::size_t step, const CallOptions& how) {
+                return call(how, [&](const Run& run) { return self.load(field, step, run); });
+            },
+            "field"_a, "step"_a, "call"_a)
         .def("residency", [](const PackedFile& self) { return residency_out(self.residency()); })
         .def(
             "check",

@@ -5,8 +5,10 @@ from __future__ import annotations
 
 import math
 import os
+import tempfile
 import weakref
 from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -538,6 +540,20 @@ class PackedGrid:
         """Memory of the packed grid."""
         return self._packed.report()["bytes"]
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """A packed grid is pickled as the bytes of its file."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "grid.isotet")
+            self.save(path)
+            return _restored_packed, (path.read_bytes(),)
+
+    def __copy__(self) -> PackedGrid:
+        """Shares the clusters, which never change."""
+        return PackedGrid._of(self._packed)
+
+    def __deepcopy__(self, memo: Any) -> PackedGrid:
+        return PackedGrid._of(self._packed)
+
     def __len__(self) -> int:
         """The number of cells of the grid that was packed."""
         return self._packed.cell_count
@@ -546,6 +562,15 @@ class PackedGrid:
         report = self._packed.report()
         return (f"<isotet.PackedGrid: {report['points']} points, {report['tets']} tets, "
                 f"field {self._packed.field()['name']}, {report['bytes']} bytes>")  # fmt: skip
+
+
+def _restored_packed(data: bytes) -> PackedGrid:
+    """A packed grid of a pickle."""
+    call = call_options(0, None)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "grid.isotet")
+        path.write_bytes(data)
+        return PackedGrid._of(_isotet.PackedFile.open(str(path), 0, call).load("", 0, call))
 
 
 class Contour:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pyvista
 
-from ._grid import read
+from ._grid import Grid, read
 from ._surface import read_surface
 from ._vtk_data import surface_of
 
@@ -25,3 +25,14 @@ def write_surface_file(mesh: pyvista.DataObject, path: str, **options) -> None:
     if not isinstance(mesh, pyvista.PolyData):
         raise TypeError(f"the mesh is a {type(mesh).__name__}, but this format takes surfaces: pyvista.PolyData")
     surface_of(mesh if mesh.is_all_triangles else mesh.triangulate()).write(path, **options)
+
+
+def write_packed_file(mesh: pyvista.DataObject, path: str, *, scalars: str | None = None) -> None:
+    """A packed grid (.isotet) with all point arrays of one component: `scalars`, else the active ones, first."""
+    grid = Grid(mesh)
+    fields = {name: values for name, values in grid.fields.items() if values.ndim == 1}
+    first = scalars or (mesh.active_scalars_name if mesh.active_scalars_name in fields else next(iter(fields), None))
+    if first not in fields:
+        raise ValueError(f"a packed grid has point arrays of one component, but there is no '{first}': there are {', '.join(fields) or 'none'}")
+    packed = grid.pack(first, gradients=True, source_cells=True)
+    packed.save(path, fields={name: values for name, values in fields.items() if name != first})

@@ -132,6 +132,21 @@ def test_sessions_are_pickled_and_copied(grid):
         pickle.dumps(gone)
 
 
+@pytest.mark.parametrize("precision", ["float32", "float64"])
+def test_packed_grids_are_pickled_and_copied(precision):
+    made = isotet.make("mixed", 4, ["sphere", "gyroid"])
+    grid = isotet.Grid(made.to_vtk(), cell_fields={"mark": np.arange(len(made))})
+    packed = grid.pack("sphere", gradients=True, source_cells=True, precision=precision)
+    how = {"normals": "gradient", "cell_fields": {"mark": grid.cell_fields["mark"]}, "edge_ends": True}
+    wanted = packed.contour(0.4, **how)
+    for other in (pickle.loads(pickle.dumps(packed)), copy.copy(packed), copy.deepcopy(packed)):
+        assert same(other.contour(0.4, **how), wanted)
+        assert repr(other) == repr(packed)
+        other.set_field(grid.fields["gyroid"])
+        assert same(other.contour(0.2), grid.pack("gyroid", precision=precision).contour(0.2))
+    assert same(packed.contour(0.4, **how), wanted), "it stays as it is"
+
+
 def area_of(grid: isotet.Grid) -> float:
     return grid.contour(0.5, "sphere", threads=1).area
 

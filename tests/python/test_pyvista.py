@@ -521,6 +521,19 @@ def test_grids_in_formats_of_isotet_are_read(tree):
     assert pv.read(path).n_cells == len(isotet.read(path))
 
 
+def test_packed_grids_are_saved_and_read(tmp_path):
+    grid = cubes()
+    grid.save(tmp_path / "grid.isotet")
+    file = isotet.open(tmp_path / "grid.isotet")
+    assert sorted(file.fields) == ["r", "x"]
+    assert file.contour(2.5, "r").area == pytest.approx(grid.isotet.contour([2.5], "r").area)
+    again = pv.read(tmp_path / "grid.isotet")
+    assert again.n_cells == grid.n_cells
+    assert again.isotet.contour([2.5], "r").area == pytest.approx(grid.isotet.contour([2.5], "r").area)
+    with pytest.raises(ValueError, match="there is no 'v'"):
+        grid.save(tmp_path / "grid.isotet", scalars="v")
+
+
 def test_pyvista_has_no_reader_of_its_own_for_these():
     from pyvista.core.utilities.reader import CLASS_READERS
 
