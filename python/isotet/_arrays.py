@@ -102,7 +102,8 @@ def _blocks_in(blocks) -> _isotet.Cells:
         if corners.ndim != 2:
             raise ValueError(f"cells[{name!r}] has shape {corners.shape}, but must have one row a cell")
         if name not in VTK_TYPES and name.startswith(_SOLID):
-            raise ValueError(f"cells of the type '{name}' have an order of nodes that isotet does not know: give them as VTK's Lagrange cells")
+            raise ValueError(f"cells of the type '{name}' have an order of nodes that isotet does not know: "
+                             "give them as VTK's Lagrange cells")  # fmt: skip
         arrays.append(corners)
         types.append(VTK_TYPES.get(name, 0))
     if len(arrays) == 1 and types[0] in _TYPE_OF_CORNERS.values() and _TYPE_OF_CORNERS.get(arrays[0].shape[1]) == types[0]:

@@ -36,7 +36,8 @@ def grid_of_mesh(mesh, fields, cell_fields, point_numbers) -> _isotet.Grid:
 
 def _of_meshio(mesh) -> _isotet.Grid:
     joined = {name: np.concatenate([np.asarray(part) for part in parts]) for name, parts in mesh.cell_data.items()}
-    return _isotet.Grid(points_in(mesh.points), cells_in(mesh.cells), fields_in("point_data", mesh.point_data), fields_in("cell_data", joined))
+    return _isotet.Grid(points_in(mesh.points), cells_in(mesh.cells), fields_in("point_data", mesh.point_data),
+                        fields_in("cell_data", joined))  # fmt: skip
 
 
 def expanded(grid: _isotet.Grid) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -33,6 +33,7 @@ def write_packed_file(mesh: pyvista.DataObject, path: str, *, scalars: str | Non
     fields = {name: values for name, values in grid.fields.items() if values.ndim == 1}
     first = scalars or (mesh.active_scalars_name if mesh.active_scalars_name in fields else next(iter(fields), None))
     if first not in fields:
-        raise ValueError(f"a packed grid has point arrays of one component, but there is no '{first}': there are {', '.join(fields) or 'none'}")
+        there = ", ".join(fields) or "none"
+        raise ValueError(f"a packed grid has point arrays of one component, but there is no '{first}': there are {there}")
     packed = grid.pack(first, gradients=True, source_cells=True)
     packed.save(path, fields={name: values for name, values in fields.items() if name != first})

@@ -246,7 +246,8 @@ class Surface:
         picture, text = self._repr_png_(), html.escape(repr(self))
         if picture is None:
             return f"<pre>{text}</pre>"
-        return f'<figure><img width="400" src="data:image/png;base64,{base64.b64encode(picture).decode()}"/><figcaption>{text}</figcaption></figure>'
+        data = base64.b64encode(picture).decode()
+        return f'<figure><img width="400" src="data:image/png;base64,{data}"/><figcaption>{text}</figcaption></figure>'
 
     def _ipython_display_(self) -> None:
         """Shows the surface in a notebook, by PyVista's backend where PyVista is installed, else by a picture."""

@@ -7,8 +7,7 @@ import numpy as np
 from isotet_vtk.vtkIsotet import vtkIsotetContour, vtkIsotetContourFilter
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkObjectFactory, vtkStringArray
-from vtkmodules.vtkCommonDataModel import (vtkImageData, vtkMultiBlockDataSet, vtkPartitionedDataSet, vtkPartitionedDataSetCollection,
-                                           vtkPolyData)
+from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkPartitionedDataSet, vtkPartitionedDataSetCollection, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkAppendFilter, vtkContourFilter
 from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
 
