@@ -12,7 +12,7 @@
 
 namespace isotet::test {
 
-/// A file of EnSight 6 that grows at its end. VTK reads no Fortran binary of it.
+/// A file of EnSight 6 that grows at its end.
 class Ensight6Text {
 public:
     explicit Ensight6Text(GoldForm form, bool geometry = false) : form_(form) {

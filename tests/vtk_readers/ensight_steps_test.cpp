@@ -166,15 +166,64 @@ TEST_P(EnsightStepsInFiles, WithoutAFileSectionOrWithoutTheirMarksAreRefused) {
     EXPECT_NE(no_marks.find("there are 0 between BEGIN TIME STEP"), std::string::npos) << no_marks;
 }
 
-/// VTK's reader goes on in lines of 80 bytes behind a step of EnSight 6, and here finds "penta6" in the next one.
-TEST_P(EnsightStepsInFiles, AreRefusedWhereElementsOfTheNextOneWouldBeAdded) {
-    const auto [is_gold, form] = GetParam();
+TEST_P(EnsightStepsInFiles, MayHaveOtherCounts) {
     EnsightFolder files = one_file();
-    files["grid.geo"] = steps(0, 3, false).geometry;
-    expect_step(read_ensight(folder_, files, 2), 2);
-    if (is_gold || form == GoldForm::ascii) return expect_step(read_ensight(folder_, files, 1), 1);
-    const auto message = message_of(read_ensight(folder_, files, 1));
-    EXPECT_NE(message.find("takes elements of the next time step"), std::string::npos) << message;
+    const auto [is_gold, form] = GetParam();
+    GoldText gold(form), gold_geometry(form, true);
+    Ensight6Text six(form), six_geometry(form, true);
+    for (int step = 0; step < 2; ++step) { // the first one has one cell less
+        const auto put = [&](auto& geometry, auto& e) {
+            geometry.line("BEGIN TIME STEP").line("a").line("b").line("node id off").line("element id off");
+            e.line("BEGIN TIME STEP").line("of elements");
+        };
+        const std::vector<std::vector<std::int32_t>> all{{1, 2, 3, 4}, {1, 3, 2, 5}};
+        const std::vector<std::vector<std::int32_t>> cells(all.begin(), all.begin() + 1 + step);
+        const std::vector<float> values(cells.size(), static_cast<float>(step));
+        const auto count = static_cast<std::int32_t>(cells.size());
+        if (is_gold) {
+            put(gold_geometry, gold);
+            gold_geometry.line("part").integers({1}).line("c").line("coordinates").integers({5});
+            gold_geometry.floats({0, 1, 0, 0, 0}).floats({0, 0, 1, 0, 0}).floats({0, 0, 0, 1, -1});
+            gold_geometry.line("tetra4").integers({count}).rows(cells).line("END TIME STEP");
+            gold.line("part").integers({1}).line("tetra4").floats(values).line("END TIME STEP");
+        } else {
+            put(six_geometry, six);
+            six_geometry.line("coordinates").integer(5).nodes({}, {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1});
+            six_geometry.line("part 1").line("c").line("tetra4").integer(count).integers(cells).line("END TIME STEP");
+            six.line("part 1").line("tetra4").floats(values).line("END TIME STEP");
+        }
+    }
+    files["grid.geo"] = is_gold ? gold_geometry.text() : six_geometry.text();
+    files["e.scl"] = is_gold ? gold.text() : six.text();
+    files["a.case"] = head() + "GEOMETRY\nmodel: 1 1 grid.geo\nVARIABLE\nscalar per element: 1 1 e e.scl\n"
+                               "TIME\ntime set: 1\nnumber of steps: 2\ntime values: 0 1\nFILE\nfile set: 1\nnumber of steps: 2\n";
+    for (const std::size_t step : {1U, 0U}) {
+        const auto result = read_ensight(folder_, files, step);
+        ASSERT_TRUE(result) << result.error().message;
+        ASSERT_EQ(result->grid.cells.count(), 1 + step);
+        EXPECT_EQ(result->grid.cell_fields.at(0).values.at(step), static_cast<double>(step));
+    }
+}
+
+TEST_P(EnsightStepsInFiles, MayShareAGeometryThatNamesNoSets) {
+    for (const bool marked : {true, false}) {
+        EnsightFolder files = one_file();
+        const auto [is_gold, form] = GetParam();
+        GoldText gold(form, true);
+        Ensight6Text six(form, true);
+        put_gold_geometry(gold, 0);
+        const Ensight6Box box{form, false, false, {1, 2}};
+        files["grid.geo"] = marked ? steps(0, 1).geometry : is_gold ? gold.text() : box.put_geometry(six).text();
+        std::string& text = files["a.case"];
+        text.replace(text.find("model: 1 1"), 10, "model:");
+        for (const std::size_t step : {2U, 0U}) {
+            const auto result = read_ensight(folder_, files, step);
+            ASSERT_TRUE(result) << result.error().message;
+            EXPECT_EQ(result->grid.points.at(0, 0), 0);
+            EXPECT_EQ(result->grid.point_fields.at(0).values.at(1),
+                      1000.0 * static_cast<double>(step) + (is_gold ? 101 : 2));
+        }
+    }
 }
 
 TEST_P(EnsightStepsInFiles, OfVariablesWithoutAFileSetAreInTheFirstOne) {
@@ -184,7 +233,7 @@ TEST_P(EnsightStepsInFiles, OfVariablesWithoutAFileSetAreInTheFirstOne) {
     expect_step(read_ensight(folder_, files, 2), 2);
 }
 
-TEST_P(EnsightStepsInFiles, OfAnIndexThatIsWrongAreErrors) {
+TEST_P(EnsightStepsInFiles, AreFoundWithoutTheIndex) {
     const auto [is_gold, form] = GetParam();
     if (!is_gold || form != GoldForm::c) return;
     const auto with_index = [](std::string bytes, int wrong) {
@@ -206,8 +255,7 @@ TEST_P(EnsightStepsInFiles, OfAnIndexThatIsWrongAreErrors) {
         for (int step = 0; step < 3; ++step)
             expect_step(read_ensight(folder_, files, static_cast<std::size_t>(step)), step);
         files[name] = with_index(whole, 1);
-        const auto message = message_of(read_ensight(folder_, files, 1));
-        EXPECT_NE(message.find("index says that step 2 begins at byte"), std::string::npos) << message;
+        expect_step(read_ensight(folder_, files, 1), 1);
         files[name] = whole;
     }
 }
@@ -219,11 +267,11 @@ std::string name_of_format(const testing::TestParamInfo<Format>& format) {
 
 INSTANTIATE_TEST_SUITE_P(Formats, EnsightStepsInFiles,
                          testing::Values(Format{true, GoldForm::ascii}, Format{true, GoldForm::c},
-                                         Format{true, GoldForm::c_swapped}, Format{false, GoldForm::ascii},
-                                         Format{false, GoldForm::c}, Format{false, GoldForm::c_swapped}),
+                                         Format{true, GoldForm::c_swapped}, Format{true, GoldForm::fortran},
+                                         Format{false, GoldForm::ascii}, Format{false, GoldForm::c},
+                                         Format{false, GoldForm::c_swapped}, Format{false, GoldForm::fortran}),
                          name_of_format);
 
-/// VTK's reader ends in a crash at these, or not at all.
 TEST(EnsightCaseFile, WithALineThatDoesNotBelongThereIsAnError) {
     const TemporaryFolder folder;
     GoldText geometry(GoldForm::c, true), values(GoldForm::c);
@@ -257,15 +305,6 @@ TEST(EnsightCaseFile, WithALineThatDoesNotBelongThereIsAnError) {
     EXPECT_NE(model.find("names no geometry"), std::string::npos) << model;
 }
 
-TEST(EnsightSteps, OfFortranInOneFileAreRefused) {
-    const TemporaryFolder folder;
-    EnsightFolder files{{"grid.geo", in_steps<GoldText>(GoldText(GoldForm::fortran, true), 0, 2, put_gold_geometry)},
-                        {"a.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: 1 1 grid.geo\nTIME\ntime set: 1\n"
-                                   "number of steps: 2\ntime values: 0 1\nFILE\nfile set: 1\nnumber of steps: 2\n"}};
-    const auto message = message_of(read_ensight(folder, files));
-    EXPECT_NE(message.find("does not read Fortran binary with a FILE section"), std::string::npos) << message;
-}
-
 /// Values of five nodes in each of two parts.
 class EnsightUndefined : public testing::TestWithParam<GoldForm> {
 protected:
@@ -283,20 +322,15 @@ protected:
                 {"x", values},
                 {"a.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: grid.geo\nVARIABLE\n" + kind + ": x x\n"}};
     }
-    static constexpr bool is_text(GoldForm form) { return form == GoldForm::ascii; }
 
     TemporaryFolder folder_;
 };
 
-TEST_P(EnsightUndefined, ValuesAreNaNOrRefused) {
+TEST_P(EnsightUndefined, ValuesAreNaN) {
     const auto result = read_values("scalar per node", [](GoldText& file) {
         file.line("coordinates undef").floats({-9}).floats({1, -9, 3, 4, 5});
         file.line("part").integers({2}).line("coordinates").floats({6, 7, 8, 9, 10});
     });
-    if (is_text(GetParam())) {
-        EXPECT_NE(message_of(result).find("a value is undefined"), std::string::npos) << message_of(result);
-        return;
-    }
     ASSERT_TRUE(result) << result.error().message;
     const Array& values = result->grid.point_fields.at(0).values;
     EXPECT_EQ(values.at(0), 1);
@@ -314,7 +348,7 @@ TEST_P(EnsightUndefined, ValueThatNoNodeHasIsNoHindrance) {
         EXPECT_EQ(result->grid.point_fields.at(0).values.at(i), static_cast<double>(i + 1));
 }
 
-TEST_P(EnsightUndefined, VectorsAndElementsAreReadInBinaryFiles) {
+TEST_P(EnsightUndefined, VectorsAndElementsAreRead) {
     const auto vectors = read_values("vector per node", [](GoldText& file) {
         file.line("coordinates undef").floats({-9});
         for (int c = 0; c < 3; ++c) file.floats({1, 2, -9, 4, 5});
@@ -324,16 +358,12 @@ TEST_P(EnsightUndefined, VectorsAndElementsAreReadInBinaryFiles) {
     });
     ASSERT_TRUE(elements) << elements.error().message;
     EXPECT_EQ(elements->grid.cell_fields.at(0).values.at(2), 9);
-    if (is_text(GetParam())) {
-        EXPECT_NE(message_of(vectors).find("undefined value"), std::string::npos) << message_of(vectors);
-        return;
-    }
     ASSERT_TRUE(vectors) << vectors.error().message;
     EXPECT_EQ(vectors->grid.point_fields.at(0).values.at(4, 2), 5);
     EXPECT_TRUE(std::isnan(vectors->grid.point_fields.at(0).values.at(2, 1)));
 }
 
-TEST_P(EnsightUndefined, PartialValuesAreReadInBinaryFiles) {
+TEST_P(EnsightUndefined, PartialValuesAreNaNElsewhere) {
     const auto read_list = [&](const std::vector<std::int32_t>& list) {
         return read_values("scalar per node", [&](GoldText& file) {
             file.line("coordinates partial").integers({static_cast<std::int32_t>(list.size())}).integers(list);
@@ -342,10 +372,6 @@ TEST_P(EnsightUndefined, PartialValuesAreReadInBinaryFiles) {
         });
     };
     const auto result = read_list({2, 5});
-    if (is_text(GetParam())) {
-        EXPECT_NE(message_of(result).find("mixes up partial values"), std::string::npos) << message_of(result);
-        return;
-    }
     ASSERT_TRUE(result) << result.error().message;
     const Array& values = result->grid.point_fields.at(0).values;
     for (const std::size_t i : {0u, 2u, 3u}) EXPECT_TRUE(std::isnan(values.at(i))) << i;
@@ -361,8 +387,7 @@ TEST_P(EnsightUndefined, ValuesAreErrorsWhereverTheFileIsCut) {
     GoldText values(GetParam());
     values.line("values").line("part").integers({1}).line("coordinates undef").floats({-9}).floats({1, 2, 3, 4, 5});
     values.line("part").integers({2});
-    if (is_text(GetParam())) values.line("coordinates").floats({6, 7, 8, 9, 10});
-    else values.line("coordinates partial").integers({2}).integers({1, 3}).floats({6, 7});
+    values.line("coordinates partial").integers({2}).integers({1, 3}).floats({6, 7});
     EnsightFolder all = files("scalar per node", values.text());
     const std::size_t second =
         all["x"].find("part", all["x"].find("part") + 1) - (GetParam() == GoldForm::fortran ? 4 : 0);

@@ -214,6 +214,54 @@ TEST_P(EnsightFiles, BlocksAndComplexVariablesAreReadWhole) {
     }
 }
 
+TEST_P(EnsightFiles, CellsOfBlocksThatAreBlankedOrGhostsAreLeftOut) {
+    for (const std::string kind : {"block uniform iblanked", "block uniform with_ghost", "block uniform range"}) {
+        GoldText geometry(GetParam(), true), cells(GetParam());
+        geometry.line("a").line("b").line("node id off").line("element id off").line("part").integers({1}).line("c");
+        const bool range = kind.ends_with("range");
+        geometry.line(kind).integers({range ? 9 : 4, 2, 2}, 3);
+        if (range) geometry.integers({3, 6, 1, 2, 1, 2}, 6);
+        geometry.floats({0, 0, 0}).floats({1, 1, 1});
+        if (kind.ends_with("iblanked")) geometry.integers({1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1});
+        if (kind.ends_with("with_ghost")) geometry.line("ghost_flags").integers({0, 0, 1});
+        geometry.line("part").integers({2}).line("d").line("coordinates").integers({4});
+        for (const auto& axis : {std::vector<float>{9, 10, 9, 9}, {0, 0, 1, 0}, {0, 0, 0, 1}}) geometry.floats(axis);
+        geometry.line("tetra4").integers({1}).integers({1, 2, 3, 4}, 4);
+        cells.line("c").line("part").integers({1}).line("block").floats({1, 2, 3});
+        cells.line("part").integers({2}).line("tetra4").floats({4});
+        const auto result = read_ensight(folder_, {{"grid.geo", geometry.text()},
+                                                   {"c", cells.text()},
+                                                   {"a.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: grid.geo\n"
+                                                              "VARIABLE\nscalar per element: c c\n"}});
+        ASSERT_TRUE(result) << kind << ": " << result.error().message;
+        ASSERT_EQ(result->grid.cells.count(), range ? 4u : 3u) << kind;
+        for (const std::size_t i : {0u, 1u}) EXPECT_EQ(result->grid.cell_fields.at(0).values.at(i), i + 1.0);
+        EXPECT_EQ(result->grid.cell_fields.at(0).values.at(range ? 3 : 2), 4);
+    }
+}
+
+TEST_P(EnsightFiles, GhostElementsAreLeftOutWithOrWithoutTheirValues) {
+    for (const bool valued : {true, false}) {
+        GoldText geometry(GetParam(), true), values(GetParam());
+        geometry.line("a").line("b").line("node id off").line("element id off").line("part").integers({1}).line("c");
+        geometry.line("coordinates").integers({5});
+        for (const auto& axis : {std::vector<float>{0, 1, 0, 0, 0}, {0, 0, 1, 0, 0}, {0, 0, 0, 1, -1}})
+            geometry.floats(axis);
+        geometry.line("g_tetra4").integers({1}).integers({1, 2, 3, 4}, 4);
+        geometry.line("tetra4").integers({1}).integers({1, 3, 2, 5}, 4);
+        values.line("e").line("part").integers({1});
+        if (valued) values.line("g_tetra4").floats({7});
+        values.line("tetra4").floats({8});
+        const auto result = read_ensight(folder_, {{"grid.geo", geometry.text()},
+                                                   {"e.scl", values.text()},
+                                                   {"a.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: grid.geo\n"
+                                                              "VARIABLE\nscalar per element: e e.scl\n"}});
+        ASSERT_TRUE(result) << result.error().message;
+        ASSERT_EQ(result->grid.cells.count(), 1u);
+        EXPECT_EQ(result->grid.cell_fields.at(0).values.at(0), 8);
+    }
+}
+
 TEST_P(EnsightFiles, PartsWithoutNodesAreNoHindrance) {
     for (const char* kind : {"", "coordinates"}) {
         GoldText geometry(GetParam(), true), values(GetParam());
@@ -276,8 +324,9 @@ TEST(EnsightText, OfGoldMustHaveItsNumbersOnLinesOfTheirOwn) {
     const std::string head = "t\npart\n1\ncoordinates\n";
     EXPECT_EQ(error(geometry, head + "1\n2\n3\n4\n"), "read");
     EXPECT_EQ(error(geometry, head + "1\n# a comment\n\n2\n3\n 4.00000e+00"), "read");
+    EXPECT_EQ(error(geometry, head + "1\n2\n" + std::string(300, ' ') + "3\n1.0D+05\n"), "read");
     EXPECT_EQ(error(geometry + "bar2\n1\n         1         2", head + "1\n2\n3\n4\n"), "read");
-    for (const char* values : {"1 2 3 4\n", "1\n2\n3\n4 5\n", "1\n2\n3\nx\n", "1\n2\n3\n1.0D+05\n", "1\n2\n3\n4"})
+    for (const char* values : {"1 2 3 4\n", "1\n2\n3\n4 5\n", "1\n2\n3\nx\n", "1\n2\n3\n1.0E+\n", "1\n2\n3\n4"})
         EXPECT_NE(error(geometry, head + values).find("/t: "), std::string::npos) << values;
     std::string rows = geometry;
     rows.replace(rows.find("1 2 3 4"), 7, "1 2\n3 4");

@@ -72,7 +72,6 @@ TEST_F(HostileEnsight, APipeIsAnErrorAndNotWaitedFor) {
     EXPECT_NE(message_of(path), "read");
 }
 
-/// VTK's reader, asked for them, looks for their time step behind the end of their file, for ever.
 TEST_F(HostileEnsight, MeasuredPointsAreNotRead) {
     const std::string path = ensight("");
     folder_.write("case/steps.geo",

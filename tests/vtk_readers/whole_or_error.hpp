@@ -13,7 +13,7 @@
 
 #include <isotet/read.hpp>
 
-#include "io/confined/ensight/ensight_check.hpp"
+#include "io/confined/loaders.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace isotet::test {
@@ -39,15 +39,14 @@ inline Result<ReadResult> whole(Result<ReadResult> result) {
     return Error{ErrorCode::invalid_data, result->info.left_out.front().reason};
 }
 
-/// The same of the check that precedes reading.
+/// The same in this process, before parts are joined.
 inline Result<void> check_case(const std::string& path, std::size_t step) {
-    const auto found = io::confined::read_case(path);
-    if (!found) return found.error();
-    const auto checked = io::confined::check_ensight(path, *found, step, std::vector<bool>(found->variables.size(), true));
-    if (!checked) return checked.error();
-    for (const auto& variable : checked->variables)
-        if (!variable.problem.empty()) return Error{ErrorCode::invalid_data, variable.problem};
-    return {};
+    ReadOptions options;
+    if (step > 0) options.step = step;
+    const auto loaded = io::confined::load_ensight(path, options, io::Depth::arrays);
+    if (!loaded) return loaded.error();
+    if (loaded->info.left_out.empty()) return {};
+    return Error{ErrorCode::invalid_data, loaded->info.left_out.front().reason};
 }
 
 using EnsightFolder = std::map<std::string, std::string>; ///< names and contents; the case is "a.case"

@@ -4,7 +4,7 @@
 #include <bit>
 #include <charconv>
 #include <cstring>
-#include <limits>
+#include <type_traits>
 
 #include <fmt/core.h>
 
@@ -14,36 +14,67 @@
 namespace isotet::io::confined {
 namespace {
 
-constexpr std::size_t line_bytes = 80;
-constexpr std::size_t most_characters = 255; // VTK's reader goes on in the middle of longer lines
-constexpr std::uint32_t most_parts = 65'536;
+constexpr std::size_t line_bytes = 80, float_width = 12;
 
 std::string_view trimmed(std::string_view line) {
-    while (!line.empty() && (is_space(line.back()) || line.back() == '\0')) line.remove_suffix(1);
+    while (!line.empty() && is_space(line.back())) line.remove_suffix(1);
+    while (!line.empty() && is_space(line.front())) line.remove_prefix(1);
     return line;
 }
 
-bool is_blank(std::string_view line) {
-    for (const char c : line)
-        if (!is_space(c)) return false;
-    return true;
-}
+/// Goes through the numbers of a line of text.
+class LineScanner {
+public:
+    explicit LineScanner(std::string_view line) : line_(line) {}
 
-/// A number as C's atof() reads it, which knows no exponents with D. Too large and too small ones are numbers.
-bool float_of(std::string_view word, double& value) {
-    if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
-    value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    return !word.empty() && error != std::errc::invalid_argument && end == word.data() + word.size();
-}
+    bool at_end() noexcept {
+        while (at_ < line_.size() && is_space(line_[at_])) ++at_;
+        return at_ == line_.size();
+    }
+
+    /// False where none stands here. `width`: of its column, which ends it where neither space nor sign does.
+    template <class Number>
+    bool next(std::size_t width, Number& value) {
+        if (at_end()) return false;
+        column_end_ += width;
+        const char *const begin = line_.data() + at_, *const end = line_.data() + line_.size();
+        const auto [stop, error] = std::from_chars(begin, end, value);
+        const auto size = static_cast<std::size_t>(stop - begin);
+        if (error == std::errc{} && (stop == end || is_space(*stop))) return take(size);
+        const std::size_t in_column = column_end_ > at_ ? column_end_ - at_ : 0;
+        const bool before_sign = error == std::errc{} && (*stop == '-' || *stop == '+');
+        if (before_sign && size == in_column) return take(size); // "2.0000000000-3" could be read as 0.002
+        const std::string_view word = TextScanner(line_.substr(at_)).word();
+        if (parse_number(word, value)) return take(word.size());
+        if (before_sign) return parse_number(word.substr(0, size), value) && take(size);
+        return in_column < word.size() && parse_number(word.substr(0, in_column), value) && take(in_column);
+    }
+
+private:
+    bool take(std::size_t characters) noexcept {
+        at_ += characters;
+        return true;
+    }
+
+    std::string_view line_;
+    std::size_t at_ = 0, column_end_ = 0;
+};
 
 } // namespace
 
-bool is_fortran(std::string_view bytes) {
+bool has_fortran_records(std::string_view bytes) {
     constexpr std::string_view little("\x50\0\0\0", 4), big("\0\0\0\x50", 4);
     if (bytes.size() < line_bytes + 8) return false;
     const std::string_view first = bytes.substr(0, 4), second = bytes.substr(line_bytes + 4, 4);
     return first == second && (first == little || first == big);
+}
+
+EnsightForm ensight_form(std::string_view bytes) {
+    const bool fortran = has_fortran_records(bytes);
+    const std::string_view line = bytes.substr(fortran ? 4 : 0, line_bytes);
+    const auto words = words_of(line.substr(0, line.find('\n')));
+    const bool binary = words.size() > 1 && (words[1].starts_with("Binary") || words[1].starts_with("binary"));
+    return !binary ? EnsightForm::ascii : fortran ? EnsightForm::fortran : EnsightForm::c;
 }
 
 std::vector<std::string_view> words_of(std::string_view line) {
@@ -53,149 +84,145 @@ std::vector<std::string_view> words_of(std::string_view line) {
     return words;
 }
 
-bool integers_of(std::string_view line, std::vector<std::int64_t>& values) {
-    values.clear();
-    TextScanner scanner(line);
-    while (!scanner.at_line_end()) {
-        std::int32_t value = 0;
-        if (!scanner.number_of_line(value)) return false;
-        values.push_back(value);
+EnsightFile::EnsightFile(const std::string& path, std::string_view bytes, EnsightForm form, bool big_endian,
+                         std::size_t integer_width)
+    : path_(path), bytes_(bytes), integer_width_(integer_width), form_(form),
+      big_endian_(form == EnsightForm::fortran ? bytes[0] == 0 : big_endian) {}
+
+void EnsightFile::skip_empty_lines() noexcept {
+    while (!is_binary() && at_ < bytes_.size()) {
+        const std::size_t word = std::min(bytes_.find_first_not_of(" \t\r\v\f", at_), bytes_.size());
+        if (word < bytes_.size() && bytes_[word] != '\n' && bytes_[at_] != '#') return;
+        at_ = std::min(bytes_.find('\n', word), bytes_.size() - 1) + 1;
     }
-    return true;
 }
 
-EnsightFile::EnsightFile(const std::string& path, std::string_view bytes, EnsightForm form, EnsightOrder order)
-    : path_(path), bytes_(bytes), form_(form), order_(order) {
-    if (form_ == EnsightForm::fortran) order_ = bytes[0] == 0 ? EnsightOrder::big : EnsightOrder::little;
+bool EnsightFile::is_at(std::string_view begin) noexcept {
+    skip_empty_lines();
+    if (is_binary()) return left() > marks() && bytes_.substr(at_ + marks()).starts_with(begin);
+    const std::size_t first = bytes_.find_first_not_of(" \t", at_);
+    return first != std::string_view::npos && bytes_.substr(first).starts_with(begin);
 }
 
-bool EnsightFile::at_end() noexcept {
-    if (is_binary()) return at_ == bytes_.size();
-    while (at_ < bytes_.size()) {
-        const std::size_t before = at_;
-        if (const auto line = text_line(); !is_blank(line) && line[0] != '#') {
-            at_ = before;
-            return false;
-        }
+bool EnsightFile::find_step(std::string_view begin) {
+    for (std::size_t at = at_; (at = bytes_.find(begin, at)) != std::string_view::npos; ++at) {
+        const bool begins_line = is_binary() ? at >= marks() : at == 0 || bytes_[at - 1] == '\n';
+        if (!begins_line) continue;
+        at_ = at - marks();
+        line("BEGIN TIME STEP");
+        in_step_ = true;
+        return true;
     }
-    return true;
+    return false;
 }
 
 bool EnsightFile::has_more() {
-    if (at_end()) {
+    skip_empty_lines();
+    if (left() == 0) {
         if (in_step_) wrong("the file ends before END TIME STEP: it is cut short");
         return false;
     }
-    return !in_step_ || !peek("END TIME STEP").starts_with("END TIME STEP");
+    return !in_step_ || !is_at("END TIME STEP");
 }
 
 std::string_view EnsightFile::line(const char* what) {
-    return is_binary() ? raw_line(what) : trimmed(data_line(what, most_characters));
+    skip_empty_lines();
+    return raw_line(what);
 }
 
 std::string_view EnsightFile::raw_line(const char* what) {
-    if (!is_binary()) {
-        if (at_ == bytes_.size()) missing(what, 1);
-        return trimmed(text_line());
-    }
-    const std::size_t begin = at_ + (is_fortran() ? 4 : 0);
-    skip_bytes(line_bytes, what, 1);
-    const std::string_view all = bytes_.substr(begin, line_bytes);
+    if (left() == 0) missing(what, 1);
+    if (!is_binary()) return trimmed(text_line());
+    const std::string_view all = record(line_bytes, what, 1);
     return trimmed(all.substr(0, all.find('\0')));
 }
 
-std::string_view EnsightFile::peek(const char* what) {
-    const std::size_t before = at_;
-    const std::string_view found = line(what);
-    at_ = before;
-    return found;
-}
-
-std::uint64_t EnsightFile::part_number() {
-    const std::size_t before = at_;
-    const bool is_unknown = order_ == EnsightOrder::unknown;
-    if (is_unknown) order_ = EnsightOrder::little;
-    std::int64_t value = integer("the number of a part");
-    if (is_unknown && is_binary() && (value < 0 || value >= most_parts)) {
-        order_ = EnsightOrder::big;
-        at_ = before;
-        value = integer("the number of a part");
-    }
-    if (value < 0 || (is_binary() && value >= most_parts)) wrong(fmt::format("a part has the number {}", value));
-    return static_cast<std::uint64_t>(value);
-}
+std::int32_t EnsightFile::integer(const char* what) { return numbers<std::int32_t>(1, 1, true, what).front(); }
 
 std::uint64_t EnsightFile::count(const char* what) {
-    const std::int64_t value = integer(what);
+    const std::int32_t value = integer(what);
     if (value < 0) wrong(fmt::format("{} is {}", what, value));
     return static_cast<std::uint64_t>(value);
 }
 
-std::uint64_t EnsightFile::count_of_unknown_order(const char* what) {
-    if (is_binary() && order_ == EnsightOrder::unknown) {
-        const std::size_t before = at_;
-        const auto as = [&](EnsightOrder order) -> std::int64_t {
-            order_ = order;
-            at_ = before;
-            const std::int64_t value = plain_integer(what);
-            return value >= 0 && static_cast<std::uint64_t>(value) <= bytes_.size() / 4 ? value : -1;
-        };
-        const std::int64_t big = as(EnsightOrder::big), little = as(EnsightOrder::little);
-        at_ = before;
-        if (big > little) order_ = EnsightOrder::big;
-        if (big == 0 && little == 0) {
-            order_ = EnsightOrder::unknown;
-            at_ += 4;
-            return 0;
-        }
-        if (big < 0 && little < 0) wrong(fmt::format("{} is larger than the file in either byte order", what));
-    }
-    return count(what);
-}
-
-std::vector<std::uint32_t> EnsightFile::counts(std::uint64_t n, const char* what, Lines lines) {
-    if (n > left() / (is_binary() ? 4 : 1)) missing(what, n);
-    std::vector<std::uint32_t> all;
-    const auto add = [&](std::int64_t value) {
+std::vector<std::int32_t> EnsightFile::counts(std::uint64_t n, std::size_t on_line, const char* what) {
+    auto all = numbers<std::int32_t>(n, on_line, true, what);
+    for (const std::int32_t value : all)
         if (value < 0) wrong(fmt::format("{} holds {}", what, value));
-        all.push_back(static_cast<std::uint32_t>(value));
-    };
-    if (!is_binary() && lines == Lines::all_on_one) {
-        if (!integers_of(data_line(what, most_characters), row_) || row_.size() != n) missing(what, n);
-        for (const std::int64_t value : row_) add(value);
-        return all;
-    }
-    if (n == 0) return all;
-    if (is_fortran()) record_mark(4 * n);
-    for (std::uint64_t i = 0; i < n; ++i) add(is_binary() ? plain_integer(what) : integer(what));
-    if (is_fortran()) record_mark(4 * n);
     return all;
 }
 
-void EnsightFile::skip_floats(std::uint64_t n, const char* what) {
-    if (n > left() / (is_binary() ? 4 : 1)) missing(what, n);
-    if (is_binary()) {
-        if (n > 0) skip_bytes(4 * n, what, n);
-        return;
-    }
-    for (std::uint64_t i = 0; i < n; ++i) float_line(what);
+std::vector<std::int32_t> EnsightFile::integers(std::uint64_t n, std::size_t on_line, const char* what) {
+    return numbers<std::int32_t>(n, on_line, keeps_, what);
 }
 
-void EnsightFile::skip_integers(std::uint64_t rows, std::uint64_t row, const char* what) {
-    if (rows > left() / (is_binary() ? 4 : 1)) missing(what, rows);
-    if (is_binary()) {
-        if (rows * row > left() / 4) missing(what, rows * row);
-        if (rows * row > 0) skip_bytes(4 * rows * row, what, rows * row);
-        return;
-    }
-    for (std::uint64_t i = 0; i < rows; ++i)
-        if (!integers_of(data_line(what, most_characters), row_) || row_.size() != row) missing(what, rows * row);
+std::vector<float> EnsightFile::floats(std::uint64_t n, std::size_t on_line, const char* what) {
+    return numbers<float>(n, on_line, keeps_, what);
 }
 
-void EnsightFile::skip_lines(const std::vector<std::uint32_t>& sizes, const char* what) {
-    for (const std::uint32_t size : sizes)
-        if (!integers_of(data_line(what, std::numeric_limits<std::size_t>::max()), row_) || row_.size() != size)
-            missing(what, sizes.size());
+std::uint64_t EnsightFile::sum_of(const std::vector<std::int32_t>& sizes) const {
+    std::uint64_t sum = 0;
+    for (const std::int32_t size : sizes) {
+        if (static_cast<std::uint64_t>(size) > left()) wrong(fmt::format("an element has {} nodes or faces", size));
+        sum += static_cast<std::uint64_t>(size);
+    }
+    return sum;
+}
+
+std::vector<std::int32_t> EnsightFile::rows(const std::vector<std::int32_t>& sizes, const char* what) {
+    const std::uint64_t all = sum_of(sizes);
+    if (is_binary()) return integers(all, 0, what);
+    if (all > left()) missing(what, all);
+    std::vector<std::int32_t> values;
+    for (const std::int32_t size : sizes)
+        if (size > 0) text_row(static_cast<std::size_t>(size), all, values, what);
+    return values;
+}
+
+/// Fortran may have written the columns as one record.
+std::vector<float> EnsightFile::columns(std::uint64_t n, std::size_t count, std::size_t on_line, const char* what) {
+    if (count == 1) return floats(n, on_line, what);
+    if (n > left()) missing(what, n);
+    std::vector<float> values;
+    const bool in_one = marks() > 0 && left() >= marks() && word_at(at_) == sizeof(float) * n * count;
+    std::vector<float> column = in_one ? floats(n * count, 0, what) : std::vector<float>();
+    for (std::size_t c = 0; c < count; ++c) {
+        if (!in_one) column = floats(n, on_line, what);
+        values.resize(column.empty() ? 0 : n * count);
+        const float* const from = column.data() + (in_one ? c * n : 0);
+        for (std::size_t i = 0; i * count + c < values.size(); ++i) values[i * count + c] = from[i];
+    }
+    return values;
+}
+
+std::vector<float> EnsightFile::text_nodes(std::uint64_t n, bool numbered, std::vector<std::int32_t>& numbers) {
+    constexpr const char* what = "the coordinates";
+    constexpr std::size_t axes = 3;
+    if (n > left()) missing(what, n);
+    std::vector<float> values;
+    for (std::uint64_t i = 0; i < n; ++i) {
+        skip_empty_lines();
+        LineScanner line(text_line());
+        std::int32_t number = 0;
+        double value = 0;
+        if (numbered && !line.next(integer_width_, number)) missing(what, n);
+        if (numbered) numbers.push_back(number);
+        for (std::size_t axis = 0; axis < axes; ++axis) {
+            if (!line.next(float_width, value)) missing(what, n);
+            values.push_back(static_cast<float>(value));
+        }
+        if (!line.at_end()) missing(what, n);
+    }
+    return values;
+}
+
+void EnsightFile::expect_whole_last_line(std::size_t integer_width) const {
+    if (is_binary() || bytes_.empty() || is_space(bytes_.back())) return;
+    const std::string_view line = bytes_.substr(bytes_.find_last_of('\n') + 1);
+    const std::string_view word = line.substr(line.find_last_of(" \t") + 1);
+    const std::size_t width = word.find_first_of(".eE") == std::string_view::npos ? integer_width : float_width;
+    if (line.size() % width != 0)
+        wrong(fmt::format("the last line, {}, is not ended: the file may be cut short", in_quotes(line)));
 }
 
 void EnsightFile::wrong(const std::string& what) const {
@@ -214,58 +241,58 @@ std::string_view EnsightFile::text_line() {
     return bytes_.substr(begin, end - begin);
 }
 
-std::string_view EnsightFile::data_line(const char* what, std::size_t longest) {
-    if (at_end()) missing(what, 1);
-    const std::string_view line = text_line();
-    if (line.size() > longest)
-        wrong(fmt::format("a line has {} characters, of which VTK's reader takes {}", line.size(), longest));
-    return line;
-}
-
-double EnsightFile::float_line(const char* what) {
-    const std::size_t before = at_;
-    TextScanner scanner(data_line(what, most_characters));
-    double value = 0;
-    if (float_of(scanner.word_of_line(), value) && scanner.at_line_end()) return value;
-    at_ = before;
-    missing(what, 1);
-}
-
-/// Fortran writes the length of a record before and behind it.
-void EnsightFile::record_mark(std::uint64_t bytes) {
-    const std::int64_t found = plain_integer("the length of a record");
-    if (static_cast<std::uint32_t>(found) != bytes)
-        wrong(fmt::format("a record of {} bytes should have {}", static_cast<std::uint32_t>(found), bytes));
-}
-
-void EnsightFile::skip_bytes(std::uint64_t n, const char* what, std::uint64_t items) {
-    const std::uint64_t marks = is_fortran() ? 8 : 0;
-    if (n + marks > left()) missing(what, items);
-    if (is_fortran()) record_mark(n);
-    at_ += static_cast<std::size_t>(n);
-    if (is_fortran()) record_mark(n);
-}
-
-std::int32_t EnsightFile::plain_integer(const char* what) {
-    if (left() < 4) missing(what, 1);
+std::uint32_t EnsightFile::word_at(std::size_t at) const noexcept {
     std::uint32_t value = 0;
-    std::memcpy(&value, bytes_.data() + at_, sizeof value);
-    at_ += 4;
-    if (order_ == EnsightOrder::big) value = __builtin_bswap32(value);
-    return std::bit_cast<std::int32_t>(value);
+    std::memcpy(&value, bytes_.data() + at, sizeof value);
+    return big_endian_ ? __builtin_bswap32(value) : value;
 }
 
-std::int64_t EnsightFile::integer(const char* what) {
+/// So many bytes. Fortran writes the length of a record before and behind it.
+std::string_view EnsightFile::record(std::uint64_t n, const char* what, std::uint64_t items) {
+    if (n + 2 * marks() > left()) missing(what, items);
+    const std::size_t begin = at_ + marks(), end = begin + static_cast<std::size_t>(n);
+    if (marks() > 0)
+        for (const std::size_t mark : {at_, end})
+            if (word_at(mark) != n) wrong(fmt::format("a record of {} bytes should have {}", word_at(mark), n));
+    at_ = end + marks();
+    return bytes_.substr(begin, end - begin);
+}
+
+template <class Number>
+std::vector<Number> EnsightFile::numbers(std::uint64_t n, std::size_t on_line, bool keep, const char* what) {
+    if (n > left() / (is_binary() ? 4 : 1)) missing(what, n);
+    std::vector<Number> values;
+    if (n == 0) return values;
     if (!is_binary()) {
-        const std::size_t before = at_;
-        if (integers_of(data_line(what, most_characters), row_) && row_.size() == 1) return row_[0];
-        at_ = before;
-        missing(what, 1);
+        values.reserve(n);
+        while (values.size() < n) text_row(on_line, n, values, what);
+        if (values.size() > n) missing(what, n);
+        return keep ? std::move(values) : std::vector<Number>();
     }
-    if (is_fortran()) record_mark(4);
-    const std::int64_t value = plain_integer(what);
-    if (is_fortran()) record_mark(4);
-    return value;
+    const std::string_view bytes = record(sizeof(Number) * n, what, n);
+    if (!keep) return values;
+    values.resize(n);
+    std::memcpy(values.data(), bytes.data(), bytes.size());
+    if (big_endian_)
+        for (Number& value : values)
+            value = std::bit_cast<Number>(__builtin_bswap32(std::bit_cast<std::uint32_t>(value)));
+    return values;
+}
+
+template <class Number>
+void EnsightFile::text_row(std::size_t n, std::uint64_t all, std::vector<Number>& values, const char* what) {
+    skip_empty_lines();
+    const std::size_t before = at_, known = values.size();
+    std::conditional_t<std::is_floating_point_v<Number>, double, Number> value{};
+    LineScanner line(text_line());
+    bool good = !line.at_end();
+    while (good && !line.at_end()) {
+        good = line.next(std::is_floating_point_v<Number> ? float_width : integer_width_, value);
+        values.push_back(static_cast<Number>(value));
+    }
+    if (good && (n == 0 || values.size() - known == n)) return;
+    at_ = before;
+    missing(what, all);
 }
 
 } // namespace isotet::io::confined

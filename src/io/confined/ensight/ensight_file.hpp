@@ -14,7 +14,7 @@
 
 namespace isotet::io::confined {
 
-/// Ends a walk through a file. Stays within the check of a case.
+/// Ends the reading of a file. Stays within load_ensight().
 class EnsightError : public std::exception {
 public:
     explicit EnsightError(Error error) : error_(std::move(error)) {}
@@ -26,101 +26,88 @@ private:
 };
 
 enum class EnsightForm : std::uint8_t { ascii, c, fortran };
-enum class EnsightOrder : std::uint8_t { unknown, little, big };
 
-/// True when a file has the record marks of Fortran around its first line of 80 bytes, as VTK's reader tests them.
-bool is_fortran(std::string_view bytes);
+/// The form of a geometry, which its first line states; of the other files that of their first record.
+EnsightForm ensight_form(std::string_view bytes);
+bool has_fortran_records(std::string_view bytes);
 
 /// A cursor that never leaves the file. `what` names what should come next, for errors. Borrows path and bytes.
 ///
-/// Lines of text are read as VTK's readers do: a data line is not empty, does not begin with #, and has at most 255
-/// characters. Functions with `what`, and wrong(), throw EnsightError.
+/// A line of text that is empty or begins with # is skipped, unless said otherwise. Numbers in text stand between
+/// spaces, or in columns: floats in 12 characters, integers in `integer_width`. Functions with `what`, and wrong(),
+/// throw EnsightError.
 class EnsightFile {
 public:
-    /// `order`   of integers in C binary files, where another file has told it; Fortran's record marks tell it, too
-    EnsightFile(const std::string& path, std::string_view bytes, EnsightForm form,
-                EnsightOrder order = EnsightOrder::unknown);
+    /// `big_endian`   of C binary files; Fortran's record marks tell it themselves
+    EnsightFile(const std::string& path, std::string_view bytes, EnsightForm form, bool big_endian,
+                std::size_t integer_width);
 
     bool is_binary() const noexcept { return form_ != EnsightForm::ascii; }
-    bool is_fortran() const noexcept { return form_ == EnsightForm::fortran; }
-    const std::string& path() const noexcept { return path_; }
-    EnsightOrder order() const noexcept { return order_; }
     std::size_t position() const noexcept { return at_; }
-    std::size_t left() const noexcept { return bytes_.size() - at_; }
-    std::string_view bytes() const noexcept { return bytes_; }
     void seek(std::size_t position) noexcept { at_ = position; }
+    std::size_t left() const noexcept { return bytes_.size() - at_; }
 
-    /// True when text has no more data lines, or a binary file no more bytes.
-    bool at_end() noexcept;
+    /// False: integers() and floats() give nothing, but go on as far and find the same errors.
+    void keep(bool values) noexcept { keeps_ = values; }
 
-    /// From here on the end of the data is END TIME STEP, no longer that of the file.
-    void expect_end_of_step() noexcept { in_step_ = true; }
+    /// True when the next line begins so.
+    bool is_at(std::string_view begin) noexcept;
+
+    /// Goes to the next line that begins so; the end of the data is then END TIME STEP, no longer that of the file.
+    bool find_step(std::string_view begin);
 
     /// True when data is left. In a step the end of the file is an error.
     bool has_more();
 
-    /// A data line, of 80 bytes in binary files, without space and zeros at its end.
+    /// A line, of 80 bytes in binary files, without space around it. The raw one may be empty in text, as descriptions
+    /// may be.
     std::string_view line(const char* what);
-
-    /// The same, but in text also a line that is empty or a comment: descriptions may be.
     std::string_view raw_line(const char* what);
 
-    /// The line that comes next, which stays there.
-    std::string_view peek(const char* what);
-
-    /// The first one tells the byte order of C binary files of EnSight Gold: parts have small numbers.
-    std::uint64_t part_number();
-
-    /// An integer, on a line of its own in text.
+    /// An integer, on a line of its own in text; counts are not negative.
+    std::int32_t integer(const char* what);
     std::uint64_t count(const char* what);
 
-    /// The same, in C binary files of EnSight 6: the first one that is not zero tells the byte order, in which it is the
-    /// larger number that fits into the file.
-    std::uint64_t count_of_unknown_order(const char* what);
+    /// Integers that are not negative, kept in any case. `on_line`: so many in each line of text, 0: any number.
+    std::vector<std::int32_t> counts(std::uint64_t n, std::size_t on_line, const char* what);
+    std::vector<std::int32_t> integers(std::uint64_t n, std::size_t on_line, const char* what);
+    std::vector<float> floats(std::uint64_t n, std::size_t on_line, const char* what);
 
-    /// So many integers that are not negative; in text one on a line, or all on one line.
-    enum class Lines : std::uint8_t { one_each, all_on_one };
-    std::vector<std::uint32_t> counts(std::uint64_t n, const char* what, Lines lines = Lines::one_each);
+    /// Columns of n floats each, one after another in the file, interleaved.
+    std::vector<float> columns(std::uint64_t n, std::size_t count, std::size_t on_line, const char* what);
 
-    /// Floats, on a line each in text; `visit(value)` gets them one by one.
-    void skip_floats(std::uint64_t n, const char* what);
-    template <class Visit>
-    void floats(std::uint64_t n, const char* what, Visit visit) {
-        if (is_binary() || n > left()) return skip_floats(n, what);
-        for (std::uint64_t i = 0; i < n; ++i) visit(float_line(what));
-    }
+    /// Integers in rows of different lengths, each on a line of text; how many these are.
+    std::uint64_t sum_of(const std::vector<std::int32_t>& sizes) const;
+    std::vector<std::int32_t> rows(const std::vector<std::int32_t>& sizes, const char* what);
 
-    /// Integers, `row` on a line in text.
-    void skip_integers(std::uint64_t rows, std::uint64_t row, const char* what);
+    /// Nodes of EnSight 6 in text: x, y and z of each, behind its number where they are `numbered`.
+    std::vector<float> text_nodes(std::uint64_t n, bool numbered, std::vector<std::int32_t>& numbers);
 
-    /// Integers in text, on lines of so many each.
-    void skip_lines(const std::vector<std::uint32_t>& sizes, const char* what);
+    /// A last line of text that is not ended may have lost digits, unless its numbers fill their columns.
+    void expect_whole_last_line(std::size_t integer_width) const;
 
     [[noreturn]] void wrong(const std::string& what) const;
     [[noreturn]] void missing(const char* what, std::uint64_t n) const;
 
 private:
     std::string_view text_line();
-    double float_line(const char* what);
-    std::string_view data_line(const char* what, std::size_t longest);
-    void record_mark(std::uint64_t bytes);
-    void skip_bytes(std::uint64_t n, const char* what, std::uint64_t items);
-    std::int32_t plain_integer(const char* what);
-    std::int64_t integer(const char* what);
+    void skip_empty_lines() noexcept;
+    std::size_t marks() const noexcept { return form_ == EnsightForm::fortran ? 4 : 0; }
+    std::uint32_t word_at(std::size_t at) const noexcept;
+    std::string_view record(std::uint64_t n, const char* what, std::uint64_t items);
+    template <class Number>
+    std::vector<Number> numbers(std::uint64_t n, std::size_t on_line, bool keep, const char* what);
+    template <class Number>
+    void text_row(std::size_t n, std::uint64_t all, std::vector<Number>& values, const char* what);
 
     const std::string& path_;
     std::string_view bytes_;
-    std::size_t at_ = 0;
+    std::size_t at_ = 0, integer_width_;
     EnsightForm form_;
-    EnsightOrder order_;
-    bool in_step_ = false;
-    std::vector<std::int64_t> row_; ///< of the last line of integers
+    bool big_endian_, keeps_ = true, in_step_ = false;
 };
 
 /// The words of a line.
 std::vector<std::string_view> words_of(std::string_view line);
-
-/// Integers that text has room for, in a line; false where a word is none, or does not fit into 32 bits.
-bool integers_of(std::string_view line, std::vector<std::int64_t>& values);
 
 } // namespace isotet::io::confined
