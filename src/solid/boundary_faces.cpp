@@ -94,8 +94,9 @@ private:
         if (!no_data_.empty())
             for (std::size_t k = 0; k < corners; ++k)
                 if (no_data_[part.corners[k]]) return;
-        const bool mirrored = core::is_mirrored(part.kind, part.corners,
-                                                [&](std::uint8_t corner) { return points_[part.corners[corner]]; });
+        const auto at = [&](std::uint8_t corner) { return points_[part.corners[corner]]; };
+        const bool mirrored =
+            !core::is_ordered(cells_.type(cell)) && core::is_mirrored(part.kind, part.corners, at);
         for (const core::CellFace& shape : core::shape_of(part.kind).faces()) {
             std::array<std::uint64_t, 4> points{};
             std::size_t count = 0; // a corner that is repeated once

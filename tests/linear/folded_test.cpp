@@ -13,6 +13,7 @@
 #include <isotet/check.hpp>
 #include <isotet/contour.hpp>
 #include <isotet/linear_cells.hpp>
+#include <isotet/solid.hpp>
 
 #include "grid/cells.hpp"
 #include "linear/polyhedral_grid.hpp"
@@ -179,6 +180,16 @@ TEST(BadlyShapedPolyhedra, HaveTheBoundaryOfTheFacesThatOneCellHas) {
         EXPECT_TRUE(check(boundary, {.closed = true}).value().closed);
     }
     EXPECT_GT(folded, 0u) << "some cells must be folded for this to say anything";
+}
+
+TEST(BadlyShapedPolyhedra, GiveSolidsWithThatBoundary) {
+    for (unsigned seed = 1; seed <= 4; ++seed) {
+        const Grid grid = octree_grid({.seed = seed, .moved = 0.35});
+        Solids solids = Solids::create({grid, whole_numbers(grid, seed, 4), {}, {}}).value();
+        const Solid all = solids.extract(SolidRange::above(-1)).value();
+        EXPECT_EQ(all.surface.triangle_count(), single_face_triangles(grid)) << "seed " << seed;
+        EXPECT_EQ(all.open_edges, 0u);
+    }
 }
 
 } // namespace
