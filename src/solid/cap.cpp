@@ -30,6 +30,7 @@ struct RawTriangle {
 struct RawApex {
     Place3 position{};
     std::vector<Corner> around;
+    std::uint32_t face = 0;
 };
 
 /// What some faces become; apexes are numbered from 0.
@@ -46,7 +47,7 @@ public:
           points_(points),
           cuts_(cuts),
           stored_(boundary.points.size()),
-          rounding_(points.type() == ScalarType::float32 ? 0x1p-21 : 0x1p-50) {
+          rounding_(rounding_of(points.type())) {
         values.visit([&](auto typed) {
             core::parallel_each(stored_.size(), 1 << 14, [&](std::size_t place) {
                 stored_[place] =
@@ -142,15 +143,9 @@ private:
     /// By more than the rounding of coordinates.
     bool is_warped(const BoundaryFace& face) const {
         if (face.count < 4) return false;
-        std::array<Place3, 4> p;
-        double largest = 0;
-        for (std::size_t k = 0; k < 4; ++k) {
-            p[k] = place_of_point(face.places[k]);
-            for (const double x : p[k]) largest = std::max(largest, std::abs(x));
-        }
-        const Polygon polygon = polygon_of(p);
-        const double area = std::hypot(polygon.area[0], polygon.area[1], polygon.area[2]);
-        return std::abs(core::six_volumes(p[0], p[1], p[2], p[3])) > rounding_ * largest * area;
+        std::array<Place3, 4> corners;
+        for (std::size_t k = 0; k < 4; ++k) corners[k] = place_of_point(face.places[k]);
+        return solid::is_warped(corners, rounding_ * largest_coordinate(corners));
     }
 
     /// The parts of a face on a side of some corners, as polygons from `origin`.
@@ -218,7 +213,9 @@ private:
             const Corner number = out.apexes.size() | apex_bit;
             for (std::size_t k = 0; k < count; ++k)
                 out.triangles.push_back({{polygon[k], polygon[(k + 1) % count], number}, face.cell});
-            out.apexes.push_back({apex, {polygon.begin(), polygon.begin() + static_cast<std::ptrdiff_t>(count)}});
+            out.apexes.push_back({apex,
+                                  {polygon.begin(), polygon.begin() + static_cast<std::ptrdiff_t>(count)},
+                                  static_cast<std::uint32_t>(&face - boundary_.faces.data())});
         });
     }
 
@@ -290,6 +287,7 @@ Cap make_cap(const BoundaryFaces& boundary, const Array& points, const Array& va
     cap.apexes.resize(raw.apexes.size());
     core::parallel_each(raw.apexes.size(), 1 << 12, [&](std::size_t i) {
         cap.apexes[i].position = raw.apexes[i].position;
+        cap.apexes[i].face = raw.apexes[i].face;
         for (const Corner corner : raw.apexes[i].around) cap.apexes[i].around.push_back(vertex_of(corner));
     });
     return cap;

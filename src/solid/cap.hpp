@@ -36,6 +36,7 @@ struct Cuts {
 struct Apex {
     std::array<double, 3> position{};
     std::vector<std::uint32_t> around; ///< vertices of the part: their mean is what it carries
+    std::uint32_t face = 0;            ///< of the boundary; the parts of one follow each other, as for_parts() has them
 };
 
 struct Cap {

@@ -10,17 +10,16 @@
 #include <fmt/format.h>
 
 #include <isotet/linear_cells.hpp>
-#include <isotet/refine.hpp>
 
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
 #include "base/guard.hpp"
-#include "session/curved_input.hpp"
 #include "session/linear_input.hpp"
 #include "solid/assemble.hpp"
 #include "solid/boundary_faces.hpp"
 #include "solid/cap.hpp"
 #include "solid/rim.hpp"
+#include "solid/solid_input.hpp"
 
 namespace isotet {
 
@@ -36,43 +35,6 @@ struct Solids::Data {
 };
 
 namespace {
-
-Result<void> check_options(const ContourInput& input, const ContourOptions& options) {
-    if (options.frame) return invalid_argument("solids are made of whole grids, but the grid is a piece with a frame");
-    if (options.exact_vertices)
-        return invalid_argument("solids have vertices on the edges of linear cells: not exact ones");
-    if (options.ties == Ties::keep) return invalid_argument("solids merge ties, but `ties` keeps them");
-    if (options.normals == Normals::gradient)
-        return invalid_argument("solids have normals of faces or vertices, but those of the gradient were asked for");
-    if (options.split_cells && !input.grid.point_numbers.empty())
-        return invalid_argument("solids of split cells need a grid without point numbers");
-    return {};
-}
-
-/// The cells that are not linear made so, curved ones for all isovalues.
-Result<std::shared_ptr<const LinearGrid>> linear_of(const ContourInput& input, const ContourOptions& options,
-                                                    const Run& run) {
-    if (!has_cells_to_linearize(input.grid.cells)) return std::shared_ptr<const LinearGrid>();
-    Result<LinearGrid> made = LinearGrid{};
-    if (options.refine && has_curved_cells(input.grid.cells)) {
-        RefineOptions all = *options.refine;
-        all.isovalues = {};
-        made = refine(input.grid, input.field, all, run);
-    } else {
-        made = linearize(input.grid, {}, run);
-    }
-    if (!made) return made.error();
-    return std::make_shared<const LinearGrid>(*std::move(made));
-}
-
-Result<void> check_range(const SolidRange& range) {
-    if (std::isnan(range.lower) || std::isnan(range.upper) || !(range.lower < range.upper))
-        return invalid_argument(
-            fmt::format("the range of the solid is {} to {}, but must ascend", range.lower, range.upper));
-    if (!std::isfinite(range.lower) && !std::isfinite(range.upper))
-        return invalid_argument("the range of the solid has no finite end");
-    return {};
-}
 
 template <class Real>
 solid::Cap cap_of(const solid::BoundaryFaces& boundary, const solid::BoundaryPoints& points, const ContourInput& input,
@@ -108,31 +70,14 @@ Solids::~Solids() = default;
 Result<Solids> Solids::create(ContourInput given, const ContourOptions& options, const Run& run) {
     return core::carry_out("starting to make solids", run, [&](const Progress& progress) -> Result<Solids> {
         const Run inside{core::threads_here(), progress};
-        if (given.all_cells) {
-            Result<ContourInput> all = given.all_cells(inside);
-            if (!all) return all.error();
-            given = *std::move(all);
-        }
-        if (auto ok = check_options(given, options); !ok) return ok.error();
+        Result<solid::SolidInput> taken = solid::take_input(std::move(given), options, inside);
+        if (!taken) return taken.error();
         auto data = std::make_unique<Data>();
-        auto linear = linear_of(given, options, inside);
-        if (!linear) return linear.error();
-        data->linear = *std::move(linear);
-        data->input = std::move(given);
-        if (data->linear) {
-            Result<ContourInput> made = session::on_linear_grid(std::move(data->input), *data->linear, inside);
-            if (!made) return made.error();
-            data->input = *std::move(made);
-            data->notes = data->linear->report.notes();
-            std::ranges::move(session::notes_on(data->linear->refinement), std::back_inserter(data->notes));
-        }
+        data->linear = std::move(taken->linear);
+        data->input = std::move(taken->input);
+        data->notes = std::move(taken->notes);
         data->options = options;
-        ContourOptions linear_options = options;
-        linear_options.edge_ends = true;
-        linear_options.normals = Normals::none;
-        linear_options.refine = {};
-        linear_options.expected_isovalues = {};
-        Result<Contour> contour = Contour::create(data->input, linear_options);
+        Result<Contour> contour = solid::contour_of(data->input, options, {});
         if (!contour) return contour.error();
         data->contour = *std::move(contour);
         auto boundary = solid::find_boundary_faces(
@@ -154,10 +99,8 @@ Result<Solid> Solids::extract(const SolidRange& range, const Run& run) {
     if (!data_) return moved_from("the maker of solids");
     return core::carry_out("making a solid", run, [&](const Progress& progress) -> Result<Solid> {
         Data& data = *data_;
-        if (auto ok = check_range(range); !ok) return ok.error();
-        std::vector<double> isovalues;
-        for (const double end : {range.lower, range.upper})
-            if (std::isfinite(end)) isovalues.push_back(end);
+        if (auto ok = solid::check_range(range); !ok) return ok.error();
+        const std::vector<double> isovalues = solid::ends_of_range(range);
         Solid out;
         const Run inside{core::threads_here(), progress};
         Result<ContourResult> result = data.contour->extract(isovalues, inside);

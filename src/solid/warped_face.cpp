@@ -1,8 +1,11 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "solid/warped_face.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+
+#include "numbers/exact.hpp"
 
 namespace isotet::solid {
 
@@ -24,6 +27,19 @@ Polygon polygon_of(std::span<const Place3> corners) {
     }
     out.volume = scalar_product(out.area, out.mean) / 3;
     return out;
+}
+
+bool is_warped(std::span<const Place3, 4> corners, double distance) {
+    const Polygon polygon = polygon_of(corners);
+    const double area = std::hypot(polygon.area[0], polygon.area[1], polygon.area[2]);
+    return std::abs(core::six_volumes(corners[0], corners[1], corners[2], corners[3])) > distance * area;
+}
+
+double largest_coordinate(std::span<const Place3> places) {
+    double largest = 0;
+    for (const Place3& place : places)
+        for (const double x : place) largest = std::max(largest, std::abs(x));
+    return largest;
 }
 
 Place3 apex_of(const Polygon& polygon, double volume) {

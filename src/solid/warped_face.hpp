@@ -9,9 +9,14 @@
 #include <span>
 #include <vector>
 
+#include <isotet/array.hpp>
+
 namespace isotet::solid {
 
 using Place3 = std::array<double, 3>;
+
+/// By how much coordinates of this type may be off, as a share of their magnitude.
+inline double rounding_of(ScalarType type) { return type == ScalarType::float32 ? 0x1p-21 : 0x1p-50; }
 
 /// A polygon in space.
 struct Polygon {
@@ -22,6 +27,12 @@ struct Polygon {
 
 /// `corners`   at least three
 Polygon polygon_of(std::span<const Place3> corners);
+
+/// Whether the corners of a quadrilateral are not in one plane, by more than about `distance`.
+bool is_warped(std::span<const Place3, 4> corners, double distance);
+
+/// The largest magnitude of a coordinate.
+double largest_coordinate(std::span<const Place3> places);
 
 /// From the mean so far along the area that triangles to this point, in place of the mean, enclose `volume`.
 Place3 apex_of(const Polygon& polygon, double volume);
