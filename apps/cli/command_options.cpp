@@ -163,44 +163,6 @@ Examples:
   isotet view grid.vtu --no-browser --port 8123
 )";
 
-void add_time(const Command& command, GridOptions& grid) {
-    const Option time =
-        command.add_number("--time", [&](double t) { grid.time = t; }, "T", "The time step with this time");
-    command
-        .add_count(
-            "--step", {}, [&](std::uint64_t n) { grid.step = n; }, "N", "The time step with this number, from 0")
-        .excludes(time);
-}
-
-void add_reading(const Command& command, GridOptions& grid, const std::string& format_option) {
-    command.add_text(format_option, grid.format, "FORMAT",
-                     "Format of the grid; default: content decides, then the name");
-    command.add_texts(
-        "--block", [&](const std::vector<std::string>& names) { grid.blocks = names; }, "NAME|NUMBER",
-        "Read only this block, zone, part or region of the file, by its name or number as info lists them; may be "
-        "repeated");
-    command.add_text("--displace", grid.displace, "FIELD", "Move the points by this vector field");
-    command.add_number(
-        "--merge-points", [&](double t) { grid.merge_points = t; }, "TOLERANCE",
-        "Merge points closer than this; 0: exactly equal coordinates. Refused when every cell collapses");
-    command
-        .add_choice<MergedValues>(
-            "--merge-values", grid.merge_values, {{"lowest", MergedValues::lowest}, {"mean", MergedValues::mean}},
-            "What merged points have where a field jumps: the value of the lowest-numbered, or the mean")
-        .needs(command.option("--merge-points"));
-    command.add_choice<HangingChoice>(
-        "--hanging-points", grid.hanging_points,
-        {{"close", HangingChoice::close},
-         {"interpolate", HangingChoice::interpolate},
-         {"leave", HangingChoice::leave}},
-        "Points on faces and edges of larger cells: close, these cells list them; interpolate, and the points have the "
-        "values of these cells; leave, the surface is open there");
-    command.add_flag("--keep-pieces", grid.keep_pieces,
-                     "Keep points of different pieces apart, which are joined where their coordinates are equal");
-    command.add_flag("--allow-outside", grid.allow_outside,
-                     "Index files (.pvd, .pvtu and so on) may name files outside their own folder");
-}
-
 /// Which device, which grid, and what every command has.
 void add_machine_and_input(const Command& command, DeviceChoice& device, GridOptions& grid, CommonOptions& common) {
     add_device(command, device);
@@ -329,13 +291,6 @@ double parse_reduction(const std::string& text) {
 ReduceOptions& wanted_reduction(ExtractJob& job) {
     if (!job.reduce) job.reduce = ReduceOptions{0.99};
     return *job.reduce;
-}
-
-void add_compression(const Command& command, Compression& compression, const char* format) {
-    command.add_choice<Compression>(
-        "--compress", compression,
-        {{"none", Compression::none}, {"zlib", Compression::zlib}, {"lz4", Compression::lz4}},
-        fmt::format("Packs the arrays of {}: by zlib, which every VTK reads, or by LZ4, which is read faster", format));
 }
 
 void add_extract(const Command& program, ExtractCommand& extract) {
@@ -513,6 +468,51 @@ void add_docs(const Command& program, DocsCommand& docs) {
 }
 
 } // namespace
+
+void add_time(const Command& command, GridOptions& grid) {
+    const Option time =
+        command.add_number("--time", [&](double t) { grid.time = t; }, "T", "The time step with this time");
+    command
+        .add_count(
+            "--step", {}, [&](std::uint64_t n) { grid.step = n; }, "N", "The time step with this number, from 0")
+        .excludes(time);
+}
+
+void add_reading(const Command& command, GridOptions& grid, const std::string& format_option) {
+    command.add_text(format_option, grid.format, "FORMAT",
+                     "Format of the grid; default: content decides, then the name");
+    command.add_texts(
+        "--block", [&](const std::vector<std::string>& names) { grid.blocks = names; }, "NAME|NUMBER",
+        "Read only this block, zone, part or region of the file, by its name or number as info lists them; may be "
+        "repeated");
+    command.add_text("--displace", grid.displace, "FIELD", "Move the points by this vector field");
+    command.add_number(
+        "--merge-points", [&](double t) { grid.merge_points = t; }, "TOLERANCE",
+        "Merge points closer than this; 0: exactly equal coordinates. Refused when every cell collapses");
+    command
+        .add_choice<MergedValues>(
+            "--merge-values", grid.merge_values, {{"lowest", MergedValues::lowest}, {"mean", MergedValues::mean}},
+            "What merged points have where a field jumps: the value of the lowest-numbered, or the mean")
+        .needs(command.option("--merge-points"));
+    command.add_choice<HangingChoice>(
+        "--hanging-points", grid.hanging_points,
+        {{"close", HangingChoice::close},
+         {"interpolate", HangingChoice::interpolate},
+         {"leave", HangingChoice::leave}},
+        "Points on faces and edges of larger cells: close, these cells list them; interpolate, and the points have the "
+        "values of these cells; leave, the surface is open there");
+    command.add_flag("--keep-pieces", grid.keep_pieces,
+                     "Keep points of different pieces apart, which are joined where their coordinates are equal");
+    command.add_flag("--allow-outside", grid.allow_outside,
+                     "Index files (.pvd, .pvtu and so on) may name files outside their own folder");
+}
+
+void add_compression(const Command& command, Compression& compression, const char* format) {
+    command.add_choice<Compression>(
+        "--compress", compression,
+        {{"none", Compression::none}, {"zlib", Compression::zlib}, {"lz4", Compression::lz4}},
+        fmt::format("Packs the arrays of {}: by zlib, which every VTK reads, or by LZ4, which is read faster", format));
+}
 
 Option add_field(const Command& command, FieldChoice& field, const std::string& description) {
     const Option name = command.add_text("-f,--field", field.name, "FIELD", description);
@@ -818,6 +818,7 @@ void add_commands(const Command& program, CommandLine& line) {
     add_info(program, line.info);
     add_extract(program, line.extract);
     add_slice_command(program, line.slice);
+    add_clip_command(program, line.clip);
     add_render(program, line.render);
     add_view(program, line.view);
     add_bench(program, line.bench);

@@ -19,10 +19,15 @@ void add_grid_and_surface(const Command& command, ExtractJob& job);
 void add_surface_options(const Command& command, ExtractJob& job, const std::string& solids);
 void add_common(const Command& command, CommonOptions& common);
 void add_slice_command(const Command& program, SliceCommand& slice);
+void add_clip_command(const Command& program, ClipCommand& clip);
 Command add_render_command(const Command& program, RenderCommand& render);
 Command add_bench_command(const Command& program, BenchCommand& bench);
 
 // Options that several commands have.
+void add_time(const Command& command, GridOptions& grid);
+void add_reading(const Command& command, GridOptions& grid, const std::string& format_option);
+/// `format`   the ending of files that can be packed
+void add_compression(const Command& command, Compression& compression, const char* format);
 Option add_field(const Command& command, FieldChoice& field, const std::string& description);
 void add_centre(const Command& command, FieldChoice& field);
 /// Grids behind FILE, which are further time steps.

@@ -17,6 +17,7 @@ struct CommandText;
 Result<ExitCode> run_info(const InfoCommand& command);
 Result<ExitCode> run_extract(const ExtractCommand& command);
 Result<ExitCode> run_slice(const SliceCommand& command);
+Result<ExitCode> run_clip(const ClipCommand& command);
 Result<ExitCode> run_render(const RenderCommand& command);
 Result<ExitCode> run_view(const ViewCommand& command);
 Result<ExitCode> run_bench(const BenchCommand& command);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <isotet/jobs/check_files.hpp>
+#include <isotet/jobs/clip_files.hpp>
 #include <isotet/jobs/draw_files.hpp>
 #include <isotet/jobs/extract_files.hpp>
 #include <isotet/jobs/look_into.hpp>
@@ -41,6 +42,11 @@ struct ExtractCommand : ExtractJob {
 
 struct SliceCommand : SliceJob {
     CommonOptions common;
+};
+
+struct ClipCommand : ClipJob {
+    CommonOptions common;
+    bool no_polyhedra = false;
 };
 
 struct RenderCommand : DrawJob {
@@ -108,6 +114,7 @@ struct CommandLine {
     InfoCommand info;
     ExtractCommand extract;
     SliceCommand slice;
+    ClipCommand clip;
     RenderCommand render;
     ViewCommand view;
     BenchCommand bench;

@@ -48,6 +48,7 @@ Result<ExitCode> run_command(const CommandLine& line, const OptionTree& tree) {
     if (line.command == "info") return run_info(line.info);
     if (line.command == "extract") return run_extract(line.extract);
     if (line.command == "slice") return run_slice(line.slice);
+    if (line.command == "clip") return run_clip(line.clip);
     if (line.command == "render") return run_render(line.render);
     if (line.command == "view") return run_view(line.view);
     if (line.command == "bench") return run_bench(line.bench);
@@ -71,7 +72,7 @@ Result<ExitCode> parse_and_run(std::vector<std::string> words) {
     OptionTree tree(line);
     if (Result<void> completed = complete_bare_file(words, tree); !completed) return completed.error();
     if (Result<void> parsed = tree.parse(words); !parsed) return parsed.error();
-    for (GridOptions* grid : {&line.info.grid, &line.extract.grid, &line.slice.grid, &line.render.grid,
+    for (GridOptions* grid : {&line.info.grid, &line.extract.grid, &line.slice.grid, &line.clip.grid, &line.render.grid,
                               &line.view.grid, &line.bench.grid, &line.pack.grid})
         grid->other_inputs = line.number_files;
     return run_command(line, tree);

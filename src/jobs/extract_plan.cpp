@@ -50,45 +50,6 @@ Result<Holds> holds(const ExtractJob& job) {
     return Holds{!shape_only, vtk || format->name == "ply", vtk};
 }
 
-Result<void> check_names(const ExtractJob& job, const ExtractPlan& plan, const FileInfo& info) {
-    if (plan.names.none()) return {};
-    if (plan.steps.size() > 1 && !plan.names.by_step())
-        return refusal("`all_steps` has {} time steps, but OUT, '{}', has neither {{step}} nor {{time}}: there is "
-                       "one file for each step",
-                       plan.steps.size(), job.out);
-    if (!plan.names.by_time()) return {};
-    std::set<double> times;
-    for (const std::size_t step : plan.steps) {
-        const std::optional<double> time = time_of(info, step);
-        if (!time)
-            return refusal("OUT, '{}', has {{time}}, but the grid knows no time; {{step}} is its number", job.out);
-        if (!times.insert(*time).second)
-            return refusal("several time steps have the time {}, but each needs a file of its own: {{step}} in "
-                           "OUT tells them apart",
-                           shortest(*time));
-    }
-    return {};
-}
-
-/// The collection of a series that ParaView opens; nothing where there is no series.
-Result<std::string> plan_collection(const ExtractJob& job, const ExtractPlan& plan, Caller& caller) {
-    if (plan.steps.size() < 2 || ending_of(job.out) != ".vtp") return std::string();
-    std::string collection = plan.names.collection();
-    if (same_file(collection, job.grid.file)) {
-        caller.note(fmt::format("no collection of the series is written: '{}' is the input", collection));
-        return std::string();
-    }
-    std::error_code ignored;
-    if (std::filesystem::exists(collection, ignored) && !is_written_collection(collection)) {
-        caller.note(fmt::format("no collection of the series is written: '{}' is there already, and not of isotet", collection));
-        return std::string();
-    }
-    std::vector<std::string> inputs = job.grid.other_inputs;
-    inputs.push_back(job.grid.file);
-    if (auto paths = check_output_paths(inputs, with_others(job, collection)); !paths) return paths.error();
-    return collection;
-}
-
 /// --with, or all point fields that the format can hold; nothing means all.
 Result<std::optional<CarriedFields>> plan_carried(const ExtractJob& job, const GridSource& source,
                                                   bool format_holds_fields) {
@@ -107,17 +68,6 @@ FieldsToRead fields_to_read(const ExtractPlan& plan) {
     add_names(*read.cell, plan.carried->cell);
     for (const FoundField& component : plan.carried->components) add_names(*read.point, component.point);
     return read;
-}
-
-/// Of several steps a field may be in some only: in the first, mostly, else all are looked at.
-Result<void> choose_fields_of_steps(const ExtractJob& job, GridSource& source, ExtractPlan& plan, Caller& caller) {
-    const bool several = plan.steps.size() > 1, named = !job.field.name.empty();
-    if (several && !named)
-        if (auto looked = source.look_at_steps(plan.steps, caller); !looked) return looked;
-    auto chosen = choose_fields(job, source, plan);
-    if (chosen || !several || !named || chosen.error().code != ErrorCode::invalid_argument) return chosen;
-    if (auto looked = source.look_at_steps(plan.steps, caller); !looked) return looked;
-    return choose_fields(job, source, plan);
 }
 
 /// Each isovalue takes a byte a point while cells are read, and another pass over them.
@@ -155,7 +105,47 @@ Result<void> check_solid(const ExtractJob& job) {
     return {};
 }
 
-/// Steps, and the field where none is named.
+} // namespace
+
+Result<void> check_names(const ExtractJob& job, const ExtractPlan& plan, const FileInfo& info) {
+    if (plan.names.none()) return {};
+    if (plan.steps.size() > 1 && !plan.names.by_step())
+        return refusal("`all_steps` has {} time steps, but OUT, '{}', has neither {{step}} nor {{time}}: there is "
+                       "one file for each step",
+                       plan.steps.size(), job.out);
+    if (!plan.names.by_time()) return {};
+    std::set<double> times;
+    for (const std::size_t step : plan.steps) {
+        const std::optional<double> time = time_of(info, step);
+        if (!time)
+            return refusal("OUT, '{}', has {{time}}, but the grid knows no time; {{step}} is its number", job.out);
+        if (!times.insert(*time).second)
+            return refusal("several time steps have the time {}, but each needs a file of its own: {{step}} in "
+                           "OUT tells them apart",
+                           shortest(*time));
+    }
+    return {};
+}
+
+Result<std::string> plan_collection(const ExtractJob& job, const ExtractPlan& plan, Caller& caller) {
+    const std::string ending = ending_of(job.out);
+    if (plan.steps.size() < 2 || (ending != ".vtp" && ending != ".vtu")) return std::string();
+    std::string collection = plan.names.collection();
+    if (same_file(collection, job.grid.file)) {
+        caller.note(fmt::format("no collection of the series is written: '{}' is the input", collection));
+        return std::string();
+    }
+    std::error_code ignored;
+    if (std::filesystem::exists(collection, ignored) && !is_written_collection(collection)) {
+        caller.note(fmt::format("no collection of the series is written: '{}' is there already, and not of isotet", collection));
+        return std::string();
+    }
+    std::vector<std::string> inputs = job.grid.other_inputs;
+    inputs.push_back(job.grid.file);
+    if (auto paths = check_output_paths(inputs, with_others(job, collection)); !paths) return paths.error();
+    return collection;
+}
+
 Result<void> choose_first_of(ExtractJob& job, GridSource& source, ExtractPlan& plan, Caller& caller) {
     ChoiceWish wish{job.all_steps ? Steps::all : Steps::one, job.field};
     if (job.field.shape) { // any step has it
@@ -188,7 +178,15 @@ Result<void> choose_first_of(ExtractJob& job, GridSource& source, ExtractPlan& p
     return {};
 }
 
-} // namespace
+Result<void> choose_fields_of_steps(const ExtractJob& job, GridSource& source, ExtractPlan& plan, Caller& caller) {
+    const bool several = plan.steps.size() > 1, named = !job.field.name.empty();
+    if (several && !named)
+        if (auto looked = source.look_at_steps(plan.steps, caller); !looked) return looked;
+    auto chosen = choose_fields(job, source, plan);
+    if (chosen || !several || !named || chosen.error().code != ErrorCode::invalid_argument) return chosen;
+    if (auto looked = source.look_at_steps(plan.steps, caller); !looked) return looked;
+    return choose_fields(job, source, plan);
+}
 
 SolidRange range_for(const SolidChoice& choice, double isovalue) {
     switch (choice.kind) {

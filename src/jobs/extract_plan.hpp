@@ -32,6 +32,18 @@ struct ExtractPlan {
 /// Errors   invalid_argument: OUT, a field, a step or a combination of options is wrong; invalid_data: no field varies
 Result<ExtractPlan> plan_extract(ExtractJob& job, GridSource& source, Caller& caller);
 
+/// Whether the names of outputs tell the steps of the plan apart.
+Result<void> check_names(const ExtractJob& job, const ExtractPlan& plan, const FileInfo& info);
+
+/// The collection of a series that ParaView opens; nothing where there is no series.
+Result<std::string> plan_collection(const ExtractJob& job, const ExtractPlan& plan, Caller& caller);
+
+/// Steps, and the field where none is named: the job has it afterwards.
+Result<void> choose_first_of(ExtractJob& job, GridSource& source, ExtractPlan& plan, Caller& caller);
+
+/// choose_fields(); of several steps a field may be in some only: in the first, mostly, else all are looked at.
+Result<void> choose_fields_of_steps(const ExtractJob& job, GridSource& source, ExtractPlan& plan, Caller& caller);
+
 /// Looks the fields of the plan up in what `source` was looked at for.
 /// Errors   invalid_argument: a field is not there
 Result<void> choose_fields(const ExtractJob& job, const GridSource& source, ExtractPlan& plan);
