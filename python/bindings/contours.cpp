@@ -17,6 +17,7 @@
 #include <isotet/contour.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/pack.hpp>
+#include <isotet/clip.hpp>
 #include <isotet/solid.hpp>
 #include <isotet/surface.hpp>
 
@@ -331,6 +332,49 @@ void add_solids(nb::module_& module) {
         .def_prop_ro("grid_volume", &Solids::grid_volume);
 }
 
+/// The grid with the arrays beside it as fields.
+Grid with_sources(const ClippedGrid& clipped) {
+    Grid grid = clipped.grid;
+    if (!clipped.source_cells.empty()) grid.cell_fields.push_back({"source_cell", clipped.source_cells});
+    if (!clipped.edge_ends.empty()) {
+        grid.point_fields.push_back({"edge_ends", clipped.edge_ends});
+        grid.point_fields.push_back({"edge_weights", clipped.edge_weights});
+    }
+    return grid;
+}
+
+nb::dict clipped_out(const ClippedGrid& clipped) {
+    nb::dict out;
+    out["whole_cells"] = clipped.whole_cells;
+    out["cut_cells"] = clipped.cut_cells;
+    out["polyhedra"] = clipped.polyhedra;
+    out["flat_pieces"] = clipped.flat_pieces;
+    out["folded_pieces"] = clipped.folded_pieces;
+    out["cells_left_out"] = clipped.contour.cells_left_out;
+    return out;
+}
+
+void add_clippers(nb::module_& module) {
+    nb::class_<Clipper>(module, "Clipper")
+        .def(
+            "__init__",
+            [](Clipper* self, const Grid& grid, const PointField& field, const FieldsIn& fields,
+               const FieldsIn& cell_fields, const ContourOptions& options, const CallOptions& how) {
+                ContourInput input = contour_input(grid, field, fields, cell_fields);
+                new (self)
+                    Clipper(call(how, [&](const Run& run) { return Clipper::create(std::move(input), options, run); }));
+            },
+            "grid"_a, "field"_a, "fields"_a, "cell_fields"_a, "options"_a, "call"_a)
+        .def(
+            "clip",
+            [](Clipper& self, double lower, double upper, bool polyhedra, const CallOptions& how) {
+                const ClippedGrid clipped =
+                    call(how, [&](const Run& run) { return self.clip({lower, upper}, {polyhedra}, run); });
+                return nb::make_tuple(with_sources(clipped), clipped_out(clipped), clipped.contour.notes);
+            },
+            "lower"_a, "upper"_a, "polyhedra"_a, "call"_a);
+}
+
 void add_packed_grids(nb::module_& module) {
     nb::class_<PackedGrid>(module, "PackedGrid")
         .def("field", [](const PackedGrid& self) { return field_out(self.field()); })
@@ -403,6 +447,7 @@ void add_contours(nb::module_& module) {
     add_sessions(module);
     add_contour_blocks(module);
     add_solids(module);
+    add_clippers(module);
     add_packed_grids(module);
 }
 

@@ -22,7 +22,7 @@ Errors are ValueError (wrong arguments, broken data), TypeError (what is no numb
 
 from typing import TYPE_CHECKING
 
-from ._grid import Contour, Grid, PackedGrid, Solids, contour, formats, inspect, make, pack, read, solid
+from ._grid import Clipper, Contour, Grid, PackedGrid, Solids, contour, formats, inspect, make, pack, read, solid
 from ._packed_file import PackedFile, open
 from ._picture import render
 from ._pieces import Frame, make_frame, number_points
@@ -38,6 +38,6 @@ else:
     from ._isotet import Error, __version__
 
 __all__ = [
-    "Contour", "Error", "Frame", "Grid", "PackedFile", "PackedGrid", "Solids", "Surface", "SurfaceReport", "__version__", "check", "contour", "formats",
+    "Clipper", "Contour", "Error", "Frame", "Grid", "PackedFile", "PackedGrid", "Solids", "Surface", "SurfaceReport", "__version__", "check", "contour", "formats",
     "inspect", "make", "make_frame", "number_points", "open", "pack", "parts", "read", "read_surface", "render", "solid",
 ]  # fmt: skip

@@ -17,7 +17,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk
 from . import _isotet
 from ._arrays import direction_in, isovalues_in, place_in, tolerances_in
 from ._call import call_options
-from ._grid import Grid, Solids
+from ._grid import Clipper, Grid, Solids
 from ._surface import Surface, parts
 from ._vtk_data import Scalars, arrays_of, cells_of, fill, points_of, scalars_of, some_cells, other_cells, surface_of, to_polydata
 from ._vtk_fallback import REASON, Wishes, append, append_other_cells, contour_by_vtk
@@ -287,6 +287,41 @@ class GridAccessor:
         out.GetFieldData().PassData(grid.GetFieldData())
         out.field_data["volume"] = [surface.solid["volume"]] if surface.solid else [0.0]
         return out
+
+    def clip_scalar(self, scalars=None, invert: bool = True, value: float = 0.0, inplace: bool = False,
+                    progress_bar: bool = False, both: bool = False):  # fmt: skip
+        """The cells on one side of an isovalue, cut there, as of `pyvista.DataSet.clip_scalar`, whose parameters these are. Whole
+        cells stay as they are; the pieces of others fit together, and may be polyhedra. The cell array "source_cell" has the
+        number of the cell that each comes from.
+
+        invert
+            True keeps what is below the value, False what is not.
+        both
+            Returns both sides: that which `invert` asks for, and the other.
+        inplace
+            The grid becomes the result; an UnstructuredGrid only.
+        progress_bar
+            Accepted, without effect.
+
+        Raises TypeError for cell data, ValueError for broken grids and a value that is not finite.
+        """
+        grid, cells = self._grid, self._unstructured()
+        chosen, _ = self._scalars(scalars, "point")
+        if inplace and not isinstance(grid, pyvista.UnstructuredGrid):
+            raise TypeError(f"a {type(grid).__name__} cannot become its clipped cells: inplace must be False")
+        if not np.isfinite(value):
+            raise ValueError(f"value is {value}, but must be finite")
+        fields, cell_fields = arrays_of(grid.GetPointData()), arrays_of(grid.GetCellData(), "source_cell")
+        whole = Grid._of(_isotet.Grid(points_of(cells), cells_of(cells), fields, cell_fields))
+        clipper = Clipper(whole, chosen.values, fields=dict(fields), cell_fields=dict(cell_fields))
+        names = ("below", "above") if invert else ("above", "below")
+        sides = [clipper.clip(**{side: float(value)}).to_pyvista() for side in names[: 2 if both else 1]]
+        for side in sides:
+            side.GetFieldData().PassData(grid.GetFieldData())
+        if inplace:
+            grid.copy_from(sides[0])
+            sides[0] = grid
+        return tuple(sides) if both else sides[0]
 
     def pack(self, scalars=None, *, compute_normals: bool = False, preference: str = "point") -> None:
         """Packs the grid now, and keeps it packed for all contours to come, instead of when so many were asked for that it pays.

@@ -541,3 +541,19 @@ def test_pyvista_has_no_reader_of_its_own_for_these():
     assert len(ours) > 5 and not {f".{name}" for name in ours} & set(CLASS_READERS)
     known = {ending[1:] for kind in isotet.formats() for ending in kind["extensions"] if kind["reads_grid"] or kind["reads_surface"]}
     assert ours <= known
+
+
+def test_clip_scalar_keeps_the_side_that_pyvista_keeps():
+    grid = cubes(7)
+    for invert in (True, False):
+        ours, theirs = (kind.clip_scalar("r", invert=invert, value=2.0) for kind in (grid.isotet, grid))
+        assert abs(ours.volume - theirs.volume) < 0.03 * theirs.volume
+        assert (ours.cell_data["number"] == ours.cell_data["source_cell"]).all()
+        assert ((ours["r"] <= 2.0 + 1e-5) if invert else (ours["r"] >= 2.0 - 1e-5)).all()
+    below, above = grid.isotet.clip_scalar("r", value=2.0, both=True)
+    assert below.n_cells > 0 and above.n_cells > 0
+    same = grid.copy()
+    assert same.isotet.clip_scalar("r", value=2.0, inplace=True) is same
+    assert same.n_cells == below.n_cells
+    with pytest.raises(TypeError):
+        grid.isotet.clip_scalar("number")

@@ -488,3 +488,22 @@ def test_parts_are_told_and_kept():
     assert len(surface.keep_parts(range(len(table))).triangles) == len(surface.triangles)
     with pytest.raises(ValueError, match="part"):
         surface.keep_parts(len(table))
+
+
+def test_clipped_cells_carry_fields_and_numbers_and_fill_the_solid():
+    grid = isotet.make("mixed", 6, ["gyroid", "plane"])
+    clipper = isotet.Clipper(grid, "gyroid", edge_ends=True)
+    part = clipper.clip(above=0.2)
+    assert set(part.fields) == {"gyroid", "plane", "edge_ends", "edge_weights"}
+    source = part.cell_fields["source_cell"]
+    assert (np.diff(source) >= 0).all()
+    assert part.info["whole_cells"] + part.info["cut_cells"] == len(np.unique(source))
+    solid = isotet.Solids(part, "plane").solid(above=-9)
+    assert solid.solid["open_edges"] == 0
+    assert abs(solid.solid["volume"] - grid.solid("gyroid", above=0.2).solid["volume"]) < 1e-5
+    without = clipper.clip(above=0.2, polyhedra=False)
+    assert part.info["polyhedra"] > 0 and without.info["polyhedra"] == 0 and without.faces is None
+    with pytest.raises(ValueError, match="above, below or both"):
+        clipper.clip()
+    with pytest.raises(ValueError, match="must ascend"):
+        clipper.clip(above=1, below=0)

@@ -279,3 +279,27 @@ def lengths(stream):
         out.append(stream[at])
         at += stream[at] + 1
     return out
+
+
+@pytest.mark.parametrize("shape", ["kuhn", "hex", "wedge", "mixed"])
+def test_clipped_cells_are_upright_and_whole_in_vtk(shape):
+    mine = isotet.make(shape, 5, ["gyroid"])
+    volume = mine.solid("gyroid", above=0.2, precision="float64").solid["volume"]
+    clipped = mine.clip("gyroid", above=0.2, precision="float64")
+    part = clipped.to_vtk()
+    assert part.GetNumberOfCells() == len(clipped.types)
+    total = 0.0  # by faces: VTK takes polyhedra for convex
+    for i in range(part.GetNumberOfCells()):
+        cell = part.GetCell(i)
+        points = cell.GetPoints()
+        centre = np.mean([points.GetPoint(k) for k in range(cell.GetNumberOfPoints())], axis=0)
+        six_volumes = 0.0
+        for f in range(cell.GetNumberOfFaces()):
+            face = cell.GetFace(f).GetPoints()
+            corners = np.array([face.GetPoint(k) for k in range(face.GetNumberOfPoints())]) - centre
+            for k in range(1, len(corners) - 1):
+                six_volumes += np.dot(corners[0], np.cross(corners[k], corners[k + 1]))
+        if cell.GetCellType() == 42:
+            assert six_volumes > 0  # faces outwards
+        total += abs(six_volumes) / 6
+    assert abs(total - volume) < 1e-9 * volume
