@@ -70,4 +70,5 @@ def main():
     print(f"{len(grid)} cells; boundary and session {setup:.2f} s; {statistics.median(theirs) / statistics.median(mine):.1f} times")
 
 
-main()
+if __name__ == "__main__":
+    main()
