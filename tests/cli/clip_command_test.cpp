@@ -11,7 +11,7 @@ namespace {
 using nlohmann::json;
 
 TEST_F(Program, ClipWritesCellsThatAreReadBack) {
-    const json report = json_of({"clip", "make:hex:6:gyroid,sphere", path("part.vtu"), "-f", "gyroid", "--above", "0.3"});
+    const json report = json_of({"clip", "make:hex:12:gyroid,sphere", path("part.vtu"), "-f", "gyroid", "--above", "0.3"});
     EXPECT_EQ(report["command"], "clip");
     EXPECT_EQ(report["range"], json::array({0.3, nullptr}));
     const json step = report["steps"][0];
@@ -25,7 +25,7 @@ TEST_F(Program, ClipWritesCellsThatAreReadBack) {
     EXPECT_EQ(grid.cell_fields[0].name, "source_cell");
     const json solid =
         json_of({"extract", path("part.vtu"), "-f", "gyroid", "--solid", "above", "-i", "-9"})["surfaces"][0]["solid"];
-    const json same = json_of({"extract", "make:hex:6:gyroid", "-f", "gyroid", "--solid", "above", "-i",
+    const json same = json_of({"extract", "make:hex:12:gyroid", "-f", "gyroid", "--solid", "above", "-i",
                                "0.3"})["surfaces"][0]["solid"];
     EXPECT_NEAR(solid["volume"].get<double>(), same["volume"].get<double>(), 1e-4 * same["volume"].get<double>());
 }
