@@ -444,7 +444,7 @@ OutputKey ExtractRun::key(double isovalue, std::size_t step) const {
 Result<void> ExtractRun::check_that_some_meet(const ContourResult& result) const {
     const bool is_asked = !job_.isovalues.empty() && !job_.allow_empty && !job_.fail_if_empty;
     const bool has_range = result.field.lower <= result.field.upper;
-    if (!is_asked || !has_range || job_.piece || job_.field.shape || plan_.steps.size() > 1) return {};
+    if (!is_asked || !has_range || job_.piece || plan_.steps.size() > 1) return {};
     const auto is_outside = [&](double value) { return !(value >= result.field.lower && value <= result.field.upper); };
     const auto is_lowest = [&](double value) { return value == result.field.lower; };
     const auto is_empty = [](const auto& one) { return one.surface.triangle_count() == 0; };

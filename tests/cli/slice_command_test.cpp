@@ -80,12 +80,14 @@ TEST_F(Program, SliceOfAFileReadByVtkIsThatOfAllCells) {
     }
 }
 
-TEST_F(Program, SliceThatMissesTheGridIsToldAndMayFail) {
+TEST_F(Program, SliceThatMissesTheGridIsAnErrorUnlessItMayBeEmpty) {
     const RunResult run = isotet({"slice", "make:kuhn:4:sphere", path("s.vtp"), "--plane", "z=9"});
-    EXPECT_EQ(run.status, 0);
+    EXPECT_EQ(run.status, 3);
     EXPECT_NE(run.err.find("isovalue 9 is outside the range of 'z', -1 to 1: the surface is empty"), std::string::npos)
         << run.err;
     EXPECT_EQ(isotet({"slice", "make:kuhn:4:sphere", "--plane", "z=9", "--fail-if-empty"}).status, 3);
+    EXPECT_EQ(isotet({"slice", "make:kuhn:4:sphere", path("s.vtp"), "--plane", "z=9", "--allow-empty"}).status, 0);
+    EXPECT_EQ(isotet({"slice", "make:kuhn:4:sphere", path("s.vtp"), "--plane", "z=9,0.5"}).status, 0);
 }
 
 } // namespace

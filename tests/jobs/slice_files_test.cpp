@@ -166,9 +166,12 @@ TEST(SliceFiles, SaysWhereTheGridIsWhenAPlaneMissesIt) {
     const test::TemporaryFolder folder;
     Listener listener;
     SliceJob job = slice_of_file("make:kuhn:4:sphere", folder.file("cut.vtp"), Plane{{0, 0, 1}, 7});
+    EXPECT_EQ(slice_files(job, listener).error().code, ErrorCode::invalid_data);
+    job.allow_empty = true;
     ASSERT_TRUE(slice_files(job, listener));
     ASSERT_EQ(listener.noted.size(), 1u);
     EXPECT_EQ(listener.noted[0], "isovalue 7 is outside the range of 'z', -1 to 1: the surface is empty");
+    job.allow_empty = false;
     job.fail_if_empty = true;
     EXPECT_EQ(slice_files(job, listener).error().code, ErrorCode::invalid_data);
 }
