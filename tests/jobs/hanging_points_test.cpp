@@ -55,6 +55,59 @@ TEST(HangingPointJobs, CloseWhatIsReadWholeAndWhatIsReadInPart) {
         }
 }
 
+/// Each cell with points of its own, as deal.II, MFEM and t8code write VTK's files.
+Grid with_points_for_each_cell(const Grid& grid) {
+    const auto corners = grid.cells.connectivity.as<std::int32_t>();
+    std::vector<float> points, values;
+    std::vector<std::int64_t> connectivity;
+    for (const std::int32_t corner : corners) {
+        const auto point = static_cast<std::size_t>(corner);
+        connectivity.push_back(static_cast<std::int64_t>(connectivity.size()));
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            points.push_back(static_cast<float>(grid.points.at(point, axis)));
+        values.push_back(static_cast<float>(grid.point_fields[0].values.at(point)));
+    }
+    Grid out;
+    out.points = Array::own(std::move(points), 3);
+    out.cells.connectivity = Array::own(std::move(connectivity));
+    out.cells.uniform_type = grid.cells.uniform_type;
+    out.point_fields = {{grid.point_fields[0].name, Array::own(std::move(values))}};
+    return out;
+}
+
+TEST(HangingPointJobs, JoinPointsFirstWhereEachCellHasItsOwn) {
+    const test::TemporaryFolder folder;
+    const std::string file = folder.file("apart.vtu"), out = folder.file("surface.vtp");
+    ASSERT_TRUE(write_grid(with_points_for_each_cell(test::made_grid("octree-bent", 4, {"sphere"})), file));
+    test::Listener apart, joined;
+    ExtractJob job = job_for(file, out, HangingChoice::close);
+    ASSERT_TRUE(extract_files(job, apart));
+    EXPECT_FALSE(is_closed(out));
+    EXPECT_TRUE(has_note(apart, "`merge_points`")) << "how they are joined";
+    job.grid.merge_points = 0;
+    ASSERT_TRUE(extract_files(job, joined));
+    EXPECT_TRUE(is_closed(out));
+    EXPECT_TRUE(has_note(joined, "hang on faces or edges of larger cells"));
+}
+
+TEST(HangingPointJobs, ChecksTakeTheGridAsExtractionDid) {
+    const test::TemporaryFolder folder;
+    const std::string out = folder.file("surface.vtp");
+    for (const HangingChoice choice : {HangingChoice::close, HangingChoice::leave}) {
+        ExtractJob job = job_for("make:octree-random:3:gyroid", out, choice);
+        job.field.name = "gyroid";
+        job.edge_ends = true;
+        test::Listener quiet;
+        ASSERT_TRUE(extract_files(job, quiet));
+        CheckJob check;
+        check.surface = out;
+        check.grid = job.grid;
+        const CheckedFiles found = check_files(check, quiet).value();
+        EXPECT_TRUE(found.passed);
+        EXPECT_EQ(found.report.hanging_edges > 0, choice == HangingChoice::leave);
+    }
+}
+
 TEST(HangingPointJobs, SaysNothingOfGridsWithoutThem) {
     const test::TemporaryFolder folder;
     test::Listener heard;
