@@ -13,6 +13,7 @@
 #include "grid/cells.hpp"
 #include "numbers/storage.hpp"
 #include "packed/build/cell_order.hpp"
+#include "cpu/batches.hpp"
 #include "cpu/steps.hpp"
 
 namespace isotet::bench {
@@ -81,10 +82,13 @@ void select_and_count(benchmark::State& state) {
     const core::Packed& packed = of.packed.data();
     const core::StoredIsovalue<float> stored = core::store_isovalue<float>(isovalue, packed.storage);
     const cpu::Wanted<float> wanted{std::span(&stored, 1)};
+    const Progress progress;
     for (auto _ : state) {
-        const cpu::Selection selection = cpu::select(packed, wanted.isovalues).value();
+        cpu::Selection selection = cpu::select(packed, wanted.isovalues).value();
         cpu::Masks masks(selection);
-        benchmark::DoNotOptimize(cpu::count(packed, wanted, selection, masks, cpu::Keep::records, {}));
+        cpu::Batches batches({&packed}, selection, progress);
+        benchmark::DoNotOptimize(
+            cpu::count(packed, wanted, selection, masks, cpu::Keep::records, batches, progress).value());
     }
     count_tets(state, of);
 }

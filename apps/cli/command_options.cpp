@@ -408,6 +408,9 @@ void add_pack(const Command& program, PackCommand& pack) {
     command.add_flag("--all-steps", pack.all_steps, "All time steps; they must have the same cells and points")
         .excludes(command.option("--time"))
         .excludes(command.option("--step"));
+    command.add_flag("--append", pack.append,
+                     "Add the time step, or all, to OUT, which has the same cells and points: with its fields, precision and "
+                     "so on");
     command.add_flag("--source-cells", pack.source_cells,
                      "Keep the numbers of cells, for extract --source-cells: 4 bytes a tet, 8 another cell");
     command.add_flag("--gradients", pack.gradients,

@@ -42,6 +42,17 @@ public:
     static Result<PackedWriter> create(const PackedGrid& packed, const std::string& path,
                                        const SavePackedOptions& options = {}, const Run& run = {});
 
+    /// Adds to a file that is there: the field of `packed` becomes the next step. The grid must be the one that was saved, of
+    /// the file (PackedFile::load() and with_field()) or packed again in the same way. What is there stays where it is, and who
+    /// has the file open sees the old steps. At every moment the file is whole: with all of the new steps after commit(), without
+    /// any of them before.
+    ///
+    /// Cost     a pass over cells and points, which are compared by checksums
+    /// Errors   invalid_argument: other cells or points, with the first chunk that differs; as PackedFile::open();
+    ///          cannot_write: another writer has the file, or it cannot be written
+    static Result<PackedWriter> append(const PackedGrid& packed, const std::string& path, std::optional<double> time,
+                                       const Run& run = {});
+
     PackedWriter(PackedWriter&&) noexcept;
     PackedWriter& operator=(PackedWriter&&) noexcept;
     ~PackedWriter();

@@ -19,20 +19,21 @@ namespace {
 
 class PackRun {
 public:
-    PackRun(const PackJob& job, Caller& caller) : job_(job), caller_(caller) {}
+    PackRun(PackJob job, Caller& caller) : job_(std::move(job)), caller_(caller) {}
 
     Result<void> run();
     PackNumbers take_numbers() { return std::move(numbers_); }
 
 private:
     Result<void> open();
+    Result<void> look_at_file();
     Result<void> choose_names();
     Result<void> pack_step(std::size_t step);
     Result<PackedGrid> packed_with(const Grid& grid, PointField field, std::size_t step);
     Result<void> write(const PackedGrid& packed, std::size_t step, bool first_field);
     FieldChoice choice(const std::string& name) const { return {name, job_.cell_field, false, {}}; }
 
-    const PackJob& job_;
+    PackJob job_;
     Caller& caller_;
     std::optional<GridSource> source_;
     std::vector<std::size_t> steps_;
@@ -59,7 +60,23 @@ Result<void> PackRun::open() {
     numbers_.grid = job_.grid.file;
     numbers_.format = source_->info().format;
     numbers_.steps = steps_.size();
+    if (job_.append)
+        if (auto looked = look_at_file(); !looked) return looked;
     return choose_names();
+}
+
+/// Of the file to which steps are added.
+Result<void> PackRun::look_at_file() {
+    const Result<PackedFile> file = PackedFile::open(job_.out, {}, caller_.run());
+    if (!file) return file.error();
+    const PackedFileInfo& info = file->info();
+    job_.precision = info.precision;
+    job_.source_cells = info.source_cells;
+    job_.gradients = info.fields.back().gradients;
+    if (!job_.fields.empty()) return {};
+    for (const PackedFieldInfo& field : info.fields)
+        if (field.step + 1 == info.steps) job_.fields.push_back(field.report.name);
+    return {};
 }
 
 Result<void> PackRun::choose_names() {
@@ -115,7 +132,9 @@ Result<void> PackRun::write(const PackedGrid& packed, std::size_t step, bool fir
     if (!writer_) {
         SavePackedOptions options;
         options.time = time;
-        Result<PackedWriter> writer = PackedWriter::create(packed, job_.out, options, caller_.run());
+        Result<PackedWriter> writer = job_.append
+                                          ? PackedWriter::append(packed, job_.out, time, caller_.run())
+                                          : PackedWriter::create(packed, job_.out, options, caller_.run());
         if (!writer) return writer.error();
         writer_ = *std::move(writer);
     } else {

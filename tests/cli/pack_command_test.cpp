@@ -102,6 +102,9 @@ TEST_F(PackCommand, TakesAllStepsOfASeries) {
     const auto a = steps(path("s.pvd")), b = steps(path("g.isotet"));
     ASSERT_EQ(b["surfaces"].size(), 2u);
     for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(a["surfaces"][i]["area"], b["surfaces"][i]["area"]);
+    ASSERT_EQ(isotet({"pack", path("s1.vtu"), path("g.isotet"), "--append"}).status, 0);
+    EXPECT_EQ(json_of({"info", path("g.isotet")})["steps"], 3);
+    EXPECT_EQ(json_of({"check", path("g.isotet")})["sound"], true);
     ASSERT_EQ(isotet({"make", "kuhn", "--side", "5", "--fields", "sphere", "-o", path("s2.vtu")}).status, 0);
     const RunResult run = isotet({"pack", path("s.pvd"), path("n.isotet"), "--all-steps", "--fields", "x"});
     EXPECT_EQ(run.status, 3);

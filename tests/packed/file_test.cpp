@@ -2,6 +2,7 @@
 // Packed files give back what was saved; they are described well enough for another reader.
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <random>
 #include <sstream>
 
@@ -156,6 +157,53 @@ TEST(PackedWriter, SavesStepsOfTheSameCells) {
         EXPECT_TRUE(bytes_of(extract(file.grid("gyroid", 1).value(), isovalue).value().surface) ==
                     bytes_of(extract(second, isovalue).value().surface));
     }
+}
+
+TEST(PackedWriter, AddsStepsToAFile) {
+    const Grid grid = made_grid("mixed", 5, {"gyroid", "sphere"});
+    PackOptions options;
+    options.gradients = true;
+    const PackedGrid packed = pack(grid, point_field(grid), options).value();
+    const TemporaryFolder folder;
+    const std::string path = saved(packed, folder);
+    const PointField next{"gyroid", grid.point_fields[1].values, false, {}};
+    const PackedFile before = PackedFile::open(path).value();
+    for (const PackedGrid& second : {before.load().value().with_field(next).value(), pack(grid, next, options).value()}) {
+        PackedWriter::append(second, path, 2.5).value(); // without commit(): as if it was killed
+        EXPECT_EQ(PackedFile::open(path).value().info().steps, 1u);
+        const std::size_t step = PackedFile::open(path).value().info().steps;
+        PackedWriter writer = PackedWriter::append(second, path, 2.5).value();
+        EXPECT_EQ(PackedWriter::append(second, path, 3).error().message,
+                  path + " is being written by another program");
+        writer.commit().value();
+        const PackedFile file = PackedFile::open(path).value();
+        file.check().value();
+        EXPECT_TRUE(bytes_of(file.load("gyroid", step).value()) == bytes_of(second));
+        EXPECT_TRUE(bytes_of(before.load().value()) == bytes_of(packed)) << "who has the file open sees it as it was";
+        std::filesystem::copy_file(path, folder.file("kept.isotet"), std::filesystem::copy_options::overwrite_existing);
+        save_packed(packed, path, {{}, {}, 2'000}).value();
+    }
+    const PackedGrid second = pack(grid, next, options).value();
+    for (const std::string file : {"grid.isotet", "kept.isotet"}) { // the second slot, then the first again
+        PackedWriter writer = PackedWriter::append(second, folder.file(file), {}).value();
+        writer.commit().value();
+        PackedFile::open(folder.file(file)).value().check().value();
+    }
+    EXPECT_EQ(PackedFile::open(folder.file("kept.isotet")).value().info().steps, 3u);
+}
+
+TEST(PackedWriter, RefusesStepsOfOtherCells) {
+    const Grid grid = made_grid("kuhn", 5, {"gyroid"}), smaller = made_grid("kuhn", 4, {"gyroid"});
+    const TemporaryFolder folder;
+    const PackedGrid packed = pack(grid, point_field(grid)).value();
+    const std::string path = saved(packed, folder), content = content_of(path);
+    const auto message = [&](const PackedGrid& step) { return PackedWriter::append(step, path, {}).error().message; };
+    std::vector<float> moved(grid.points.as<float>().begin(), grid.points.as<float>().end());
+    for (float& x : moved) x *= 1.001F;
+    EXPECT_TRUE(message(packed.with_points(Array::own(moved, 3)).value())
+                    .starts_with("the points of chunk 0 differ, so steps of this grid do not go into the file"));
+    EXPECT_TRUE(message(pack(smaller, point_field(smaller)).value()).starts_with("the file has 216 packed points"));
+    EXPECT_TRUE(content_of(path) == content);
 }
 
 TEST(Unpack, GivesTheCellsAndValuesWithTheUsersNumbers) {

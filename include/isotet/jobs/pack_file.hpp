@@ -16,6 +16,8 @@ namespace isotet::jobs {
 struct PackJob {
     GridOptions grid;
     bool all_steps = false;
+    bool append = false; ///< OUT is there, with the same cells and points: steps are added, as PackedWriter::append(). Fields,
+                         ///< precision, source cells and gradients are those of the file
     std::string out;                        ///< .isotet
     std::vector<std::string> other_outputs; ///< of the caller: OUT may not be one
     std::vector<std::string> fields; ///< as FieldChoice::name; empty: all point fields of one component, or if there are

@@ -443,7 +443,8 @@ std::array<std::byte, packed_slot_bytes> encode_slot(const DirectorySlot& slot) 
     return bytes;
 }
 
-Result<DirectorySlot> decode_packed_header(std::span<const std::byte> bytes, std::uint64_t file_bytes) {
+Result<DirectorySlot> decode_packed_header(std::span<const std::byte> bytes, std::uint64_t file_bytes,
+                                           std::size_t* place) {
     if (bytes.size() < packed_header_bytes)
         return invalid_data(fmt::format("a packed file has at least {} bytes, but this one has {}", packed_header_bytes,
                                         bytes.size()));
@@ -458,10 +459,12 @@ Result<DirectorySlot> decode_packed_header(std::span<const std::byte> bytes, std
         return invalid_data(fmt::format("it has version {}.{} of the format, but this isotet reads {}.x", major,
                                         number_at<std::uint16_t>(bytes, 10), packed_major));
     std::optional<DirectorySlot> newest;
-    for (const std::size_t at : packed_slots)
-        if (const auto slot = decode_slot(bytes.subspan(at, packed_slot_bytes));
-            slot && (!newest || slot->count > newest->count))
-            newest = slot;
+    for (std::size_t i = 0; i < packed_slots.size(); ++i) {
+        const auto slot = decode_slot(bytes.subspan(packed_slots[i], packed_slot_bytes));
+        if (!slot || (newest && slot->count <= newest->count)) continue;
+        newest = slot;
+        if (place) *place = i;
+    }
     if (!newest) return invalid_data("its header is broken: no slot tells where the directory is");
     if (newest->file_bytes > file_bytes)
         return invalid_data(

@@ -22,9 +22,10 @@ Result<PackedDirectory> decode_directory(std::span<const std::byte> bytes, std::
 std::array<std::byte, packed_header_bytes> encode_packed_header();
 std::array<std::byte, packed_slot_bytes> encode_slot(const DirectorySlot& slot);
 
-/// The slot that holds.
+/// The slot that holds. `place`   null, or becomes 0 for the first one, 1 for the second
 /// Errors   invalid_data: no packed file, another byte order, a newer major version, both slots broken, or a file that ends
 ///          before the slot says
-Result<DirectorySlot> decode_packed_header(std::span<const std::byte> bytes, std::uint64_t file_bytes);
+Result<DirectorySlot> decode_packed_header(std::span<const std::byte> bytes, std::uint64_t file_bytes,
+                                           std::size_t* place = nullptr);
 
 } // namespace isotet::io

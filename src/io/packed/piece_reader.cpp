@@ -149,8 +149,9 @@ Result<std::shared_ptr<const PackedSource>> PackedSource::open(const std::string
     source->file = *std::move(file);
     std::vector<std::byte> header(std::min<std::size_t>(packed_header_bytes, source->file.size));
     if (auto ok = source->read(0, header); !ok) return ok.error();
-    const Result<DirectorySlot> slot = decode_packed_header(header, source->file.size);
+    const Result<DirectorySlot> slot = decode_packed_header(header, source->file.size, &source->slot_place);
     if (!slot) return source->in_file(slot.error());
+    source->slot = *slot;
     core::Buffer<std::byte> bytes(slot->bytes);
     const std::span<std::byte> all(bytes.data(), bytes.size());
     if (auto ok = source->read(slot->offset, all); !ok) return ok.error();

@@ -25,7 +25,8 @@ struct PackedSource {
     std::string path;
     PlainFile file;
     PackedDirectory directory;
-    std::uint64_t opening_bytes = 0; ///< read so far
+    DirectorySlot slot;         ///< that holds
+    std::size_t slot_place = 0; ///< the first or the second
     mutable std::atomic<std::uint64_t> bytes_read{0}, reads{0};
 
     /// Reads header and directory.

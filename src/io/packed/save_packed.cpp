@@ -6,6 +6,7 @@
 #include <limits>
 #include <span>
 #include <utility>
+#include <variant>
 
 #include <fmt/core.h>
 
@@ -14,6 +15,7 @@
 #include "io/files/crc32c.hpp"
 #include "io/files/output_file.hpp"
 #include "io/files/text_scanner.hpp"
+#include "io/packed/appended_file.hpp"
 #include "io/packed/chunk_places.hpp"
 #include "io/packed/directory.hpp"
 #include "packed/residency.hpp"
@@ -99,11 +101,17 @@ std::span<const std::byte> part_of(const core::SharedBuffer<T>& array, std::uint
 
 } // namespace
 
-/// Writes one file.
+/// Writes one file, new or behind what is there.
 class PackedOutput {
 public:
     using Parts = std::vector<std::span<const std::byte>>;
 
+    /// Of a file that has this grid.
+    PackedOutput(AppendedFile file, std::shared_ptr<const Packed> packed, PackedDirectory directory)
+        : file_(std::move(file)),
+          packed_(std::move(packed)),
+          directory_(std::move(directory)),
+          places_(ChunkPlaces::compact(directory_)) {}
     PackedOutput(OutputFile file, std::shared_ptr<const Packed> packed, std::uint32_t chunk_bytes)
         : file_(std::move(file)),
           packed_(std::move(packed)),
@@ -111,6 +119,7 @@ public:
           places_(ChunkPlaces::compact(directory_)) {}
 
     Result<void> write_cells(const Progress& progress);
+    Result<void> compare_cells() const;
     Result<void> write_field(const Packed& packed, std::uint32_t step, std::optional<double> time);
     Result<std::uint64_t> finish();
     std::uint32_t last_step() const { return directory_.fields.back().step; }
@@ -118,14 +127,23 @@ public:
 
 private:
     Result<std::uint32_t> write_piece(const Parts& parts, bool aligned);
+    Parts points_of(std::size_t k) const;
+    Parts topology_of(std::size_t k) const;
+    std::vector<std::uint16_t> clusters_of(std::size_t k) const;
     Result<void> write_chunk(std::size_t k);
     Result<void> write_clusters();
+    Result<void> write(std::span<const std::byte> bytes) {
+        return std::visit([&](auto& file) { return file.write(bytes); }, file_);
+    }
+    std::uint64_t bytes() const {
+        return std::visit([](const auto& file) { return file.bytes(); }, file_);
+    }
     Result<void> align();
     Result<void> check_new_field(const Packed& packed, std::uint32_t step) const;
     template <class Real>
     Result<void> write_values(const Packed& packed, FieldEntry& entry);
 
-    OutputFile file_;
+    std::variant<OutputFile, AppendedFile> file_;
     std::shared_ptr<const Packed> packed_;
     PackedDirectory directory_;
     ChunkPlaces places_;
@@ -133,7 +151,7 @@ private:
 
 Result<void> PackedOutput::align() {
     static constexpr std::array<std::byte, piece_alignment> zeros{};
-    return file_.write(std::span(zeros).first(align_piece(file_.bytes()) - file_.bytes()));
+    return write(std::span(zeros).first(align_piece(bytes()) - bytes()));
 }
 
 /// Returns the checksum.
@@ -141,58 +159,99 @@ Result<std::uint32_t> PackedOutput::write_piece(const Parts& parts, bool aligned
     std::uint32_t checksum = 0;
     for (const auto& part : parts) {
         checksum = crc32c(part, checksum);
-        if (auto ok = file_.write(part); !ok) return ok.error();
+        if (auto ok = write(part); !ok) return ok.error();
     }
     if (aligned)
         if (auto ok = align(); !ok) return ok.error();
     return checksum;
 }
 
-Result<void> PackedOutput::write_chunk(std::size_t k) {
-    ChunkEntry& chunk = directory_.chunks[k];
-    const std::uint64_t points = places_.of(Unit::points, k), point_count = chunk.count(Unit::points);
-    const Parts own = std::visit(
+PackedOutput::Parts PackedOutput::points_of(std::size_t k) const {
+    const std::uint64_t first = places_.of(Unit::points, k), count = directory_.chunks[k].count(Unit::points);
+    return std::visit(
         [&](const auto& reals) {
-            return Parts{part_of(reals.positions, 3 * points, 3 * point_count),
-                         part_of(packed_->point_ids, points, point_count),
-                         part_of(packed_->wide_point_ids, points, point_count),
-                         part_of(packed_->point_ranks, points, point_count)};
+            return Parts{part_of(reals.positions, 3 * first, 3 * count), part_of(packed_->point_ids, first, count),
+                         part_of(packed_->wide_point_ids, first, count), part_of(packed_->point_ranks, first, count)};
         },
         packed_->reals);
-    const auto of_points = write_piece(own, true);
+}
+
+PackedOutput::Parts PackedOutput::topology_of(std::size_t k) const {
+    const ChunkEntry& chunk = directory_.chunks[k];
+    const std::uint64_t words = places_.of(Unit::words, k), count = chunk.count(Unit::words);
+    return {part_of(packed_->cells, words, count),
+            part_of(packed_->links, places_.of(Unit::links, k), chunk.count(Unit::links)),
+            part_of(packed_->cell_ids, words, count), part_of(packed_->wide_cell_ids, words, count)};
+}
+
+std::vector<std::uint16_t> PackedOutput::clusters_of(std::size_t k) const {
+    std::vector<std::uint16_t> records;
+    for (std::uint64_t c = places_.first_cluster[k]; c < places_.first_cluster[k + 1]; ++c) {
+        const ClusterHeader& h = packed_->headers[c];
+        records.insert(records.end(), {h.own_points, h.ghost_points, h.cells[0], h.cells[1], h.cells[2], h.cells[3],
+                                       h.neighbours, h.own_seams, h.ghost_seams, h.wide_seams});
+    }
+    return records;
+}
+
+Result<void> PackedOutput::write_chunk(std::size_t k) {
+    const auto of_points = write_piece(points_of(k), true);
     if (!of_points) return of_points.error();
-    chunk.points_checksum = *of_points;
-    const std::uint64_t words = places_.of(Unit::words, k), word_count = chunk.count(Unit::words);
-    const auto of_topology =
-        write_piece({part_of(packed_->cells, words, word_count),
-                     part_of(packed_->links, places_.of(Unit::links, k), chunk.count(Unit::links)),
-                     part_of(packed_->cell_ids, words, word_count), part_of(packed_->wide_cell_ids, words, word_count)},
-                    true);
+    const auto of_topology = write_piece(topology_of(k), true);
     if (!of_topology) return of_topology.error();
-    chunk.topology_checksum = *of_topology;
+    directory_.chunks[k].points_checksum = *of_points;
+    directory_.chunks[k].topology_checksum = *of_topology;
     return {};
 }
 
 Result<void> PackedOutput::write_clusters() {
-    directory_.clusters_offset = file_.bytes();
+    directory_.clusters_offset = bytes();
     for (std::size_t k = 0; k < directory_.chunks.size(); ++k) {
-        ChunkEntry& chunk = directory_.chunks[k];
-        std::vector<std::uint16_t> records;
-        for (std::uint64_t c = places_.first_cluster[k]; c < places_.first_cluster[k + 1]; ++c) {
-            const ClusterHeader& h = packed_->headers[c];
-            records.insert(records.end(), {h.own_points, h.ghost_points, h.cells[0], h.cells[1], h.cells[2], h.cells[3],
-                                           h.neighbours, h.own_seams, h.ghost_seams, h.wide_seams});
-        }
+        const std::vector<std::uint16_t> records = clusters_of(k);
         const auto checksum = write_piece({std::as_bytes(std::span(records))}, false);
         if (!checksum) return checksum.error();
-        chunk.clusters_checksum = *checksum;
+        directory_.chunks[k].clusters_checksum = *checksum;
     }
     return align();
 }
 
+/// The packed grid against the checksums of the file.
+Result<void> PackedOutput::compare_cells() const {
+    const Packed& packed = *packed_;
+    const PackedDirectory own = directory_of(packed, most_chunk_bytes);
+    const auto differs = [&](const std::string& what) {
+        return invalid_argument(fmt::format("{}, so steps of this grid do not go into the file: it must be packed in the same "
+                                            "way, with the same cells and points",
+                                            what));
+    };
+    if (own.clusters != directory_.clusters || own.counts != directory_.counts ||
+        own.user_points != directory_.user_points || own.user_cells != directory_.user_cells ||
+        own.precision != directory_.precision || own.origin != directory_.origin)
+        return differs(fmt::format("the file has {} packed points and {} clusters of a grid of {} points and {} cells, and the "
+                                   "new step {} and {} of {} and {}, or another precision or origin",
+                                   directory_.count(Unit::points), directory_.clusters, directory_.user_points,
+                                   directory_.user_cells, own.count(Unit::points), own.clusters, own.user_points,
+                                   own.user_cells));
+    const auto checksum_of = [](const Parts& parts) {
+        std::uint32_t checksum = 0;
+        for (const auto& part : parts) checksum = crc32c(part, checksum);
+        return checksum;
+    };
+    for (std::size_t k = 0; k < directory_.chunks.size(); ++k) {
+        const ChunkEntry& chunk = directory_.chunks[k];
+        const std::vector<std::uint16_t> records = clusters_of(k);
+        if (checksum_of({std::as_bytes(std::span(records))}) != chunk.clusters_checksum ||
+            checksum_of(topology_of(k)) != chunk.topology_checksum)
+            return differs(fmt::format("the cells of chunk {} differ", k));
+        if (checksum_of(points_of(k)) != chunk.points_checksum)
+            return differs(fmt::format("the points of chunk {} differ", k));
+    }
+    return {};
+}
+
 Result<void> PackedOutput::write_cells(const Progress& progress) {
-    if (auto ok = file_.write(encode_packed_header()); !ok) return ok;
-    directory_.chunks_offset = file_.bytes();
+    if (auto ok = write(encode_packed_header()); !ok) return ok;
+    directory_.chunks_offset = bytes();
     for (std::size_t k = 0; k < directory_.chunks.size(); ++k) {
         if (progress.cancelled()) return Error{ErrorCode::cancelled, "saving was cancelled"};
         if (auto ok = write_chunk(k); !ok) return ok;
@@ -222,7 +281,7 @@ Result<void> PackedOutput::check_new_field(const Packed& packed, std::uint32_t s
 template <class Real>
 Result<void> PackedOutput::write_values(const Packed& packed, FieldEntry& entry) {
     const auto& reals = packed.as<Real>();
-    entry.ranges_offset = file_.bytes();
+    entry.ranges_offset = bytes();
     for (std::size_t k = 0; k < directory_.chunks.size(); ++k) {
         const std::uint64_t first = places_.first_cluster[k], count = directory_.chunks[k].clusters;
         const auto checksum =
@@ -231,7 +290,7 @@ Result<void> PackedOutput::write_values(const Packed& packed, FieldEntry& entry)
         entry.ranges_checksums.push_back(*checksum);
     }
     if (auto ok = align(); !ok) return ok;
-    entry.values_offset = file_.bytes();
+    entry.values_offset = bytes();
     for (std::size_t k = 0; k < directory_.chunks.size(); ++k) {
         const ChunkEntry& chunk = directory_.chunks[k];
         const std::uint64_t points = places_.of(Unit::points, k), count = chunk.count(Unit::points);
@@ -264,10 +323,15 @@ Result<void> PackedOutput::write_field(const Packed& packed, std::uint32_t step,
 
 Result<std::uint64_t> PackedOutput::finish() {
     const std::vector<std::byte> directory = encode_directory(directory_);
-    DirectorySlot slot{1, file_.bytes(), directory.size(), file_.bytes() + directory.size(), crc32c(directory)};
-    if (auto ok = file_.write(std::span<const std::byte>(directory)); !ok) return ok.error();
-    if (auto ok = file_.overwrite(packed_slots[0], encode_slot(slot)); !ok) return ok.error();
-    if (auto ok = file_.commit(); !ok) return ok.error();
+    DirectorySlot slot{1, bytes(), directory.size(), bytes() + directory.size(), crc32c(directory)};
+    if (auto ok = write(directory); !ok) return ok.error();
+    if (auto* const appended = std::get_if<AppendedFile>(&file_)) {
+        if (auto ok = appended->commit(slot); !ok) return ok.error();
+        return slot.file_bytes;
+    }
+    OutputFile& file = std::get<OutputFile>(file_);
+    if (auto ok = file.overwrite(packed_slots[0], encode_slot(slot)); !ok) return ok.error();
+    if (auto ok = file.commit(); !ok) return ok.error();
     return slot.file_bytes;
 }
 
@@ -300,6 +364,20 @@ Result<PackedWriter> PackedWriter::create(const PackedGrid& packed, const std::s
         for (const PackedGrid& more : options.more_fields)
             if (auto ok = output.write_field(more.data(), 0, options.time); !ok) return ok.error();
         progress("write", 1);
+        return PackedWriter(std::make_unique<Data>(Data{std::move(output), run}));
+    });
+}
+
+Result<PackedWriter> PackedWriter::append(const PackedGrid& packed, const std::string& path, std::optional<double> time,
+                                          const Run& run) {
+    return core::carry_out("adding to a packed file", run, [&](const Progress& progress) -> Result<PackedWriter> {
+        const auto whole = core::whole_of(packed.shared_data(), progress);
+        if (!whole) return whole.error();
+        Result<io::OpenedForAppending> opened = io::AppendedFile::open(path);
+        if (!opened) return opened.error();
+        io::PackedOutput output(std::move(opened->file), *whole, std::move(opened->directory));
+        if (auto ok = output.compare_cells(); !ok) return ok.error();
+        if (auto ok = output.write_field(**whole, output.last_step() + 1, time); !ok) return ok.error();
         return PackedWriter(std::make_unique<Data>(Data{std::move(output), run}));
     });
 }

@@ -1,0 +1,52 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Writing behind what a packed file holds.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <isotet/result.hpp>
+
+#include "io/files/file_kind.hpp"
+#include "io/packed/format.hpp"
+
+namespace isotet::io {
+
+struct OpenedForAppending;
+
+/// What is written does not count before commit(): the valid slot of the header tells of the old directory until then.
+class AppendedFile {
+public:
+    /// Locks the file, and cuts off what a writer that did not finish left.
+    /// Errors   as PackedSource::open(); cannot_write: another writer has it, or it cannot be written
+    static Result<OpenedForAppending> open(const std::string& path);
+
+    Result<void> write(std::span<const std::byte> bytes);
+    std::uint64_t bytes() const noexcept { return end_ + buffered_.size(); } ///< of the file so far
+
+    /// All is on the disk before the other slot is written.
+    Result<void> commit(DirectorySlot slot);
+
+private:
+    AppendedFile() = default;
+    Result<void> write_at(std::uint64_t at, std::span<const std::byte> bytes);
+    Result<void> flush_to_disk();
+    Error failed(int number) const;
+
+    std::string path_;
+    Descriptor file_;
+    std::uint64_t end_ = 0;
+    std::vector<std::byte> buffered_;
+    std::size_t next_slot_ = 0; ///< the one that does not hold
+    std::uint64_t count_ = 0;   ///< directories so far
+};
+
+struct OpenedForAppending {
+    AppendedFile file;
+    PackedDirectory directory;
+};
+
+} // namespace isotet::io
