@@ -377,7 +377,7 @@ class Grid:
         >>> import isotet
         >>> part = isotet.make("hex", 8, ["sphere"]).clip("sphere", below=0.6)
         >>> part.info["whole_cells"], part.info["cut_cells"]
-        (32, 120)
+        (8, 128)
         """
         clipper = Clipper(self, field, fields=fields, cell_fields=cell_fields, edge_ends=edge_ends, precision=precision,
                           split_cells=split_cells, tolerance=tolerance, geometry_tolerance=geometry_tolerance,
