@@ -58,4 +58,9 @@ ISOTET_API Result<OpacityText> parse_opacity(std::string_view text);
 /// `levels`   of peaks, ascending; others take none
 ISOTET_API OpacityCurve opacity_of(OpacityPreset preset, const ValueRange& range, std::span<const double> levels = {});
 
+/// The curve that a text says; peaks are at as many levels, three where it is not said, evenly inside the range.
+///
+/// `range`    of the field; of presets finite, lower <= upper
+ISOTET_API OpacityCurve opacity_of(const OpacityText& text, const ValueRange& range);
+
 } // namespace isotet

@@ -93,13 +93,16 @@ struct DrawnIsosurface {
 /// tets of PackOptions::split_cells. Cells with a corner whose value is NaN or infinite are empty; where cells overlap
 /// each is seen. On a logarithmic scale the logarithm is linear in each tet, and values below 0 are far below the scale.
 struct DrawnVolume {
-    const PackedGrid* grid = nullptr; ///< borrowed; with its field
+    const PackedGrid* grid = nullptr; ///< borrowed; with its field. Of a packed file all of it is read
     ColorScale scale;
     OpacityCurve opacity;                     ///< without points: only `isosurfaces` are seen
     double opacity_length = 1;                ///< that `opacity` is of, in the unit of coordinates; above 0
     std::vector<DrawnIsosurface> isosurfaces; ///< shaded by the gradient of the field in each tet
     std::vector<Plane> clips;                 ///< only normal . p <= offset is seen; rays are cut, not cells
 };
+
+/// The length that opacity is of where none is given: a tenth of the diagonal.
+ISOTET_API double default_opacity_length(const Box& box);
 
 /// The twelve edges of a box.
 ISOTET_API DrawnLines outline_of(const Box& box);

@@ -13,6 +13,7 @@
 #include <isotet/annotation.hpp>
 #include <isotet/draw.hpp>
 #include <isotet/color_field.hpp>
+#include <isotet/pack.hpp>
 
 #include "arrays.hpp"
 #include "call.hpp"
@@ -36,6 +37,10 @@ struct RenderRequest {
     bool fitted = false; ///< the camera says all
     PictureOptions picture;
     Annotation annotation;
+    std::optional<PackedGrid> volume;
+    OpacityText volume_opacity;
+    std::optional<double> opacity_length;
+    std::vector<double> volume_isovalues; ///< of surfaces that rays meet
     bool legend = true;
     bool smooth = true; ///< by the normals of vertices; else every triangle is flat
 };
@@ -50,9 +55,12 @@ std::optional<ColorMap> map_of(std::string_view name) { return parse_color_map(n
 std::optional<View> view_of(std::string_view name) { return parse_view(name); }
 std::optional<Color> color_of(std::string_view text) { return parse_color(text); }
 
+/// Of the volume where there is one, else of what colours surfaces.
 Result<ColorScale> scale_of(const RenderRequest& request, const Run& run) {
     ColorOptions options;
     options.scale.map = request.map;
+    if (request.volume && request.volume->field().lower < request.volume->field().upper)
+        options.range = ValueRange{request.volume->field().lower, request.volume->field().upper};
     if (request.range) options.range = ValueRange{request.range->first, request.range->second};
     std::vector<Array> values;
     for (const SurfaceColors& colors : request.values) values.push_back(colors.values);
@@ -77,14 +85,29 @@ Color color_of_surface(const RenderRequest& request, std::size_t i) {
     return color_at(request.map, static_cast<double>(i) / static_cast<double>(request.surfaces.size() - 1));
 }
 
+void add_volume(Scene& scene, RenderRequest& request, const ColorScale& scale) {
+    const FieldReport& field = request.volume->field();
+    const Box box = bounds_of(*request.volume);
+    DrawnVolume& drawn = scene.volumes.emplace_back();
+    drawn.grid = &*request.volume;
+    drawn.scale = scale;
+    drawn.opacity = opacity_of(request.volume_opacity, {field.lower, field.upper});
+    drawn.opacity_length = request.opacity_length.value_or(default_opacity_length(box));
+    for (const double isovalue : request.volume_isovalues)
+        drawn.isosurfaces.push_back({isovalue, color_at(scale.map, scale.place_of(isovalue))});
+    scene.bounds.add(box);
+    if (request.legend) request.annotation.opacity = drawn.opacity;
+}
+
 Result<Picture> picture_of(RenderRequest& request, const Run& run) {
     if (auto set = set_normals(request, run); !set) return set.error();
     Scene scene;
-    if (!request.values.empty()) {
+    if (!request.values.empty() || request.volume) {
         const auto scale = scale_of(request, run);
         if (!scale) return scale.error();
         for (SurfaceColors& colors : request.values) colors.scale = *scale;
         if (request.legend) request.annotation.scale = *scale;
+        if (request.volume) add_volume(scene, request, *scale);
     }
     for (std::size_t i = 0; i < request.surfaces.size(); ++i) {
         DrawnSurface& drawn = scene.surfaces.emplace_back();
@@ -143,8 +166,15 @@ void add_pictures(nb::module_& module) {
            const std::vector<ArrayIn>& values, bool of_triangles, const std::string& map,
            const std::optional<std::pair<double, double>>& range, double opacity, const Camera& camera, bool fitted,
            double zoom, std::pair<std::uint32_t, std::uint32_t> size, std::uint32_t samples,
-           const std::string& background, const std::string& title, bool legend, bool smooth, const CallOptions& how) {
+           const std::string& background, const std::string& title, bool legend, bool smooth,
+           const std::optional<PackedGrid>& volume, const std::string& volume_opacity,
+           std::optional<double> opacity_length, const std::vector<double>& volume_isovalues, const CallOptions& how) {
             RenderRequest request;
+            request.volume = volume;
+            if (!volume_opacity.empty())
+                request.volume_opacity = call(how, [&](const Run&) { return parse_opacity(volume_opacity); });
+            request.opacity_length = opacity_length;
+            request.volume_isovalues = volume_isovalues;
             for (const Surface* surface : surfaces) request.surfaces.push_back(*surface);
             request.smooth = smooth;
             for (const std::string& color : colors) request.colors.push_back(parsed("color", color, color_of));
@@ -171,7 +201,7 @@ void add_pictures(nb::module_& module) {
         },
         "surfaces"_a, "colors"_a, "values"_a, "of_triangles"_a, "color_map"_a, "range"_a.none(), "opacity"_a,
         "camera"_a, "fitted"_a, "zoom"_a, "size"_a, "samples"_a, "background"_a, "title"_a, "legend"_a, "smooth"_a,
-        "call"_a);
+        "volume"_a.none(), "volume_opacity"_a, "opacity_length"_a.none(), "volume_isovalues"_a, "call"_a);
 }
 
 } // namespace isotet::python

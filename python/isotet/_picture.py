@@ -6,12 +6,16 @@ from __future__ import annotations
 import struct
 import zlib
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from . import _isotet
 from ._call import Progress, call_options
 from ._surface import Surface
+
+if TYPE_CHECKING:
+    from ._grid import PackedGrid
 
 
 def png_of(picture: np.ndarray) -> bytes:
@@ -47,13 +51,23 @@ def _values(surfaces: Sequence[Surface], name: str) -> tuple[list[np.ndarray], b
     raise ValueError(f"color_by is '{name}', but the surfaces have no such field: there are {', '.join(known) or 'none'}")
 
 
-def render(surfaces: Surface | Sequence[Surface], *, color_by: str | None = None, range: tuple[float, float] | None = None,
+def _opacity(opacity: str | Sequence[tuple[float, float]]) -> str:
+    """The text of an opacity: points as pairs, or text as it is."""
+    if isinstance(opacity, str):
+        return opacity
+    return ",".join(f"{float(value)!r}:{float(part)!r}" for value, part in opacity)
+
+
+def render(surfaces: Surface | Sequence[Surface] = (), *, color_by: str | None = None, range: tuple[float, float] | None = None,
            color_map: str = "viridis", colors: str | Sequence[str] = (), opacity: float = 1,
            view: str | tuple[float, float] = "iso", parallel: bool = False, zoom: float = 1,
            size: tuple[int, int] = (1200, 900), samples: int = 3, background: str = "white", title: str = "",
-           legend: bool = True, smooth: bool = True, threads: int = 0, progress: Progress | None = None) -> np.ndarray:  # fmt: skip
-    """A picture of surfaces: height x width x 4 numbers from 0 to 255, red, green, blue and opacity. No graphics card or
-    window is needed; the same surfaces give the same bytes on every machine.
+           legend: bool = True, smooth: bool = True, volume: PackedGrid | None = None,
+           volume_opacity: str | Sequence[tuple[float, float]] = "ramp", opacity_length: float | None = None,
+           volume_isovalues: Sequence[float] = (), threads: int = 0,
+           progress: Progress | None = None) -> np.ndarray:  # fmt: skip
+    """A picture of surfaces, of a volume, or of both: height x width x 4 numbers from 0 to 255, red, green, blue and opacity.
+    No graphics card or window is needed; the same surfaces give the same bytes on every machine.
 
     surfaces
         One, or several.
@@ -73,12 +87,21 @@ def render(surfaces: Surface | Sequence[Surface], *, color_by: str | None = None
         Shade by normals of vertices; without, each triangle is flat.
     background, title, legend
         "white", "transparent", ...; a title over the colour scale, which `legend` draws beside the picture.
+    volume, volume_opacity, opacity_length
+        A packed grid whose field is drawn as a volume, with the surfaces in it; "ramp", "peaks", "peaks:5", "shell", or pairs of
+        a value, ascending, and the opacity from 0 to 1 of a length of it, "" for none; that length, or a tenth of the
+        diagonal of the grid's box. The scale is then the volume's.
+    volume_isovalues
+        Isosurfaces of the volume that its rays meet, opaque, without being extracted.
 
     Raises ValueError for wrong arguments, MemoryError.
 
     >>> import isotet
     >>> surface = isotet.make("kuhn", 8, ["sphere"]).contour(0.5)
     >>> isotet.render(surface, size=(160, 120)).shape
+    (120, 160, 4)
+    >>> packed = isotet.make("kuhn", 8, ["sphere"]).pack("sphere")
+    >>> isotet.render(volume=packed, volume_opacity=[(0.3, 0), (0.5, 0.8), (0.7, 0)], size=(160, 120)).shape
     (120, 160, 4)
     """
     drawn = [surfaces] if isinstance(surfaces, Surface) else list(surfaces)
@@ -90,6 +113,8 @@ def render(surfaces: Surface | Sequence[Surface], *, color_by: str | None = None
     width, height = size
     pixels = _isotet.render([surface._surface for surface in drawn], names, values, of_triangles, color_map, range,
                             float(opacity), camera, fitted, float(zoom), (width, height), samples, background,
-                            title or color_by or "", legend, smooth,
+                            title or color_by or (str(volume.field_report["name"]) if volume is not None else ""), legend, smooth,
+                            None if volume is None else volume._packed, _opacity(volume_opacity), opacity_length,
+                            [float(isovalue) for isovalue in volume_isovalues],
                             call_options(threads, progress))  # fmt: skip
     return pixels.reshape(height, width, 4)

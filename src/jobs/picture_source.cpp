@@ -337,17 +337,13 @@ Result<void> PictureSource::take_volume(Contents& contents, Caller& caller) {
     if (!scale) return scale.error();
     VolumeLook look{*scale, {}, job_.opacity_length, job_.dirac};
     if (volume_opacity_) look.opacity = *volume_opacity_;
-    else if (job_.volume_opacity && !job_.volume_opacity->preset) look.opacity = job_.volume_opacity->curve;
     else if (job_.volume_opacity || job_.dirac.empty()) {
         const Result<ValueRange> range = typical_range_of_steps(field, caller);
         if (!range) return range.error();
-        const OpacityText wish = job_.volume_opacity.value_or(OpacityText{{}, OpacityPreset::ramp, 0});
-        const std::vector<double> levels =
-            evenly_spaced_levels(range->lower, range->upper, wish.peaks > 0 ? wish.peaks : default_levels);
-        if (levels.empty())
+        if (!(range->lower <= range->upper))
             return Error{ErrorCode::invalid_data,
                          fmt::format("field '{}' has no finite value: there is nothing to draw", field.name)};
-        look.opacity = opacity_of(*wish.preset, *range, levels);
+        look.opacity = opacity_of(job_.volume_opacity.value_or(OpacityText{{}, OpacityPreset::ramp, 0}), *range);
     }
     volume_opacity_ = look.opacity;
     contents.volume_colors = ColorField{field.name, field.values, Association::point, *scale};

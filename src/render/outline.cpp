@@ -1,7 +1,18 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <isotet/scene.hpp>
 
+#include <cmath>
+
 namespace isotet {
+
+double default_opacity_length(const Box& box) {
+    double square = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double length = box.upper[axis] - box.lower[axis];
+        square += length * length;
+    }
+    return 0.1 * std::sqrt(square);
+}
 
 DrawnLines outline_of(const Box& box) {
     DrawnLines outline;

@@ -1,7 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Colours and opacities of isosurfaces that are shown together.
-#include <cmath>
-
 #include "scene/scene_data.hpp"
 
 namespace isotet {
@@ -80,12 +78,7 @@ void IsosurfaceScene::Data::add_volume() {
     drawn.grid = &*volume_grid;
     drawn.scale = volume.scale;
     drawn.opacity = volume.opacity;
-    double square = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double length = bounds.upper[axis] - bounds.lower[axis];
-        square += length * length;
-    }
-    drawn.opacity_length = report.opacity_length = volume.opacity_length.value_or(0.1 * std::sqrt(square));
+    drawn.opacity_length = report.opacity_length = volume.opacity_length.value_or(default_opacity_length(bounds));
     drawn.clips = look.clips;
     const auto value_at = [&](std::size_t at) { return std::optional(volume.isosurfaces[at]); };
     for (std::size_t i = 0; i < volume.isosurfaces.size(); ++i)

@@ -57,6 +57,22 @@ def test_surfaces_shine_through_each_other():
     assert outer[100, 100, 0] < 60 and through[100, 100, 0] > outer[100, 100, 0] + 40
 
 
+def test_a_volume_is_drawn_with_surfaces_inside(sphere):
+    packed = isotet.make("kuhn", 12, ["sphere"]).pack("sphere")
+    fog = isotet.render(volume=packed, size=(160, 120))
+    assert drawn(fog).any()
+    assert np.array_equal(fog, isotet.render(volume=packed, volume_opacity="ramp", size=(160, 120), threads=1))
+    shell = isotet.render(volume=packed, volume_opacity=[(0.4, 0), (0.5, 0.9), (0.6, 0)], opacity_length=0.1, size=(160, 120))
+    both = isotet.render(sphere, volume=packed, colors="red", size=(160, 120))
+    met = isotet.render(volume=packed, volume_opacity="", volume_isovalues=[0.5], size=(160, 120))
+    pictures = [fog, shell, both, met]
+    assert not any(np.array_equal(a, b) for i, a in enumerate(pictures) for b in pictures[:i])
+    with pytest.raises(ValueError, match="must ascend"):
+        isotet.render(volume=packed, volume_opacity=[(1, 0), (0, 1)])
+    with pytest.raises(ValueError, match="must be positive"):
+        isotet.render(volume=packed, opacity_length=-1)
+
+
 def test_backgrounds_may_be_transparent(sphere):
     picture = isotet.render(sphere, size=(120, 120), background="transparent")
     assert picture[0, 0, 3] == 0 and picture[60, 60, 3] == 255

@@ -7,6 +7,8 @@
 
 #include <fmt/core.h>
 
+#include <isotet/levels.hpp>
+
 #include "base/errors.hpp"
 
 namespace isotet {
@@ -103,6 +105,13 @@ Result<OpacityText> parse_opacity(std::string_view text) {
     }
     if (Result<void> right = parsed.curve.check(); !right) return right.error();
     return parsed;
+}
+
+OpacityCurve opacity_of(const OpacityText& text, const ValueRange& range) {
+    if (!text.preset) return text.curve;
+    constexpr std::uint64_t default_peaks = 3;
+    const std::uint64_t peaks = text.peaks > 0 ? text.peaks : default_peaks;
+    return opacity_of(*text.preset, range, evenly_spaced_levels(range.lower, range.upper, peaks));
 }
 
 OpacityCurve opacity_of(OpacityPreset preset, const ValueRange& range, std::span<const double> levels) {
