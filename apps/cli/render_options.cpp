@@ -181,7 +181,8 @@ void set_opacity(RenderCommand& render, const std::string& text) {
         return;
     }
     Result<OpacityText> parsed = parse_opacity(text);
-    if (!parsed) refuse_value("--opacity", text, parsed.error().message);
+    if (!parsed)
+        refuse_value("--opacity", text, "a number from 0 to 1, or opacity by values: " + parsed.error().message);
     render.volume_opacity = *std::move(parsed);
 }
 

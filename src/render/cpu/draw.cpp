@@ -13,6 +13,7 @@
 #include "base/errors.hpp"
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
+#include "packed/residency.hpp"
 #include "render/check_drawing.hpp"
 #include "render/cpu/bins.hpp"
 #include "render/cpu/draw_tuned.hpp"
@@ -65,20 +66,27 @@ Result<std::unique_ptr<render::VolumeScene>> volumes_of(const Scene& scene, cons
                                                         const render::VolumeTuning& tuning, const Progress& progress) {
     std::uint64_t bytes = 0;
     Scene known;
+    std::vector<PackedGrid> grids; // all in memory
+    grids.reserve(scene.volumes.size());
     for (const DrawnVolume& volume : scene.volumes) {
         if (Result<void> right = check_volume(volume); !right) return right.error();
         if (!(volume.grid->field().lower <= volume.grid->field().upper)) continue;
-        const core::Packed& packed = volume.grid->data();
+        Result<std::shared_ptr<const core::Packed>> whole = core::whole_of(volume.grid->shared_data(), progress);
+        if (!whole) return whole.error();
+        const core::Packed& packed = *grids.emplace_back(*std::move(whole)).shared_data();
         bytes +=
             packed.groups() * sizeof(render::TileBox) + packed.clusters() * sizeof(render::PlacedVolume::ClusterPlace);
         known.volumes.push_back(volume);
+        known.volumes.back().grid = &grids.back();
     }
     if (known.volumes.empty()) return std::unique_ptr<render::VolumeScene>();
     const auto threads = static_cast<std::uint64_t>(core::threads_here());
     if (Result<void> enough = core::require_memory("drawing a volume", bytes + threads * volume_bytes_per_thread);
         !enough)
         return enough.error();
-    return std::make_unique<render::VolumeScene>(known, space, sight, tiling, tuning, progress);
+    auto placed = std::make_unique<render::VolumeScene>(known, space, sight, tiling, tuning, progress);
+    placed->grids = std::move(grids);
+    return placed;
 }
 
 Result<Picture> draw_on_cpu(const Scene& scene, const PictureOptions& options, const render::VolumeTuning& tuning,

@@ -27,6 +27,7 @@ struct VolumeScene {
     Rays rays;
     VolumeTuning tuning;
     std::vector<PlacedVolume> media, surfaces;
+    std::vector<PackedGrid> grids; ///< kept for them
     std::optional<VolumeBins> media_bins, surface_bins;
 
     VolumeScene(const Scene& scene, const Space& space, const Sight& sight, const Tiling& tiling,
