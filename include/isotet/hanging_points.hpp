@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Hanging points: points on faces and edges of larger cells, which do not have them, as where adaptive solvers refine some
-// cells and not their neighbours. The surface is open there, unless the larger cells list these points.
+// Hanging points: points on faces and edges of larger cells, which do not have them, as where adaptive solvers refine
+// some cells and not their neighbours. The surface is open there, unless the larger cells list these points.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ struct HangingReport {
     double largest_distance = 0;  ///< of these from the face, in the unit of the points
     std::uint64_t levels = 0;     ///< n: an edge meets up to 2^n smaller ones
     std::uint64_t cells = 0;      ///< that list hanging points now
-    std::uint64_t open_faces = 0; ///< that lie on smaller ones, but are not covered by them: the surface stays open there
+    std::uint64_t open_faces = 0; ///< on smaller ones that do not cover them: the surface stays open there
 
     /// Sentences for the user.
     ISOTET_API std::vector<std::string> notes() const;
@@ -37,8 +37,8 @@ struct ISOTET_API ClosedGrid {
     Array points;          ///< uint64, H: those that hang; of one that hangs between others, these come before
     DerivedPoints parents; ///< H rows: the larger cell's own value there, as weights of the corners of its face or edge
 
-    /// A point field that has the larger cells' values at hanging points. float32 and float64 keep their type; integers become
-    /// float64.
+    /// A point field that has the larger cells' values at hanging points. float32 and float64 keep their type; integers
+    /// become float64.
     ///
     /// Cost     a copy, and the hanging points
     /// Errors   invalid_argument when it has not one tuple a point; out_of_memory; cancelled
@@ -49,28 +49,30 @@ struct ISOTET_API ClosedGrid {
     Result<double> largest_difference(const Array& values, const Run& run = {}) const;
 };
 
-/// Finds hanging points by their places, and gives the cells that have them on a face or an edge as polyhedra that list them: a
-/// face that smaller ones cover becomes these, and an edge becomes as many. linearize() splits them as any others, by rules
-/// that depend on each face alone, so the surface is closed. All other cells stay as they are; so does a grid without
-/// hanging points, whose arrays are shared.
+/// Finds hanging points by their places, and gives the cells that have them on a face or an edge as polyhedra that list
+/// them: a face that smaller ones cover becomes these, and an edge becomes as many. linearize() splits them as any
+/// others, by rules that depend on each face alone, so the surface is closed. All other cells stay as they are; so does
+/// a grid without hanging points, whose arrays are shared.
 ///
-/// A face is covered by faces of other cells that share points with it, face the other way, lie on it, and together have its
-/// outline, whatever their number and sizes; faces of one size that only differ in their diagonals do not count. Faces may be
-/// warped, cells of any kinds, and several levels meet in one face. Points that coincide must be one (merge_points()).
+/// A face is covered by faces of other cells that share points with it, face the other way, lie on it, and together
+/// have its outline, whatever their number and sizes; faces of one size that only differ in their diagonals do not
+/// count. Faces may be warped, cells of any kinds, and several levels meet in one face. Points that coincide must be
+/// one (merge_points()).
 ///
 /// Grids with curved cells are returned as they are.
 ///
-/// Guarantees   the same bytes for any thread count; a face that has a neighbour of its own is never looked at, but for hashes that
-///              are equal by chance: 2^-64 a face
-/// Cost         two passes over the cells, 8 bytes a point; sorting of the faces without a neighbour, about 200 bytes each; where points hang, another
-///              pass and new cells
+/// Guarantees   the same bytes for any thread count; a face that has a neighbour of its own is never looked at, but for
+///              hashes that are equal by chance: 2^-64 a face
+/// Cost         two passes over the cells, 8 bytes a point; sorting of the faces without a neighbour, about 200 bytes
+///              each; where points hang, another pass and new cells
 /// Errors       invalid_data as survey(); out_of_memory; cancelled
 /// Threads      safe from many threads on one grid
 /// Method       docs/inside/hanging.md
 ISOTET_API Result<ClosedGrid> close_hanging_points(const Grid& grid, const Run& run = {});
 
-/// Whether some face without a neighbour lies near a larger one of another cell, by their places alone: for grids of which only
-/// the cells that isovalues meet are there, whose other faces have lost their neighbours. True of thin grids, too.
+/// Whether some face without a neighbour lies near a larger one of another cell, by their places alone: for grids of
+/// which only the cells that isovalues meet are there, whose other faces have lost their neighbours. True of thin
+/// grids, too.
 ///
 /// Cost     as close_hanging_points() of a grid without hanging points
 /// Errors   likewise

@@ -12,8 +12,8 @@
 
 namespace isotet::linear {
 
-/// One after another, in one memory. A cell's loops are in the order of its kind or of the file; points that repeat the one
-/// before are dropped, and loops of fewer than three points.
+/// One after another, in one memory. A cell's loops are in the order of its kind or of the file; points that repeat the
+/// one before are dropped, and loops of fewer than three points.
 class CellLoops {
 public:
     CellLoops(const core::CellReader& cells, const core::FaceReader& faces) : cells_(cells), faces_(faces) {}

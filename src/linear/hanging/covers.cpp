@@ -72,8 +72,8 @@ public:
         return found;
     }
 
-    /// Sets between and is_whole where those faces that are not farther have the outline, with the points on edges that are
-    /// known. Others are dropped then.
+    /// Sets between and is_whole where those faces that are not farther have the outline, with the points on edges that
+    /// are known. Others are dropped then.
     /// `used`   by face: those that cover another one already
     void look_for_cover(Cover& cover, double farthest, const std::vector<std::uint8_t>& used,
                         const SplitEdges& edges) const;

@@ -30,9 +30,9 @@ struct Covers {
     std::uint64_t open = 0; ///< faces on which smaller ones lie that do not cover them
 };
 
-/// A face is covered by smaller open faces of other cells that face the other way, whose middles are over it, and whose edges
-/// but for those between them are its outline, with more points than its corners. Faces whose smaller ones have hanging points
-/// themselves come after these.
+/// A face is covered by smaller open faces of other cells that face the other way, whose middles are over it, and whose
+/// edges but for those between them are its outline, with more points than its corners. Faces whose smaller ones have
+/// hanging points themselves come after these.
 ///
 /// `points`     of the grid; borrowed by the result
 /// Guarantees   the same for any thread count

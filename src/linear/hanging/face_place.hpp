@@ -16,7 +16,8 @@ struct FacePlace {
     double distance = 0;         ///< of the point from the place that the weights give
 };
 
-/// The nearest place, of a triangle, a quadrilateral as its bilinear map, or a larger loop as the fan from its first corner.
+/// The nearest place, of a triangle, a quadrilateral as its bilinear map, or a larger loop as the fan from its first
+/// corner.
 FacePlace place_on_face(std::span<const std::uint64_t> loop, const core::Point& point, const core::PointReader& points);
 
 /// The same on an edge, with two weights.

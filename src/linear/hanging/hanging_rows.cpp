@@ -34,7 +34,8 @@ struct HangingRow {
 
     /// A point has the row that comes first: of an edge, of the longest one.
     bool comes_before(const HangingRow& other) const {
-        return std::tie(point, on_face, other.size, corners) < std::tie(other.point, other.on_face, size, other.corners);
+        return std::tie(point, on_face, other.size, corners) <
+               std::tie(other.point, other.on_face, size, other.corners);
     }
 };
 

@@ -69,7 +69,8 @@ private:
         return at != covers_.whole.end() && open_.place(at->face) == place ? &*at : nullptr;
     }
 
-    /// A triangle with one point on an edge becomes two triangles: as a quadrilateral it would have three corners on a line.
+    /// A triangle with one point on an edge becomes two triangles: as a quadrilateral it would have three corners on a
+    /// line.
     void add_loop(std::span<const std::uint64_t> loop, ListedCell& out) const {
         const std::size_t at = out.faces.size();
         out.faces.push_back(0);
@@ -138,7 +139,11 @@ template <class Index>
 class CellWriter {
 public:
     CellWriter(const core::CellReader& cells, const core::FaceReader& faces, const std::vector<ListedCell>& listed)
-        : cells_(cells), faces_(faces), listed_(listed), offsets_(cells.count() + 1), face_offsets_(cells.count() + 1) {}
+        : cells_(cells),
+          faces_(faces),
+          listed_(listed),
+          offsets_(cells.count() + 1),
+          face_offsets_(cells.count() + 1) {}
 
     Cells write(const Progress& progress) {
         core::Buffer<std::uint8_t> types(cells_.count());

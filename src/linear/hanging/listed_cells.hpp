@@ -19,8 +19,8 @@ struct ListedCell {
     std::vector<std::uint64_t> faces;
 };
 
-/// Cells with a covered face or an edge with points on it: covered faces are those that cover them, with the points on their
-/// edges. A cell whose faces would not close is none of these.
+/// Cells with a covered face or an edge with points on it: covered faces are those that cover them, with the points on
+/// their edges. A cell whose faces would not close is none of these.
 ///
 /// Guarantees   ascending; the same for any thread count
 /// Cost         a pass over the cells, a byte a point

@@ -109,8 +109,8 @@ private:
         });
     }
 
-    /// A face that shares no point with those of other cells meets none. So grids where each cell has points of its own cost
-    /// no more than to tell.
+    /// A face that shares no point with those of other cells meets none. So grids where each cell has points of its own
+    /// cost no more than to tell.
     OpenFaces shared_ones() {
         OpenFaces all;
         CellLoops loops(cells_, faces_);

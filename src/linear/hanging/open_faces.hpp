@@ -42,12 +42,13 @@ private:
     std::vector<std::size_t> first_{0};
 };
 
-/// Those faces whose points an odd number of faces has, once each, and of these those that share a point with a face of another
-/// cell that is one of them. Hashes of faces are added by exclusive or at their lowest point: where the sum is 0, all faces
-/// have a neighbour.
+/// Those faces whose points an odd number of faces has, once each, and of these those that share a point with a face of
+/// another cell that is one of them. Hashes of faces are added by exclusive or at their lowest point: where the sum is
+/// 0, all faces have a neighbour.
 ///
 /// Guarantees   the same for any thread count
-/// Cost         two passes over the cells, 8 bytes a point; 24 bytes, twice, for each face at a point whose sum is not 0
+/// Cost         two passes over the cells, 8 bytes a point; 24 bytes, twice, for each face at a point whose sum is not
+///              0
 /// Errors       out_of_memory; cancelled
 Result<OpenFaces> find_open_faces(const core::CellReader& cells, const core::FaceReader& faces,
                                   const Progress& progress);

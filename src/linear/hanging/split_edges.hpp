@@ -21,13 +21,15 @@ public:
     /// `points`   of the grid; borrowed
     explicit SplitEdges(const core::PointReader& points) : points_(points) {}
 
-    /// Adds points; those that are there stay once. Along each edge they are sorted by their places on the line between its ends.
+    /// Adds points; those that are there stay once. Along each edge they are sorted by their places on the line between
+    /// its ends.
     void add(std::vector<PointOnEdge> more);
 
     bool empty() const { return all_.empty(); }
     const std::vector<PointOnEdge>& all() const { return all_; }
 
-    /// Appends the points between two ends, in their order from the first to the second, with those between these, and so on.
+    /// Appends the points between two ends, in their order from the first to the second, with those between these, and
+    /// so on.
     void append_between(std::uint64_t from, std::uint64_t to, std::vector<std::uint64_t>& out) const;
     /// A loop with all points between its own.
     void expand(std::span<const std::uint64_t> loop, std::vector<std::uint64_t>& out) const;
