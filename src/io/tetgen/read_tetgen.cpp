@@ -1,8 +1,11 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "io/tetgen/read_tetgen.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -142,18 +145,26 @@ private:
     std::vector<Column> columns_;
 };
 
+/// As int32 where all are whole numbers that fit.
+Array as_integers(std::vector<double> numbers) {
+    constexpr double most = std::numeric_limits<std::int32_t>::max();
+    const bool whole = std::ranges::all_of(numbers, [](double x) { return std::abs(x) <= most && x == std::floor(x); });
+    if (!whole) return Array::own(std::move(numbers));
+    return Array::own(std::vector<std::int32_t>(numbers.begin(), numbers.end()));
+}
+
 Result<void> read_nodes(RecordFile& file, const NodeHeader& header, const ReadOptions& options, Pace& pace, Grid& grid,
                         NumberMap& numbers) {
     Attributes attributes("attribute", header.attributes, Association::point, options, header.count);
     const bool wants_markers = header.markers > 0 && wanted(options, Association::point, marker_name);
-    std::vector<std::int32_t> markers;
+    std::vector<double> markers; // other programs write any number
     std::vector<double> points;
     points.reserve(3 * static_cast<std::size_t>(header.count));
     for (std::int64_t i = 0; i < header.count; ++i) {
         TextScanner& line = file.next_record();
         std::int64_t number = 0;
         double x = 0, y = 0, z = 0;
-        std::int32_t marker = 0;
+        double marker = 0;
         if (!line.number_of_line(number) || !line.number_of_line(x) || !line.number_of_line(y) ||
             !line.number_of_line(z) || !attributes.read(line) || (header.markers > 0 && !line.number_of_line(marker))) {
             return file.broken_record(header.count, i);
@@ -167,7 +178,7 @@ Result<void> read_nodes(RecordFile& file, const NodeHeader& header, const ReadOp
     if (const auto closed = numbers.close("point"); !closed) return file.broken("is broken: " + closed.error().message);
     grid.points = Array::own(std::move(points), 3);
     attributes.give(grid.point_fields);
-    if (wants_markers) grid.point_fields.push_back({std::string(marker_name), Array::own(std::move(markers))});
+    if (wants_markers) grid.point_fields.push_back({std::string(marker_name), as_integers(std::move(markers))});
     return {};
 }
 
