@@ -4,7 +4,7 @@ if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYP
     set(CMAKE_BUILD_TYPE Release CACHE STRING "Debug, Release, RelWithDebInfo" FORCE)
 endif()
 
-option(ISOTET_IO "Read more formats (Exodus, CGNS, VTKHDF, XDMF, ...): build the program isotet-reader, with VTK and HDF5" ON)
+option(ISOTET_IO "Read more formats (Exodus, CGNS, VTKHDF, XDMF, ...): build the program isotet-reader, with HDF5 and CGNS" ON)
 option(ISOTET_VULKAN "Extract on graphics cards through Vulkan, opened at run time" ON)
 option(ISOTET_PROGRAM "Build the program isotet" ${PROJECT_IS_TOP_LEVEL})
 option(ISOTET_PYTHON "Build the Python package" OFF)

@@ -38,7 +38,7 @@ for argument; do
     esac
 done
 
-install_packages "${packages_to_build[@]}" python3 || exit
+install_packages "${packages_to_build[@]}" libvtk9-dev python3 || exit
 build bench "$build" -DCMAKE_BUILD_TYPE=Release -DISOTET_BENCH=ON -DISOTET_TESTS=OFF -DISOTET_PROGRAM=OFF || exit
 if ((get_wheel)) && ! [[ -x $venv/bin/python ]]; then
     install_packages python3-venv || exit

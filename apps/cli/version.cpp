@@ -29,13 +29,12 @@ std::string version_text() {
     table.row({"commit", commit.empty() ? "unknown" : commit});
     table.row({"compiler", fmt::format("{}, {} build{}", compiler, ISOTET_BUILD_TYPE,
                                        *ISOTET_SANITIZERS ? ", sanitizers " ISOTET_SANITIZERS : "")});
-    table.row({"files through VTK", *ISOTET_VTK_VERSION ? "on, VTK " ISOTET_VTK_VERSION : "off (-DISOTET_IO=OFF)"});
-    if (*ISOTET_VTK_VERSION) {
-        const ReaderConfinement confined = reader_confinement();
-        table.row({"isotet-reader", fmt::format("files {} (Landlock), calls {} (seccomp)",
-                                                confined.files ? "confined" : "not confined: the kernel lacks it",
-                                                confined.calls ? "confined" : "not confined: the kernel lacks it")});
-    }
+    const ReaderConfinement confined = reader_confinement();
+    constexpr const char* lacking = "not confined: the kernel lacks it";
+    table.row({"isotet-reader", ISOTET_READER ? fmt::format("files {} (Landlock), calls {} (seccomp)",
+                                                            confined.files ? "confined" : lacking,
+                                                            confined.calls ? "confined" : lacking)
+                                              : "off (-DISOTET_IO=OFF)"});
     table.row({"Vulkan", ISOTET_VULKAN ? "on, opened at run time" : "off (-DISOTET_VULKAN=OFF)"});
     table.row({"libraries", fmt::format("oneTBB {}, fmt {}.{}.{}, CLI11 {}, nlohmann_json {}", ISOTET_TBB_VERSION,
                                         FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100, CLI11_VERSION,

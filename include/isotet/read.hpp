@@ -37,7 +37,7 @@ struct FieldInfo {
 };
 
 /// A part of a file that can be read without the others: an element block of Exodus, a zone of CGNS, a part of EnSight,
-/// a block of a VTM or of another of VTK's readers, a region of Gmsh, Medit, TetGen
+/// a block of a VTM, a region of Gmsh, Medit, TetGen
 /// or OpenFOAM.
 struct BlockInfo {
     std::int64_t number = 0; ///< of the file where it numbers blocks, else from 1 in its order
@@ -118,14 +118,14 @@ ISOTET_API Result<FileInfo> inspect(const std::string& path, const ReadOptions& 
 /// Reads a grid. Fields have the names of the file; coordinates are those of the file.
 ///
 /// Every grid that comes back has passed the checks of array lengths and index ranges; a file that is cut short or
-/// broken is an error that says what was seen. VTK's readers run in a child process: if one crashes, that is an error,
-/// too.
+/// broken is an error that says what was seen. What HDF5 or CGNS's library parses is read in a child process: if it crashes,
+/// that is an error, too.
 ///
 /// Errors   file: not there, not readable, format not recognized; invalid_data: broken content; invalid_argument: an
 ///          unknown field, step, block or format; out_of_memory; system; cancelled
 ISOTET_API Result<ReadResult> read(const std::string& path, const ReadOptions& options = {}, const Run& run = {});
 
-/// How far the system confines isotet-reader, which reads formats through VTK (docs/security.md).
+/// How far the system confines isotet-reader, which reads what C libraries parse (docs/security.md).
 struct ReaderConfinement {
     bool files =
         false; ///< Landlock: it opens nothing but files below the folder of the grid, and those for reading only

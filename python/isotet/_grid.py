@@ -920,7 +920,7 @@ def read(path: str | os.PathLike[str], *, fields: Iterable[str] | None = None, c
     displace
         A vector field of the points by which they are moved; "disp" for disp_x, disp_y and disp_z.
     reader_program
-        The program `isotet-reader`, which reads formats that need VTK's readers (Exodus, CGNS, EnSight, VTKHDF). Without it:
+        The program `isotet-reader`, which reads what C libraries parse (Exodus, CGNS, MED, EnSight, XDMF, VTKHDF). Without it:
         the one in PATH.
 
     Grid.info has the fields, blocks and times of the file, Grid.notes what was noticed.

@@ -3,7 +3,7 @@
 
 readonly packages_to_build=(g++ cmake ninja-build libtbb-dev libfmt-dev libmeshoptimizer-dev libfreetype-dev libpng-dev libwebp-dev libcli11-dev nlohmann-json3-dev libboost-dev libjpeg62-turbo-dev
     libpugixml-dev libdeflate-dev liblz4-dev liblzma-dev
-    libvtk9-dev libhdf5-dev glslc libvulkan-dev)
+    libhdf5-dev libcgns-dev glslc libvulkan-dev)
 # What the software Vulkan device of software_vulkan.sh is linked with.
 readonly packages_for_software_vulkan=(
     libdrm2 libexpat1 libllvm15 libwayland-client0 libx11-xcb1 libxcb-dri3-0 libxcb-present0 libxcb-randr0 libxcb-shm0
@@ -11,7 +11,7 @@ readonly packages_for_software_vulkan=(
 # What the tests of VTK's filter run in.
 readonly packages_to_test_vtk=(python3-vtk9 python3-mpi4py python3-numpy openmpi-bin libopenmpi-dev)
 # chromium: the browser of the tests of `isotet view`, and SwiftShader, a second software Vulkan device.
-readonly packages_to_test=(libgtest-dev pkg-config vulkan-validationlayers spirv-tools chromium
+readonly packages_to_test=(libvtk9-dev libgtest-dev pkg-config vulkan-validationlayers spirv-tools chromium
     "${packages_for_software_vulkan[@]}" "${packages_to_test_vtk[@]}")
 readonly packages_for_python=(python3-dev python3-venv)
 readonly packages_to_test_fully=("${packages_for_python[@]}" clang-19 clang-tidy-19 libclang-rt-19-dev xz-utils xvfb

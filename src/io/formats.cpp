@@ -67,7 +67,7 @@ std::vector<std::string> names_of_readers() {
 }
 
 #if !ISOTET_IO
-/// Formats that a build with VTK reads: how their files begin, and what they are called.
+/// Formats that a build with isotet-reader reads: how their files begin, and what they are called.
 struct NeedsReader {
     std::string_view title, begins, extensions;
 };
@@ -77,7 +77,7 @@ constexpr NeedsReader need_reader[] = {
     {"an HDF5 file (VTKHDF, Exodus II, CGNS, MED)", "\x89HDF", ".hdf .vtkhdf .cgns .med .rmed .mmed .h5"},
 };
 
-/// What a file is that a build with VTK would read; empty if it is none.
+/// What a file is that such a build would read; empty if it is none.
 std::string_view title_left_out(std::string_view head, std::string_view extension) {
     for (const NeedsReader& format : need_reader) {
         if (head.starts_with(format.begins)) return format.title;
@@ -214,7 +214,7 @@ Error nobody_knows(const std::string& path, const Head& head, const std::string&
 #if !ISOTET_IO
     if (const auto title = title_left_out(head.bytes, extension); !title.empty()) {
         return {ErrorCode::file,
-                fmt::format("{} is {}, but this isotet was built without VTK (ISOTET_IO=OFF) and reads {} only", path,
+                fmt::format("{} is {}, but this isotet was built without isotet-reader (ISOTET_IO=OFF) and reads {} only", path,
                             title, fmt::join(names_of_readers(), ", "))};
     }
 #endif

@@ -6,6 +6,9 @@
 #include <unistd.h>
 
 #include <cstring>
+#include <optional>
+#include <memory>
+#include <algorithm>
 
 #include <fmt/core.h>
 #include <vtkCellArray.h>
@@ -15,6 +18,8 @@
 #include <vtkDataSetReader.h>
 #include <vtkIdList.h>
 #include <vtkNew.h>
+#include <vtkObjectFactory.h>
+#include <vtkOutputWindow.h>
 #include <vtkPointData.h>
 #include <vtkSmartPointer.h>
 #include <vtkUnsignedCharArray.h>
@@ -24,8 +29,7 @@
 #include <vtkXMLStructuredGridReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
-#include "io/confined/vtk_grid.hpp"
-#include "io/confined/vtk_log.hpp"
+#include "io/vtk_xml/columns.hpp"
 
 namespace isotet::test {
 namespace {
@@ -44,6 +48,45 @@ public:
 
 private:
     std::uint64_t value_ = 0xCBF29CE484222325ULL;
+};
+
+/// The same memory as an array of ours; of bits and other layouts a copy.
+Array array_of(vtkDataArray* values) {
+    vtkSmartPointer<vtkDataArray> array = values;
+    if (!array->HasStandardMemoryLayout() || array->GetDataType() == VTK_BIT) {
+        const int type = array->GetDataType() == VTK_BIT ? VTK_UNSIGNED_CHAR : array->GetDataType();
+        array.TakeReference(vtkDataArray::CreateDataArray(type));
+        array->DeepCopy(values);
+    }
+    const auto type = [&]() -> std::optional<ScalarType> {
+        const bool is_signed = array->GetDataTypeMin() < 0;
+        if (array->GetDataType() == VTK_FLOAT) return ScalarType::float32;
+        if (array->GetDataType() == VTK_DOUBLE) return ScalarType::float64;
+        switch (array->GetDataTypeSize()) {
+        case 1: return is_signed ? ScalarType::int8 : ScalarType::uint8;
+        case 2: return is_signed ? ScalarType::int16 : ScalarType::uint16;
+        case 4: return is_signed ? ScalarType::int32 : ScalarType::uint32;
+        case 8: return is_signed ? ScalarType::int64 : ScalarType::uint64;
+        default: return std::nullopt;
+        }
+    }();
+    if (!type) return {};
+    return Array(*type, array->GetVoidPointer(0), static_cast<std::size_t>(array->GetNumberOfTuples()),
+                 static_cast<std::size_t>(std::max(1, array->GetNumberOfComponents())),
+                 std::make_shared<vtkSmartPointer<vtkDataArray>>(array));
+}
+
+/// Notes that VTK told an error, and prints nothing.
+class QuietWindow : public vtkOutputWindow {
+public:
+    vtkTypeMacro(QuietWindow, vtkOutputWindow) static QuietWindow* New() { VTK_STANDARD_NEW_BODY(QuietWindow); }
+    void DisplayText(const char*) override {}
+    void DisplayErrorText(const char*) override { has_error = true; }
+    void DisplayGenericWarningText(const char* text) override {
+        has_error = has_error || std::string_view(text).find("Error") != std::string_view::npos;
+    }
+    void DisplayWarningText(const char*) override {}
+    bool has_error = false;
 };
 
 std::string line_of(std::string_view kind, std::string_view name, const Array& array) {
@@ -143,8 +186,8 @@ std::vector<std::string> digest(vtkDataSet* data) {
     const auto add_fields = [&](vtkDataSetAttributes* attributes, std::string_view kind) {
         for (int i = 0; i < attributes->GetNumberOfArrays(); ++i)
             if (vtkDataArray* values = attributes->GetArray(i))
-                if (values->GetName() && !io::confined::is_ghost_array(values->GetName()))
-                    lines.push_back(line_of(kind, values->GetName(), io::confined::shared_array(values)));
+                if (values->GetName() && !io::vtk_xml::is_ghost_array(values->GetName()))
+                    lines.push_back(line_of(kind, values->GetName(), array_of(values)));
     };
     add_fields(data->GetPointData(), "point field");
     if (unstructured || count > 0) add_fields(data->GetCellData(), "cell field");
@@ -152,16 +195,15 @@ std::vector<std::string> digest(vtkDataSet* data) {
 }
 
 std::vector<std::string> read_with_vtk(const std::string& path) {
-    static const bool collects = (io::confined::collect_vtk_messages(), true);
-    (void)collects;
-    (void)io::confined::take_vtk_error();
+    const vtkNew<QuietWindow> window;
+    vtkOutputWindow::SetInstance(window);
     vtkSmartPointer<vtkDataSet> data;
     if (path.ends_with(".vtu")) data = output_of<vtkXMLUnstructuredGridReader>(path);
     else if (path.ends_with(".vti")) data = output_of<vtkXMLImageDataReader>(path);
     else if (path.ends_with(".vtr")) data = output_of<vtkXMLRectilinearGridReader>(path);
     else if (path.ends_with(".vts")) data = output_of<vtkXMLStructuredGridReader>(path);
     else data = output_of<vtkDataSetReader>(path);
-    if (io::confined::take_vtk_error() || !data) return {};
+    if (window->has_error || !data) return {};
     return digest(data);
 }
 

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Is all there that a file's header promises? VTK's readers fill in zeros, or stop early, where it is not.
+// Is all there that a file's header promises? Libraries fill in zeros, or stop early, where it is not.
 #pragma once
 
 #include <string>

@@ -13,7 +13,7 @@ namespace isotet::io::confined {
 void limit_memory(std::uint64_t limit, void (*ran_out)());
 
 /// Limits the processor time from here on by the size of what may be read, some fifty times what the slowest encoding
-/// takes: on some broken files VTK's readers and the CGNS library never come to an end. At the end of it the process
+/// takes: on some broken files CGNS's library never comes to an end. At the end of it the process
 /// says so, calls `ran_out` (in a signal handler) and ends; at a lower limit that it was started with, it is killed.
 void limit_processor_time(const Request& request, void (*ran_out)());
 

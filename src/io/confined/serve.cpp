@@ -26,7 +26,6 @@
 #include "io/confined/opened_files.hpp"
 #include "io/confined/sandbox.hpp"
 #include "io/confined/progress.hpp"
-#include "io/confined/vtk_log.hpp"
 #include "io/files/escape.hpp"
 #include "io/pieces/join.hpp"
 #include "io/process/channel.hpp"
@@ -124,7 +123,6 @@ void serve_one(const Parcel& parcel) {
         limit_memory(request->options.memory_limit, [] { tell(status_memory_ran_out); });
         limit_processor_time(*request, [] { tell(status_time_ran_out); });
         forbid_file_growth();
-        take_vtk_error(); // of the request before
         reply = answer(*request);
     }
     allow_file_growth();
@@ -149,7 +147,6 @@ int serve() {
     ::setrlimit(RLIMIT_CORE, &none);
     ::mallopt(M_MMAP_THRESHOLD, 1 << 20); // large blocks are given back to the system when freed
     std::signal(SIGXFSZ, SIG_IGN);        // a write that fails says why
-    collect_vtk_messages();
     pollfd channel{channel_descriptor, POLLIN, 0};
     while (::poll(&channel, 1, idle_milliseconds) > 0) {
         const auto parcel = receive_parcel(channel_descriptor);

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Reads the grid of a file through VTK's readers, whose program it does not name.
+// Reads the grid of a file through isotet-reader, a program that it does not name.
 #include <cstdio>
 
 #include <isotet/read.hpp>

@@ -23,7 +23,7 @@ struct CgnsNode {
 std::optional<CgnsNode> child_named(const std::vector<CgnsNode>& nodes, std::string_view name);
 std::optional<CgnsNode> child_labelled(const std::vector<CgnsNode>& nodes, std::string_view label);
 
-/// An open file. Links are followed, as VTK's reader does.
+/// An open file. Links are followed.
 class CgnsTree {
 public:
     /// Errors   invalid_data: not such a file

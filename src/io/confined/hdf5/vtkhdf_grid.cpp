@@ -10,7 +10,6 @@
 #include "base/parallel.hpp"
 #include "grid/cell_faces.hpp"
 #include "io/confined/hdf5/hdf5_array.hpp"
-#include "io/confined/vtk_grid.hpp"
 #include "io/files/escape.hpp"
 #include "io/pieces/active_filter.hpp"
 #include "io/pieces/shared_faces.hpp"
@@ -43,7 +42,7 @@ Result<void> HdfGrid::announce_all(FileInfo& info) const {
     for (const auto association : {Association::point, Association::cell})
         for (const std::string& name : data_sets_of(path_, group_ + data_group_of(association))) {
             const auto shape = rows_.shape(group_ + data_group_of(association) + "/" + name);
-            if (is_ghost_array(name)) continue;
+            if (vtk_xml::is_ghost_array(name)) continue;
             if (shape) announce(info, {name, association, shape->type, shape->columns});
             else leave_out(info, {kind_of_field(association), name, "it is no table of numbers of 1, 2, 4 or 8 bytes"});
         }
@@ -293,7 +292,7 @@ Result<void> HdfGrid::load_fields(const HdfPartition& part, const HdfStepPlace& 
     const bool of_points = association == Association::point;
     const std::string group = data_group_of(association);
     for (const std::string& name : data_sets_of(path_, group_ + group)) {
-        const bool ghost = is_ghost_array(name);
+        const bool ghost = vtk_xml::is_ghost_array(name);
         const bool is_field = !ghost && wanted(options, association, name);
         const bool marks = !of_points && (ghost || name == vtk_xml::ghost_rank_name);
         if (!is_field && !marks) continue;
