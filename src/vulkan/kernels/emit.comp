@@ -39,18 +39,22 @@ uint seams_before_window = 0u;
 
 Tables tables;
 Start start;
-Output surface;
 Address positions, normals, weights, triangles, lowest, vertex_ends, sources; ///< of the surface, from this cluster's first on
 
-void open_output(uint number) {
-    start = Starts(tables.starts).at[number];
-    positions = advance(surface.positions, start.vertex, 12u);
-    triangles = advance(surface.triangles, start.triangle, 12u);
-    normals = advance(surface.normals, start.vertex, 12u);
-    lowest = advance(surface.lowest, start.vertex, 4u);
-    vertex_ends = advance(surface.ends, start.vertex, 8u);
-    weights = advance(surface.weights, start.vertex, 4u);
-    sources = advance(surface.sources, start.triangle, 4u);
+// Addresses of the surface are read where they are used, not before the cells are cut: they need 14 registers.
+
+void open_vertices() {
+    OutputAt output_of = OutputAt(push.surface);
+    positions = advance(output_of.surface.positions, start.vertex, 12u);
+    normals = advance(output_of.surface.normals, start.vertex, 12u);
+    lowest = advance(output_of.surface.lowest, start.vertex, 4u);
+    vertex_ends = advance(output_of.surface.ends, start.vertex, 8u);
+    weights = advance(output_of.surface.weights, start.vertex, 4u);
+}
+
+void open_triangles() {
+    triangles = advance(OutputAt(push.surface).surface.triangles, start.triangle, 12u);
+    sources = advance(OutputAt(push.surface).surface.sources, start.triangle, 4u);
 }
 
 /// Bits before `bit` in a mask that begins at word `first`.
@@ -203,6 +207,7 @@ void rank_seams() {
 /// Writes own vertices: of the window's inner edges, whose numbers are found here, by rank; with the first window those of own
 /// seams that the mask has, though perhaps only others cross them, and of tied own points that the mask has.
 void write_vertices(uint first_inner, bool special) {
+    open_vertices();
     const uint edges = many_edges ? min(edge_count - window_begin, few_edges) : edge_count;
     const uint items = window_begin != 0u ? edges : edges + own_seams + (special ? own_points : 0u);
     for (uint item = gl_LocalInvocationIndex; item < items; item += workgroup_size) {
@@ -251,6 +256,7 @@ void write_triangle(uint at, uvec3 corners) {
 }
 
 void write_triangles(bool special) {
+    open_triangles();
     const uint self = gl_LocalInvocationIndex;
     const uint hits = bitCount(hit_groups);
     for (uint place = self / group_size; place < hits; place += workgroup_size / group_size) {
@@ -292,14 +298,13 @@ void write_window(uint first_inner, bool special) {
 
 void main() {
     tables = TablesAt(push.tables).tables;
-    surface = OutputAt(push.surface).surface;
     const uint self = gl_LocalInvocationIndex;
     const uint place = group_index();
-    if (surface.overflow != 0u || place >= list_head(tables, many_edges ? many_edges_list : few_edges_list).head.count) return;
+    const uint listed = list_head(tables, many_edges ? many_edges_list : few_edges_list).head.count;
+    if (OutputAt(push.surface).surface.overflow != 0u || place >= listed) return;
     const uint number = Words(tables.emitted).at[many_edges ? tables.cluster_count - 1u - place : place];
     open_cluster(tables, number);
     if (push.batch != 0u && page.batch != push.batch) return;
-    open_output(number);
 
     clear_cut();
     for (uint i = self; i < 3u * max_cluster_groups; i += workgroup_size) triangle_bits[i] = 0u;
@@ -311,6 +316,7 @@ void main() {
     cut_cells(special);
     barrier();
     rank_edges();
+    start = Starts(tables.starts).at[number];
     const uint first_inner = own_seam_number(own_seams);
     for (;;) {
         write_window(first_inner, special);
