@@ -266,10 +266,11 @@ void write_triangles(bool special) {
         uint at = triangles_before(place) + triangles_in(place, (1u << lane) - 1u);
         for (uint i = 0u; i < polygon_count(tables, cell); ++i) {
             const uint polygon = polygon_of(tables, cell, i);
-            uint numbers[4];
-            for (uint k = 0u; k < 4u; ++k) numbers[k] = number_of(cell, polygon, k);
+            // No array: compilers keep one with a variable index in memory.
+            const uvec4 numbers = uvec4(number_of(cell, polygon, 0u), number_of(cell, polygon, 1u),
+                                        number_of(cell, polygon, 2u), number_of(cell, polygon, 3u));
             for (uint t = 0u; t < triangles_of(polygon); ++t) {
-                const uvec3 corners = uvec3(numbers[0], numbers[1u + t], numbers[2u + t]);
+                const uvec3 corners = uvec3(numbers.x, t == 0u ? numbers.yz : numbers.zw);
                 // Only with tied corners.
                 if (many_edges ? !is_kept(cell, polygon, t)
                                : corners.x == corners.y || corners.y == corners.z || corners.z == corners.x)
