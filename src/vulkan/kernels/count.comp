@@ -71,10 +71,11 @@ void cut_cells(bool special) {
     uint triangles = 0u;
     for (uint place = self / group_size; place < hits; place += workgroup_size / group_size) {
         const Cell cell = cut_cell(tables, hit_group[place], self % group_size, special);
-        if (cell.triangles == 0u) continue;
-        triangles += cell.triangles;
-        add_edges(tables, cell);
-        if (cell.tied != 0u) use_tied(cell);
+        if (cell.triangles != 0u) {
+            triangles += cell.triangles;
+            add_edges(tables, cell);
+            if (cell.tied != 0u) use_tied(cell);
+        }
     }
     if (triangles != 0u) atomicAdd(triangle_sum, triangles);
 }
@@ -89,9 +90,10 @@ void count_edges() {
 void find_seams() {
     uint found = 0u;
     for (uint k = gl_LocalInvocationIndex; k < own_seams; k += workgroup_size) {
-        if (!is_crossed(own_seam(k))) continue;
-        atomicOr(own_seam_bits[k / 32u], 1u << k % 32u);
-        ++found;
+        if (is_crossed(own_seam(k))) {
+            atomicOr(own_seam_bits[k / 32u], 1u << k % 32u);
+            ++found;
+        }
     }
     for (uint k = gl_LocalInvocationIndex; k < ghost_seams; k += workgroup_size) {
         const uvec3 seam = ghost_seam(k);

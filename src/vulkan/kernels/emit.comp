@@ -104,10 +104,11 @@ void cut_cells(bool special) {
     for (uint place = self / group_size; place < hits; place += workgroup_size / group_size) {
         const uint lane = self % group_size;
         const Cell cell = cut_cell(tables, hit_group[place], lane, special);
-        if (cell.triangles == 0u) continue;
-        add_edges(tables, cell);
-        for (uint bit = 0u; bit < 3u; ++bit)
-            if ((cell.triangles >> bit & 1u) != 0u) atomicOr(triangle_bits[3u * place + bit], 1u << lane);
+        if (cell.triangles != 0u) {
+            add_edges(tables, cell);
+            for (uint bit = 0u; bit < 3u; ++bit)
+                if ((cell.triangles >> bit & 1u) != 0u) atomicOr(triangle_bits[3u * place + bit], 1u << lane);
+        }
     }
 }
 
@@ -211,31 +212,40 @@ void write_vertices(uint first_inner, bool special) {
     const uint edges = many_edges ? min(edge_count - window_begin, few_edges) : edge_count;
     const uint items = window_begin != 0u ? edges : edges + own_seams + (special ? own_points : 0u);
     for (uint item = gl_LocalInvocationIndex; item < items; item += workgroup_size) {
-        uint number;
-        uvec2 ends; // local points
+        bool is_own = false;
+        uint number = 0u;
+        uvec2 ends = uvec2(0u); // local points
         if (item < edges) {
             const uint bits = seam_bits[item / 32u], bit = 1u << item % 32u;
-            if ((bits & bit) != 0u) continue;
-            number = first_inner + window_begin + item - (seam_ranks[item / 32u] + bitCount(bits & bit - 1u));
-            ends = uvec2(edge_numbers[item] & 0xffu, edge_numbers[item] >> 8);
-            edge_numbers[item] = number;
+            is_own = (bits & bit) == 0u;
+            if (is_own) {
+                number = first_inner + window_begin + item - (seam_ranks[item / 32u] + bitCount(bits & bit - 1u));
+                ends = uvec2(edge_numbers[item] & 0xffu, edge_numbers[item] >> 8);
+                edge_numbers[item] = number;
+            }
         } else if (item < edges + own_seams) {
             const uint k = item - edges;
-            if (!is_masked(32u * tied_words + k)) continue;
-            number = own_seam_number(k);
-            ends = own_seam(k);
+            is_own = is_masked(32u * tied_words + k);
+            if (is_own) {
+                number = own_seam_number(k);
+                ends = own_seam(k);
+            }
         } else {
             const uint place = item - edges - own_seams;
-            if (!is_masked(place)) continue;
-            ends = uvec2(ghost_points + place);
-            number = matrix[tied_at(ends.x)];
+            is_own = is_masked(place);
+            if (is_own) {
+                ends = uvec2(ghost_points + place);
+                number = matrix[tied_at(ends.x)];
+            }
         }
-        float t = 0.0;
-        if (ends.x != ends.y) {
-            if (is_in(above, ends.x)) ends = ends.yx;
-            t = edge_weight(push.isovalue, push.rest, value_of(points[ends.x]), value_of(points[ends.y]));
+        if (is_own) {
+            float t = 0.0;
+            if (ends.x != ends.y) {
+                if (is_in(above, ends.x)) ends = ends.yx;
+                t = edge_weight(push.isovalue, push.rest, value_of(points[ends.x]), value_of(points[ends.y]));
+            }
+            write_vertex(number - start.vertex, ends.x, ends.y, t);
         }
-        write_vertex(number - start.vertex, ends.x, ends.y, t);
     }
 }
 
@@ -255,31 +265,34 @@ void write_triangle(uint at, uvec3 corners) {
         if (!many_edges || corners[i] != outside) Words(triangles).at[3u * at + i] = corners[i];
 }
 
+void write_triangles_of(Cell cell, uint place, uint lane) {
+    uint at = triangles_before(place) + triangles_in(place, (1u << lane) - 1u);
+    for (uint i = 0u; i < polygon_count(tables, cell); ++i) {
+        const uint polygon = polygon_of(tables, cell, i);
+        // No array: compilers keep one with a variable index in memory.
+        const uvec4 numbers = uvec4(number_of(cell, polygon, 0u), number_of(cell, polygon, 1u),
+                                    number_of(cell, polygon, 2u), number_of(cell, polygon, 3u));
+        for (uint t = 0u; t < triangles_of(polygon); ++t) {
+            const uvec3 corners = uvec3(numbers.x, t == 0u ? numbers.yz : numbers.zw);
+            // Only tied corners take a triangle away.
+            if (many_edges ? is_kept(cell, polygon, t)
+                           : corners.x != corners.y && corners.y != corners.z && corners.z != corners.x) {
+                write_triangle(at, corners);
+                if (with_sources) Words(sources).at[at] = page.first_word + cluster.first_word + cell.word;
+                ++at;
+            }
+        }
+    }
+}
+
 void write_triangles(bool special) {
     open_triangles();
     const uint self = gl_LocalInvocationIndex;
     const uint hits = bitCount(hit_groups);
     for (uint place = self / group_size; place < hits; place += workgroup_size / group_size) {
         const uint lane = self % group_size;
-        if (triangles_in(place, 1u << lane) == 0u) continue;
-        const Cell cell = cut_cell(tables, hit_group[place], lane, special);
-        uint at = triangles_before(place) + triangles_in(place, (1u << lane) - 1u);
-        for (uint i = 0u; i < polygon_count(tables, cell); ++i) {
-            const uint polygon = polygon_of(tables, cell, i);
-            // No array: compilers keep one with a variable index in memory.
-            const uvec4 numbers = uvec4(number_of(cell, polygon, 0u), number_of(cell, polygon, 1u),
-                                        number_of(cell, polygon, 2u), number_of(cell, polygon, 3u));
-            for (uint t = 0u; t < triangles_of(polygon); ++t) {
-                const uvec3 corners = uvec3(numbers.x, t == 0u ? numbers.yz : numbers.zw);
-                // Only with tied corners.
-                if (many_edges ? !is_kept(cell, polygon, t)
-                               : corners.x == corners.y || corners.y == corners.z || corners.z == corners.x)
-                    continue;
-                write_triangle(at, corners);
-                if (with_sources) Words(sources).at[at] = page.first_word + cluster.first_word + cell.word;
-                ++at;
-            }
-        }
+        if (triangles_in(place, 1u << lane) != 0u)
+            write_triangles_of(cut_cell(tables, hit_group[place], lane, special), place, lane);
     }
 }
 

@@ -114,13 +114,11 @@ bool is_kept(Cell cell, uint polygon, uint t) {
 
 /// `special`   some local point is tied or without data
 Cell cut_cell(Tables tables, uint group, uint lane, bool special) {
-    Cell cell;
+    Cell cell = Cell(4u, 0u, uvec2(0u), 0u, 0u, 0u); // what is not set would be kept alive round the callers' loops
     cell.kind = !with_others || group < kind_ends.x ? 0u : group < kind_ends.y ? 1u : group < kind_ends.z ? 2u : 3u;
     const bool is_tet = cell.kind == 0u;
     const uint first_group = is_tet ? 0u : kind_ends[cell.kind - 1u], a_group = is_tet ? group_size : group_size / 2u;
     const uint corners = is_tet ? 4u : cell.kind == 3u ? 8u : cell.kind + 4u;
-    cell.tied = 0u;
-    cell.triangles = 0u;
     if (lane >= a_group || (group - first_group) * a_group + lane >= kind_counts[cell.kind]) {
         cell.kind = 4u;
         return cell;
