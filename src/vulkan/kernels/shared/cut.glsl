@@ -18,7 +18,7 @@ shared uint sides[12];
 shared uint matrix[matrix_words];
 
 shared uint hit_groups; ///< bits: whose range holds the isovalue
-shared uint hit_group[max_cluster_groups]; ///< the same as a list
+shared uint hit_group[max_cluster_groups]; ///< the same as a list, each as described()
 
 const uint tet_cases[16] = uint[](ISOTET_TET_CASES);
 
@@ -45,6 +45,15 @@ void classify(uint point, float value, float isovalue, float tied_value, bool me
     }
 }
 
+/// The first word of a group in the cluster + 2^16 * its number of cells + 2^24 * their kind. Worked out once a group: for
+/// each cell it would be reading of arrays with a variable index.
+uint described(uint group) {
+    const uint kind = !with_others || group < kind_ends.x ? 0u : group < kind_ends.y ? 1u : group < kind_ends.z ? 2u : 3u;
+    const uint first = kind == 0u ? 0u : kind_ends[kind - 1u], most = kind == 0u ? group_size : group_size / 2u;
+    const uint cells = min(kind_counts[kind] - (group - first) * most, most);
+    return kind_words[kind] + group_size * (group - first) | cells << 16 | kind << 24;
+}
+
 /// Notes the groups that may have something to give: none when no point is below. All invocations must call it.
 void find_hit_groups(float isovalue, Range range) {
     const uint self = gl_LocalInvocationIndex;
@@ -56,7 +65,7 @@ void find_hit_groups(float isovalue, Range range) {
     }
     if (hit) atomicOr(hit_groups, 1u << self);
     barrier();
-    if (hit) hit_group[bitCount(hit_groups & (1u << self) - 1u)] = self;
+    if (hit) hit_group[bitCount(hit_groups & (1u << self) - 1u)] = described(self);
     barrier();
 }
 
@@ -112,18 +121,15 @@ bool is_kept(Cell cell, uint polygon, uint t) {
     return a != b && b != c && c != a;
 }
 
+/// `group`     as described()
 /// `special`   some local point is tied or without data
 Cell cut_cell(Tables tables, uint group, uint lane, bool special) {
     Cell cell = Cell(4u, 0u, uvec2(0u), 0u, 0u, 0u); // what is not set would be kept alive round the callers' loops
-    cell.kind = !with_others || group < kind_ends.x ? 0u : group < kind_ends.y ? 1u : group < kind_ends.z ? 2u : 3u;
+    if (lane >= (group >> 16 & 0xffu)) return cell;
+    cell.kind = with_others ? group >> 24 : 0u;
     const bool is_tet = cell.kind == 0u;
-    const uint first_group = is_tet ? 0u : kind_ends[cell.kind - 1u], a_group = is_tet ? group_size : group_size / 2u;
     const uint corners = is_tet ? 4u : cell.kind == 3u ? 8u : cell.kind + 4u;
-    if (lane >= a_group || (group - first_group) * a_group + lane >= kind_counts[cell.kind]) {
-        cell.kind = 4u;
-        return cell;
-    }
-    cell.word = kind_words[cell.kind] + group_size * (group - first_group) + (is_tet ? lane : 2u * lane);
+    cell.word = (group & 0xffffu) + (is_tet ? lane : 2u * lane);
     cell.words = uvec2(cell_word(cell.word), is_tet ? 0u : cell_word(cell.word + 1u));
     cell.above = corners_in(above, cell, corners);
     if (special && corners_in(no_data, cell, corners) != 0u) return cell;
