@@ -17,6 +17,7 @@ layout(constant_id = 3) const bool with_sources = false;
 layout(constant_id = 4) const bool with_others = true; ///< the grid has cells that are no tets
 
 #include "shared/cut.glsl"
+#include "shared/sums.glsl"
 
 layout(push_constant, scalar) uniform Push {
     ExtractPush push;

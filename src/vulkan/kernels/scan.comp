@@ -5,7 +5,7 @@
 #version 460
 #include "shared/groups.glsl"
 #include "shared/lists.glsl"
-#include "shared/workgroup.glsl"
+#include "shared/sum_pairs.glsl"
 
 layout(push_constant, scalar) uniform Push {
     ExtractPush push;
