@@ -84,8 +84,8 @@ TEST(Capabilities, ThatAreMissingAreNamed) {
               "it lacks the feature scalarBlockLayout");
     EXPECT_EQ(why([](auto& d) { d.compute_family = Capabilities::none; }),
               "it cannot compute: no queue takes compute work");
-    EXPECT_EQ(why([](auto& d) { d.properties.limits.maxComputeSharedMemorySize = 16384; }),
-              "its shared memory in bytes is 16384, but 32768 is needed");
+    EXPECT_EQ(why([](auto& d) { d.properties.limits.maxComputeSharedMemorySize = 8192; }),
+              "its shared memory in bytes is 8192, but 16384 is needed");
     EXPECT_EQ(why([](auto& d) { d.properties.limits.maxComputeWorkGroupInvocations = 64; }),
               "its largest workgroup is 64, but 128 is needed");
     EXPECT_EQ(why([](auto& d) { d.properties.limits.maxComputeWorkGroupSize[0] = 32; }),

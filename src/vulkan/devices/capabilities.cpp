@@ -13,7 +13,7 @@ namespace {
 
 /// What kernels count on.
 constexpr std::uint32_t needed_workgroup_size = 128;
-constexpr std::uint32_t needed_shared_memory = 32768;
+constexpr std::uint32_t needed_shared_memory = 16384;
 constexpr std::uint32_t needed_push_bytes = 128;
 
 /// Older ones end loops early, silently.
