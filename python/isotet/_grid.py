@@ -807,6 +807,9 @@ class Clipper:
         grid, told, notes = self._clipper.clip(lower, upper, bool(polyhedra), call_options(threads, progress))
         return Grid._of(grid, told, 0, notes)
 
+    def __repr__(self) -> str:
+        return "<isotet.Clipper>"
+
 
 def solid(points, cells, values, *, above: float | None = None, below: float | None = None, offsets=None, types=None,
           fields: Mapping[str, Any] | None = None, cell_fields: Mapping[str, Any] | None = None, normals: str = "none",

@@ -546,7 +546,7 @@ def test_pyvista_has_no_reader_of_its_own_for_these():
 def test_clip_scalar_keeps_the_side_that_pyvista_keeps():
     grid = cubes(7)
     for invert in (True, False):
-        ours, theirs = (kind.clip_scalar("r", invert=invert, value=2.0) for kind in (grid.isotet, grid))
+        ours, theirs = (kind.clip_scalar(scalars="r", invert=invert, value=2.0) for kind in (grid.isotet, grid))
         assert abs(ours.volume - theirs.volume) < 0.03 * theirs.volume
         assert (ours.cell_data["number"] == ours.cell_data["source_cell"]).all()
         assert ((ours["r"] <= 2.0 + 1e-5) if invert else (ours["r"] >= 2.0 - 1e-5)).all()
