@@ -148,7 +148,13 @@ struct vtkIsotetContour::Internals
     if (component.From != array || component.Time != array->GetMTime() || component.Number != number)
     {
       const char* const of = array->GetName();
-      const std::string name = number == 0 ? "" : (of ? of : "") + ("_" + std::to_string(number));
+      std::string name;
+      if (number != 0)
+      {
+        name = of ? of : "";
+        name += '_';
+        name += std::to_string(number);
+      }
       component = { array, array->GetMTime(), number, isotet_vtk::component_of(array, number, name.c_str()) };
     }
     kept[index] = component;
