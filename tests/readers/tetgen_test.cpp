@@ -36,8 +36,8 @@ TEST(ReadTetgen, GivesPointsTetsAttributesAndMarkers) {
 }
 
 TEST(ReadTetgen, TakesMarkersThatAreNoWholeNumbers) {
-    const std::string nodes = "4 3 0 1\n0 0 0 0 0.5\n1 1 0 0 1\n2 0 1 0 2\n3 0 0 1 3\n";
-    const Array markers = find(read_text(nodes, "1 4 0\n0 0 1 2 3\n").grid.point_fields, "boundary_marker")->values;
+    const std::string marked = "4 3 0 1\n0 0 0 0 0.5\n1 1 0 0 1\n2 0 1 0 2\n3 0 0 1 3\n";
+    const Array markers = find(read_text(marked, "1 4 0\n0 0 1 2 3\n").grid.point_fields, "boundary_marker")->values;
     EXPECT_EQ(values_of(markers), (std::vector<double>{0.5, 1, 2, 3}));
 }
 
