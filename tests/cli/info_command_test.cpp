@@ -121,7 +121,7 @@ TEST_F(Program, FormatsListsWhatCanBeWritten) {
 TEST_F(Program, VersionTellsTheFactsOfTheBuild) {
     const RunResult run = isotet({"--version"});
     EXPECT_EQ(run.status, 0);
-    for (const char* fact : {"isotet", "commit", "compiler", "VTK", "oneTBB"}) {
+    for (const char* fact : {"isotet", "commit", "compiler", "isotet-reader", "oneTBB"}) {
         EXPECT_NE(run.out.find(fact), std::string::npos) << fact << " is not in " << run.out;
     }
 }

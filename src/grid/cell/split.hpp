@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include <isotet/export.hpp>
+
 #include "grid/cell/cell_kind.hpp"
 
 namespace isotet::core {
@@ -41,6 +43,6 @@ using LocalTets = TetsOfCell<std::uint8_t>; ///< by position among the corners o
 CellTets split_cell(const WholeCell& cell);
 
 /// The same tets, their corners as positions in `corners`, of which some may be equal.
-LocalTets split_locally(const WholeCell& cell);
+ISOTET_API LocalTets split_locally(const WholeCell& cell);
 
 } // namespace isotet::core
