@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <new>
 #include <utility>
 
@@ -139,7 +140,8 @@ Result<void> ChunkCache::pin(std::span<const PieceWanted> wanted, const Progress
             return one.pieces->states_[one.chunk].is == what;
         });
     };
-    loaded_.wait(lock, [&] { return !is(CachedPieces::Is::loading); });
+    // Not wait(): its symbol is one of g++ 12's library, which manylinux_2_34 does not have.
+    while (is(CachedPieces::Is::loading)) loaded_.wait_for(lock, std::chrono::seconds(1));
     if (!is(CachedPieces::Is::absent)) return {};
     // Another thread failed to read it, or was cancelled: this one tries itself.
     unpin_locked(wanted);
