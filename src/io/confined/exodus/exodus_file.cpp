@@ -26,11 +26,16 @@ std::vector<std::int64_t> ids_of(const NetcdfFile& file, const std::string& vari
     return from_1;
 }
 
-/// False for a block or set that the file marks as empty, for which it has no variables.
-bool has_entries(const NetcdfFile& file, const std::string& variable, std::size_t at) {
-    const auto status = file.numbers<std::int32_t>(variable);
-    return !status || at >= status->size() || (*status)[at] != 0;
-}
+/// Which blocks or sets have entries: a file marks those that have none with 0, and has no variables for them.
+class EntryMarks {
+public:
+    EntryMarks(const NetcdfFile& file, const std::string& variable)
+        : marks_(file.numbers<std::int32_t>(variable).value_or(std::vector<std::int32_t>())) {}
+    bool has_entries(std::size_t at) const { return at >= marks_.size() || marks_[at] != 0; }
+
+private:
+    std::vector<std::int32_t> marks_;
+};
 
 std::string upper_case(std::string text) {
     for (char& c : text)
@@ -78,8 +83,9 @@ Result<void> ExodusFile::read_blocks() {
     if (count > max_blocks) return failed(fmt::format("a list of {} element blocks", count));
     const auto ids = ids_of(*file_, "eb_prop1", count);
     const auto names = file_->texts("eb_names");
+    const EntryMarks marks(*file_, "eb_status");
     for (std::size_t i = 0; i < count; ++i) {
-        auto block = read_block(i + 1);
+        auto block = read_block(i + 1, marks.has_entries(i));
         if (!block) return block.error();
         block->id = ids[i];
         if (i < names.size()) block->name = names[i];
@@ -89,10 +95,10 @@ Result<void> ExodusFile::read_blocks() {
     return {};
 }
 
-Result<ExodusFile::Block> ExodusFile::read_block(std::size_t number) const {
+Result<ExodusFile::Block> ExodusFile::read_block(std::size_t number, bool has_entries) const {
     Block block;
     block.number = number;
-    if (!has_entries(*file_, "eb_status", number - 1)) return block;
+    if (!has_entries) return block;
     const auto of_block = [&](const char* name) { return file_->dimension(fmt::format("{}{}", name, number)); };
     const auto cells = of_block("num_el_in_blk");
     if (!cells) return failed(fmt::format("the number of elements of element block {}", number));
@@ -114,8 +120,9 @@ Result<void> ExodusFile::read_sets() {
     if (count > max_blocks) return failed(fmt::format("a list of {} element sets", count));
     const auto ids = ids_of(*file_, "els_prop1", count);
     const auto names = file_->texts("els_names");
+    const EntryMarks marks(*file_, "els_status");
     for (std::size_t i = 0; i < count; ++i) {
-        const bool filled = has_entries(*file_, "els_status", i);
+        const bool filled = marks.has_entries(i);
         const auto cells = filled ? file_->dimension(fmt::format("num_ele_els{}", i + 1)) : std::optional<std::uint64_t>(0);
         if (!cells || *cells > max_plausible) return failed(fmt::format("element set {}", ids[i]));
         sets_.push_back({ids[i], i + 1,
@@ -156,14 +163,11 @@ std::optional<Array> ExodusFile::rows(const std::string& variable, std::uint64_t
     auto found = file_->rows(variable, is_flat ? 0 : first, is_flat ? size : 1);
     if (!found || found->size() != size) return std::nullopt;
     if (found->type() == type()) return *std::move(found);
-    std::vector<double> doubles(size);
-    std::vector<float> singles(is_single_ ? size : 0);
-    if (!is_single_) {
-        convert_scalars(*found, ScalarType::float64, reinterpret_cast<std::byte*>(doubles.data()));
-        return Array::own(std::move(doubles));
-    }
-    convert_scalars(*found, ScalarType::float32, reinterpret_cast<std::byte*>(singles.data()));
-    return Array::own(std::move(singles));
+    return Array(type(), nullptr, 0, 1, nullptr).visit([&]<class T>(std::span<const T>) -> std::optional<Array> {
+        std::vector<T> converted(size);
+        convert_scalars(*found, type(), reinterpret_cast<std::byte*>(converted.data()));
+        return Array::own(std::move(converted));
+    });
 }
 
 template <class T>

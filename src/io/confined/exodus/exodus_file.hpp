@@ -79,7 +79,7 @@ private:
     Error failed(std::string_view what) const;
     Result<void> read_contents();
     Result<void> read_blocks();
-    Result<Block> read_block(std::size_t number) const;
+    Result<Block> read_block(std::size_t number, bool has_entries) const;
     Result<void> read_sets();
     Result<Ragged> read_ragged(const std::string& numbers, const std::string& counts, std::uint64_t count,
                                std::uint64_t size, const std::string& owner) const;
