@@ -14,6 +14,17 @@ namespace isotet::cli {
 
 namespace {
 
+/// An option whose value is a number of bytes, more than 0.
+void add_bytes(const Command& command, const char* name, std::optional<std::uint64_t>& bytes, const char* help) {
+    command.add_value(
+        name,
+        [name, &bytes](const std::string& text) {
+            bytes = parse_bytes(text);
+            if (!bytes || *bytes == 0) refuse_value(name, text, "bytes, such as 2GB");
+        },
+        "BYTES", help);
+}
+
 constexpr const char* program_details = R"(
 isotet FILE is short for isotet info FILE. FILE may be make:SHAPE:SIDE[:FIELDS] wherever a grid is read: a test grid
 made in memory, make:kuhn:64:gyroid for example.
@@ -302,13 +313,8 @@ void add_extract(const Command& program, ExtractCommand& extract) {
     add_surface_options(command, extract,
                         "Closed solids: the part of the grid where the field is at least the isovalue, below it, or "
                         "from A to B, with the grid's boundary there; cell field boundary: 1 there, 0 on isosurfaces");
-    command.add_value(
-        "--memory",
-        [&extract](const std::string& text) {
-            extract.memory = parse_bytes(text);
-            if (!extract.memory || *extract.memory == 0) refuse_value("--memory", text, "bytes, such as 2GB");
-        },
-        "BYTES", "Of a packed file, keep at most so much in memory, such as 2GB; default: half of what is free");
+    add_bytes(command, "--memory", extract.memory,
+              "Of a packed file, keep at most so much in memory, such as 2GB; default: half of what is free");
     add_common(command, extract.common);
     command.set_details(extract_details);
 }
@@ -806,13 +812,8 @@ void add_surface_options(const Command& command, ExtractJob& job, const std::str
 }
 
 void add_device_memory(const Command& command, DeviceChoice& choice) {
-    command.add_value(
-        "--device-memory",
-        [&choice](const std::string& text) {
-            choice.memory = parse_bytes(text);
-            if (!choice.memory || *choice.memory == 0) refuse_value("--device-memory", text, "bytes, such as 2GB");
-        },
-        "BYTES", "Memory of the device to take at most, such as 2GB; default: what is free");
+    add_bytes(command, "--device-memory", choice.memory,
+              "Memory of the device to take at most, such as 2GB; default: what is free");
 }
 
 void add_commands(const Command& program, CommandLine& line) {
