@@ -137,6 +137,7 @@ run_tests() {
 status=0
 measured tests run_tests || status=$?
 print_times "$trees/Testing/Temporary/LastTest.log"
+print_failures "$trees/Testing/Temporary/LastTest.log"
 echo
 grep '% tests passed, ' "$trees/tests.log" || true
 exit "$status"

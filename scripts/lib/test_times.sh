@@ -1,5 +1,5 @@
 # Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-# The table of where the time of a test run went. Sourced, never run; needs common.sh.
+# What is told at the end of a test run: where the time went, and what failed. Sourced, never run; needs common.sh.
 
 # One line for each kind of test in a log of ctest: kind, processes, tests in them, seconds. The longest come first.
 times_of_kinds() {
@@ -29,4 +29,18 @@ print_times() {
     times_of_kinds "$1" | while IFS='|' read -r name processes tests seconds; do
         printf '%-24s %9d %14d %9d\n' "$name" "$seconds" "$processes" "$tests"
     done
+}
+
+# print_failures LOG: the last lines of each test that failed in ctest's LOG, once more, where the end of a run is read.
+print_failures() {
+    awk -v lines=25 '
+        /^[0-9]+\/[0-9]+ Testing: / { name = $3 }
+        /^Output:$/ { count = 0; next }
+        /^<end of output>$/ { next }
+        { said[count++ % lines] = $0 }
+        /^Test Failed\.$/ {
+            printf "\n%s failed:\n", name
+            for (i = count > lines ? count - lines : 0; i < count; ++i) print "    " said[i % lines]
+        }
+    ' "$1"
 }

@@ -967,7 +967,7 @@ def main():
     state = tempfile.TemporaryDirectory()  # for the tokens of viewers
     os.environ['XDG_STATE_HOME'] = state.name
     tests = [f for name, f in globals().items() if name.startswith('test_') and (not wanted or name in wanted)]
-    failed = 0
+    failures = []
     with Viewer(GRID) as viewer:
         browser = Browser()
         try:
@@ -979,12 +979,12 @@ def main():
                     check(not errors, f'errors of the page: {errors}')
                     print('ok', test.__name__, flush=True)
                 except Exception:
-                    failed += 1
-                    print('FAILED', test.__name__)
-                    traceback.print_exc(file=sys.stdout)
+                    failures.append(f'FAILED {test.__name__}\n{traceback.format_exc()}')
+                    print('FAILED', test.__name__, flush=True)
         finally:
             browser.close()
-    return 1 if failed else 0
+    print(*failures, sep='\n')
+    return 1 if failures else 0
 
 
 sys.exit(main())
