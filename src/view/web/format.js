@@ -48,7 +48,8 @@ export function parseNumber(text, range = null) {
   const trimmed = (percent ? text.trim().slice(0, -1) : text).trim().replace(/^([^.,]*),([^.,]*)$/, '$1.$2');
   const value = Number(trimmed);
   if (trimmed === '' || !Number.isFinite(value)) return null;
-  return percent ? range.lower + value / 100 * (range.upper - range.lower) : value;
+  const part = value / 100;
+  return percent ? (1 - part) * range.lower + part * range.upper : value; // exact at both ends
 }
 
 /** Decimals that the hand can choose: a step is a 2000th of the range or more. */
