@@ -13,6 +13,7 @@
 #include "cpu/prefetch.hpp"
 #include "cpu/simd_avx2.hpp"
 #include "cpu/simd_avx512.hpp"
+#include "cpu/simd_portable.hpp"
 #include "cpu/steps.hpp"
 #include "cpu/vertex_normals.hpp"
 #include "numbers/arithmetic.hpp"

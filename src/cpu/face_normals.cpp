@@ -71,9 +71,9 @@ void find(const Real* positions, const Index* triangles, std::size_t count, floa
         Vectors<Real> u{}, v{}, normal;
         for (std::size_t i = 0; i < some; ++i) {
             const Index* const triangle = triangles + 3 * (begin + i);
-            const Real* const a = positions + 3 * std::size_t{triangle[0]};
-            const Real* const b = positions + 3 * std::size_t{triangle[1]};
-            const Real* const c = positions + 3 * std::size_t{triangle[2]};
+            const Real* const a = positions + 3 * static_cast<std::size_t>(triangle[0]);
+            const Real* const b = positions + 3 * static_cast<std::size_t>(triangle[1]);
+            const Real* const c = positions + 3 * static_cast<std::size_t>(triangle[2]);
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 u[axis][i] = b[axis] - a[axis];
                 v[axis][i] = c[axis] - a[axis];

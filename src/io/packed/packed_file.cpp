@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <mutex>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -72,9 +72,10 @@ Result<PackedFile> PackedFile::open(const std::string& path, const PackedFileOpt
 }
 
 bool PackedFile::is_one(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
+    const Result<io::PlainFile> file = io::open_plain_file(path);
     std::string head(io::packed_magic.size(), '\0');
-    return file.read(head.data(), static_cast<std::streamsize>(head.size())) && head == io::packed_magic;
+    return file && file->size >= head.size() && io::read_at(*file, path, 0, std::as_writable_bytes(std::span(head))) &&
+           head == io::packed_magic;
 }
 
 const PackedFileInfo& PackedFile::info() const noexcept { return data_->info; }

@@ -82,7 +82,7 @@ Result<void> read_run(const PackedSource& source, const ChunkPlaces& places, std
     std::uint64_t at = begin;
     for (const auto& [kind, chunk] : wishes) {
         const std::uint64_t offset = kind->offsets[chunk];
-        if (offset > at) parts.push_back({between.data(), offset - at});
+        if (offset > at) parts.push_back({between.data(), static_cast<std::size_t>(offset - at)});
         at = offset;
         for (std::size_t a = 0; a < kind->arrays.size(); ++a) {
             const std::span<std::byte> part = kind->part(source.directory, places, a, chunk);
@@ -172,7 +172,8 @@ std::uint64_t PieceKind::bytes(const PackedDirectory& directory, std::size_t chu
 std::span<std::byte> PieceKind::part(const PackedDirectory& directory, const ChunkPlaces& places, std::size_t array,
                                      std::size_t chunk) const {
     const ChunkedArray& a = arrays[array];
-    return {a.data + a.bytes_each * places.of(a.unit, chunk), a.bytes_each * directory.chunks[chunk].count(a.unit)};
+    return {a.data + a.bytes_each * places.of(a.unit, chunk),
+            static_cast<std::size_t>(a.bytes_each * directory.chunks[chunk].count(a.unit))};
 }
 
 Result<void> read_pieces(const PackedSource& source, const ChunkPlaces& places, std::vector<PieceWish> wishes,
