@@ -174,6 +174,18 @@ Examples:
   isotet view grid.vtu --no-browser --port 8123
 )";
 
+constexpr const char* export_details = R"(
+OUT is a page that shows isosurfaces with a slider, as isotet view does, and loads nothing: it can be sent by mail, opened from a
+disk, put on any web server. It holds the surfaces, not the grid: N of them between two isovalues, or those of -i, at one time
+step or all. Places are rounded to a 65536th of a surface's box. Where the file would be larger than --max-size, every second,
+third and so on of the N surfaces stays, which is said.
+
+Examples:
+  isotet export grid.vtu grid.html -f pressure
+  isotet export grid.vtu grid.html -f pressure --surfaces 200 --between 0.2,0.6 --color-by temperature
+  isotet export run.pvd run.html -f pressure -i 0.5 --all-steps --max-size 50MB
+)";
+
 /// Which device, which grid, and what every command has.
 void add_machine_and_input(const Command& command, DeviceChoice& device, GridOptions& grid, CommonOptions& common) {
     add_device(command, device);
@@ -358,6 +370,31 @@ void add_view(const Command& program, ViewCommand& view) {
     add_reading(command, view.grid, "--format");
     add_common(command, view.common);
     command.set_details(view_details);
+}
+
+void add_export(const Command& program, ExportCommand& exported) {
+    const Command command = program.add_command("export", "Make a page of one file with isosurfaces and a slider");
+    command.add_file("FILE", exported.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]").required();
+    command.add_file("OUT", exported.out, "OUT_FILE", "The page: .html").required();
+    add_field(command, exported.field, "The field to contour; default: the one that info says is shown first");
+    const Option isovalues = add_isovalues(command, exported.isovalues);
+    command
+        .add_count(
+            "--surfaces", {1, 10'000}, [&](std::uint64_t n) { exported.count = n; }, "N",
+            "N isosurfaces evenly inside the range: min + k (max - min) / (N + 1), k = 1..N; default: 63")
+        .excludes(isovalues);
+    command.add_numbers("--between", exported.range, "A,B", "The range of --surfaces; default: that of the field")
+        .excludes(isovalues);
+    command.add_text("--color-by", exported.color_by, "FIELD", "Colour by this point or cell field");
+    add_bytes(command, "--max-size", exported.max_size, "The file may be so large; default: 20MB");
+    add_refinement(command, exported.refine);
+    add_time(command, exported.grid);
+    command.add_flag("--all-steps", exported.all_steps, "All time steps")
+        .excludes(command.option("--time"))
+        .excludes(command.option("--step"));
+    add_reading(command, exported.grid, "--format");
+    add_common(command, exported.common);
+    command.set_details(export_details);
 }
 
 void add_bench(const Command& program, BenchCommand& bench) {
@@ -825,6 +862,7 @@ void add_commands(const Command& program, CommandLine& line) {
     add_clip_command(program, line.clip);
     add_render(program, line.render);
     add_view(program, line.view);
+    add_export(program, line.exported);
     add_bench(program, line.bench);
     add_check(program, line.check);
     add_pack(program, line.pack);

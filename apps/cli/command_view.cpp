@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <isotet/jobs/field_choice.hpp>
-#include <isotet/jobs/first_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
 #include <isotet/jobs/number_text.hpp>
 #include <isotet/jobs/output_names.hpp>
@@ -19,6 +17,7 @@
 #include "signals.hpp"
 #include "standard_streams.hpp"
 #include "text.hpp"
+#include "view_input.hpp"
 #include "view_record.hpp"
 #include "view/viewer.hpp"
 
@@ -47,35 +46,6 @@ std::vector<std::string> reading_options(const GridOptions& grid, const RefineCh
     if (refine && refine->distance > 0) add("--distance", shortest(refine->distance));
     if (refine && refine->geometry_tolerance > 0) add("--geometry-tolerance", shortest(refine->geometry_tolerance));
     return words;
-}
-
-/// What the page shows first where no field is named: an opaque boundary hides what says nothing.
-void take_first_view(const FirstView& first, bool isovalues_are_given, view::ViewState& state, Console& console) {
-    state.field = first.field.empty() ? std::string("x") : first.field;
-    if (first.draw != FirstDraw::isosurfaces && !isovalues_are_given) state.boundary = 1;
-    console.note(first.field.empty() ? std::string("no field varies: this is the grid") : note_of(first));
-}
-
-/// Reads all fields of the step to begin with, and finds the field.
-Result<view::ViewerInput> read_input(const ViewCommand& command, GridSource& source, Console& console, const Run& run) {
-    ChoiceWish wish{Steps::one, command.field, {}, false};
-    const Result<FirstChoice> choice = choose_first(source, command.grid, wish, console, run);
-    if (!choice) return choice.error();
-    const std::size_t step = choice->steps.front();
-    const std::vector<FieldInfo> fields = source.info().fields;
-    Result<Grid> grid = source.read({}, step, console, run);
-    if (!grid) return grid.error();
-    view::ViewerInput input;
-    input.state.field = command.field.name;
-    if (input.state.field.empty())
-        take_first_view(first_view(*grid, fields), !command.isovalues.empty(), input.state, console);
-    input.state.isovalues = command.isovalues;
-    input.state.color_by = command.color_by;
-    input.times = source.info().times;
-    if (input.times.size() > 1) input.state.step = step;
-    input.notes = console.noted();
-    input.grid = *std::move(grid);
-    return input;
 }
 
 /// Opens it with the token and port of the last run with this file: addresses stay valid. A line that is not encrypted
@@ -138,11 +108,7 @@ Result<ExitCode> run_view(const ViewCommand& command) {
     Result<GridSource> source = GridSource::open(command.grid, console);
     if (!source) return source.error();
     if (auto paths = check_output_paths(source->info().files, {command.common.json}); !paths) return paths.error();
-    if (!command.field.name.empty())
-        if (const Result<FoundField> found = choose_field(*source, command.field); !found) return found.error();
-    if (!command.color_by.empty())
-        if (const Result<FoundField> found = choose_field(*source, {command.color_by, false}); !found)
-            return found.error();
+    if (Result<void> found = check_view_fields(*source, command.field, command.color_by); !found) return found.error();
     if (command.grid.time || command.grid.step)
         if (const auto steps = choose_steps(source->info(), command.grid, Steps::one, console); !steps)
             return steps.error();
@@ -163,7 +129,7 @@ Result<ExitCode> run_view(const ViewCommand& command) {
     }
     options.program = "/proc/self/exe";
     options.listen = command.listen;
-    options.read = [&](const Run& run) { return read_input(command, *source, console, run); };
+    options.read = [&](const Run& run) { return read_view_input({command.grid, command.field, command.isovalues, command.color_by}, *source, console, run); };
     std::mutex reading; // steps are read by several threads
     options.read_step = [&](std::size_t step, const Run& run) {
         const std::lock_guard lock(reading);

@@ -20,6 +20,7 @@ Result<ExitCode> run_slice(const SliceCommand& command);
 Result<ExitCode> run_clip(const ClipCommand& command);
 Result<ExitCode> run_render(const RenderCommand& command);
 Result<ExitCode> run_view(const ViewCommand& command);
+Result<ExitCode> run_export(const ExportCommand& command);
 Result<ExitCode> run_bench(const BenchCommand& command);
 Result<ExitCode> run_check(const CheckCommand& command);
 Result<ExitCode> run_pack(const PackCommand& command);

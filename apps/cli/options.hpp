@@ -68,6 +68,20 @@ struct ViewCommand {
     std::string listen; ///< an address to serve at, or a path of a Unix socket; empty: 127.0.0.1
 };
 
+struct ExportCommand {
+    CommonOptions common;
+    GridOptions grid;
+    FieldChoice field;
+    RefineChoice refine = RefineOptions{};
+    std::string out;               ///< .html
+    std::vector<double> isovalues; ///< these; empty: `count` of them
+    std::uint64_t count = 63;
+    std::vector<double> range; ///< none, or two: where they lie evenly
+    std::string color_by;
+    bool all_steps = false;
+    std::optional<std::uint64_t> max_size;
+};
+
 struct BenchCommand : BenchJob {
     CommonOptions common;
 };
@@ -117,6 +131,7 @@ struct CommandLine {
     ClipCommand clip;
     RenderCommand render;
     ViewCommand view;
+    ExportCommand exported;
     BenchCommand bench;
     CheckCommand check;
     PackCommand pack;

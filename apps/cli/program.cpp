@@ -51,6 +51,7 @@ Result<ExitCode> run_command(const CommandLine& line, const OptionTree& tree) {
     if (line.command == "clip") return run_clip(line.clip);
     if (line.command == "render") return run_render(line.render);
     if (line.command == "view") return run_view(line.view);
+    if (line.command == "export") return run_export(line.exported);
     if (line.command == "bench") return run_bench(line.bench);
     if (line.command == "check") return run_check(line.check);
     if (line.command == "pack") return run_pack(line.pack);
@@ -73,7 +74,7 @@ Result<ExitCode> parse_and_run(std::vector<std::string> words) {
     if (Result<void> completed = complete_bare_file(words, tree); !completed) return completed.error();
     if (Result<void> parsed = tree.parse(words); !parsed) return parsed.error();
     for (GridOptions* grid : {&line.info.grid, &line.extract.grid, &line.slice.grid, &line.clip.grid, &line.render.grid,
-                              &line.view.grid, &line.bench.grid, &line.pack.grid})
+                              &line.view.grid, &line.exported.grid, &line.bench.grid, &line.pack.grid})
         grid->other_inputs = line.number_files;
     return run_command(line, tree);
 }

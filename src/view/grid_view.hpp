@@ -48,6 +48,15 @@ struct Frame {
     bool preview = false;
 };
 
+/// A frame before it is bytes.
+struct FrameParts {
+    FrameFacts facts;
+    std::vector<FrameSurface> surfaces;
+    std::vector<std::shared_ptr<const Mesh>> meshes; ///< that `surfaces` points to
+    std::vector<std::string> keys;
+    std::uint64_t most = 0; ///< triangles of a surface above which it is a preview
+};
+
 /// Threads   pack() and find_boundary() by one thread beside one other call; all else one call at a time
 class GridView {
 public:
@@ -74,6 +83,9 @@ public:
     /// Errors   as find_field() and Contour::extract(); cancelled. `known` is then as before
     Result<Frame> frame(const ShowMessage& message, double wait_seconds, std::vector<std::string>& known,
                         const Run& run);
+
+    /// The same of meshes, before they are bytes. Errors   as above
+    Result<FrameParts> frame_parts(const ShowMessage& message, const std::vector<std::string>& known, const Run& run);
 
     /// Gives memory back that the next frame of the same kind does not need: the cells of a packed grid of one step, which
     /// are read again when something needs them, and what the library keeps for later.
@@ -115,21 +127,12 @@ private:
         std::size_t step = 0;
         std::vector<double> isovalues = {}; ///< that `contour` is for, where it has only polyhedra that these meet
     };
-    /// What a frame gathers.
-    struct Making {
-        FrameFacts facts;
-        std::vector<FrameSurface> surfaces;
-        std::vector<std::shared_ptr<const Mesh>> meshes; ///< that `surfaces` points to
-        std::vector<std::string> keys;
-        std::uint64_t most = 0;
-    };
-
     GridView() = default;
     Result<void> need_cells(const Run& run);
     bool may_release_cells(const Grid& grid) const;
     Result<ExtractOptions> carried_fields(const std::string& color_by, const Run& run);
     Result<std::shared_ptr<const Mesh>> packed_mesh_at(const ViewState& state, double isovalue, const std::string& key,
-                                                       Making& making, const Run& run);
+                                                       FrameParts& making, const Run& run);
     Result<Picked> pick_along(const PickMessage& message, const Run& run);
     Result<Surface> surface_of_pick(const PickMessage& message, const Run& run);
     Result<PointField> field_of(const std::string& name, const Run& run);
@@ -143,9 +146,9 @@ private:
     Result<void> go_to_step(std::optional<std::uint64_t> wanted, const Run& run);
     void read_ahead(const ShowMessage& message);
     Result<void> tell_field(const std::string& field, FrameFacts& facts, const Run& run);
-    Result<Shown> refined_at(const ViewState& state, double isovalue, const std::string& key, Making& making,
+    Result<Shown> refined_at(const ViewState& state, double isovalue, const std::string& key, FrameParts& making,
                              const Run& run);
-    Result<Shown> surface_at(const ShowMessage& message, double isovalue, Source* source, Making& making,
+    Result<Shown> surface_at(const ShowMessage& message, double isovalue, Source* source, FrameParts& making,
                              const Run& run);
     std::shared_ptr<const Mesh> kept_mesh(const std::string& key);
     Result<std::shared_ptr<const Mesh>> keep(const std::string& key, const Surface& surface,
@@ -156,13 +159,13 @@ private:
     Result<std::shared_ptr<const Mesh>> slice_at(const ViewState& state, const Plane& plane, const std::string& key,
                                                  const std::optional<ColorScale>& scale, FrameFacts& facts,
                                                  const Run& run);
-    Result<void> add_isosurfaces(const ShowMessage& message, const std::vector<std::string>& known, Making& making,
+    Result<void> add_isosurfaces(const ShowMessage& message, const std::vector<std::string>& known, FrameParts& making,
                                  const Run& run);
-    Result<void> add_slices(const ViewState& state, const std::vector<std::string>& known, Making& making,
+    Result<void> add_slices(const ViewState& state, const std::vector<std::string>& known, FrameParts& making,
                             const Run& run);
-    void add_boundary(const ViewState& state, const std::vector<std::string>& known, Making& making);
+    void add_boundary(const ViewState& state, const std::vector<std::string>& known, FrameParts& making);
     static void add(FrameSurface surface, const std::shared_ptr<const Mesh>& mesh,
-                    const std::vector<std::string>& known, Making& making);
+                    const std::vector<std::string>& known, FrameParts& making);
 
     mutable std::mutex grid_mutex_; ///< of grid_, grid_number_ and step_, while another thread may copy them
     Grid grid_;                     ///< without cells where has_cells_ is false

@@ -48,7 +48,7 @@ bool holds(const std::vector<std::string>& keys, const std::string& key) {
 } // namespace
 
 Result<std::shared_ptr<const Mesh>> GridView::packed_mesh_at(const ViewState& state, double isovalue,
-                                                             const std::string& key, Making& making, const Run& run) {
+                                                             const std::string& key, FrameParts& making, const Run& run) {
     if (auto kept = kept_mesh(key)) return kept;
     const Result<PointField> field = field_of(state.field, run);
     if (!field) return field.error();
@@ -99,7 +99,7 @@ Result<std::shared_ptr<const Mesh>> GridView::mesh_at(Source& source, double iso
 
 /// The refined grid is for one isovalue, and takes memory: it is made for the mesh, which is kept.
 Result<GridView::Shown> GridView::refined_at(const ViewState& state, double isovalue, const std::string& key,
-                                             Making& making, const Run& run) {
+                                             FrameParts& making, const Run& run) {
     if (!kept_mesh(key)) {
         Result<ContourInput> input = input_of(state.field, state.color_by, run);
         if (!input) return input.error();
@@ -122,7 +122,7 @@ Result<GridView::Shown> GridView::refined_at(const ViewState& state, double isov
 
 /// Refined where that is asked for, or was done before. `source` is null where the packed grid serves all.
 Result<GridView::Shown> GridView::surface_at(const ShowMessage& message, double isovalue, Source* source,
-                                             Making& making, const Run& run) {
+                                             FrameParts& making, const Run& run) {
     const ViewState& state = message.state;
     const std::string key = mesh_key(state, isovalue, step_), refined_key = "refined|" + key;
     if ((message.refined && refines()) || kept_mesh(refined_key)) {
@@ -171,7 +171,7 @@ Result<std::shared_ptr<const Mesh>> GridView::slice_at(const ViewState& state, c
 
 /// Sends the mesh, or a preview of it, unless the page has it.
 void GridView::add(FrameSurface surface, const std::shared_ptr<const Mesh>& mesh, const std::vector<std::string>& known,
-                   Making& making) {
+                   FrameParts& making) {
     surface.triangles = mesh->triangle_count();
     const bool has_it_in_full = holds(known, surface.key);
     if (!has_it_in_full && surface.triangles > making.most && !mesh->flat) {
@@ -192,7 +192,7 @@ void GridView::add(FrameSurface surface, const std::shared_ptr<const Mesh>& mesh
 }
 
 Result<void> GridView::add_isosurfaces(const ShowMessage& message, const std::vector<std::string>& known,
-                                       Making& making, const Run& run) {
+                                       FrameParts& making, const Run& run) {
     const ViewState& state = message.state;
     const bool lean = is_packed_.load(std::memory_order_acquire) && lean_;
     if (lean) direct_.contour.reset();
@@ -231,7 +231,7 @@ Result<void> GridView::add_isosurfaces(const ShowMessage& message, const std::ve
     return {};
 }
 
-Result<void> GridView::add_slices(const ViewState& state, const std::vector<std::string>& known, Making& making,
+Result<void> GridView::add_slices(const ViewState& state, const std::vector<std::string>& known, FrameParts& making,
                                   const Run& run) {
     for (const Plane& plane : state.slices) {
         FrameSurface surface;
@@ -245,7 +245,7 @@ Result<void> GridView::add_slices(const ViewState& state, const std::vector<std:
     return {};
 }
 
-void GridView::add_boundary(const ViewState& state, const std::vector<std::string>& known, Making& making) {
+void GridView::add_boundary(const ViewState& state, const std::vector<std::string>& known, FrameParts& making) {
     if (state.boundary <= 0) return;
     std::unique_lock lock(boundary_mutex_);
     const std::shared_ptr<const Mesh> boundary = boundary_;
@@ -260,28 +260,36 @@ void GridView::add_boundary(const ViewState& state, const std::vector<std::strin
     add(std::move(surface), boundary, known, making);
 }
 
-Result<Frame> GridView::frame(const ShowMessage& message, double wait_seconds, std::vector<std::string>& known,
-                              const Run& run) {
+Result<FrameParts> GridView::frame_parts(const ShowMessage& message, const std::vector<std::string>& known,
+                                         const Run& run) {
     const ViewState& state = message.state;
     if (Result<void> there = go_to_step(state.step, run); !there) return there.error();
-    read_ahead(message);
-    if (message.picture) return picture_frame(message, wait_seconds, known, run);
     scene_.reset();
     Result<std::optional<ColorScale>> scale = scale_of(state, run);
     if (!scale) return scale.error();
     for (Kept& kept : kept_) kept.used = false;
-    Making making;
+    FrameParts making;
     making.most = limit_of(message, options_);
     making.facts.number = message.number;
-    making.facts.wait_seconds = wait_seconds;
     making.facts.scale = *scale;
     if (Result<void> told = tell_field(state.field, making.facts, run); !told) return told.error();
     if (Result<void> added = add_isosurfaces(message, known, making, run); !added) return added.error();
     if (Result<void> added = add_slices(state, known, making, run); !added) return added.error();
     add_boundary(state, known, making);
     std::erase_if(kept_, [](const Kept& kept) { return !kept.used; });
-    Frame frame{frame_bytes(making.facts, making.surfaces), making.facts.preview};
-    known = std::move(making.keys);
+    return making;
+}
+
+Result<Frame> GridView::frame(const ShowMessage& message, double wait_seconds, std::vector<std::string>& known,
+                              const Run& run) {
+    if (Result<void> there = go_to_step(message.state.step, run); !there) return there.error();
+    read_ahead(message);
+    if (message.picture) return picture_frame(message, wait_seconds, known, run);
+    Result<FrameParts> parts = frame_parts(message, known, run);
+    if (!parts) return parts.error();
+    parts->facts.wait_seconds = wait_seconds;
+    Frame frame{frame_bytes(parts->facts, parts->surfaces), parts->facts.preview};
+    known = std::move(parts->keys);
     return frame;
 }
 

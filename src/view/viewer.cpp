@@ -16,6 +16,7 @@
 
 #include "view/command_line.hpp"
 #include "view/download.hpp"
+#include "view/greeting.hpp"
 #include "view/grid_view.hpp"
 #include "view/page.hpp"
 #include "view/server.hpp"
@@ -80,19 +81,6 @@ private:
     GridView& view_;
     int threads_;
 };
-
-/// 64 colours of each map, "rrggbb" one after another.
-Json maps_json() {
-    constexpr int colors = 64;
-    Json maps = Json::object();
-    for (const ColorMap map :
-         {ColorMap::viridis, ColorMap::cividis, ColorMap::plasma, ColorMap::turbo, ColorMap::cool_warm}) {
-        std::string text;
-        for (int i = 0; i < colors; ++i) text += color_text(color_at(map, i / (colors - 1.0))).substr(1);
-        maps[std::string(name_of(map))] = text;
-    }
-    return maps;
-}
 
 } // namespace
 
@@ -166,17 +154,7 @@ void Viewer::Data::tell_progress(std::string_view step, double fraction) {
 }
 
 void Viewer::Data::set_grid(const ViewerInput& input) {
-    Json fields = Json::array();
-    for (const OfferedField& field : view->fields())
-        fields.push_back({{"name", field.name}, {"cell", field.association == Association::cell}});
-    Json grid = {{"say", "grid"},          {"file", options.file},        {"points", view->points()},
-                 {"cells", view->cells()}, {"fields", std::move(fields)}, {"state", to_json(input.state)},
-                 {"notes", input.notes},   {"times", input.times},        {"refines", view->refines()}};
-    const Box& box = view->bounds();
-    if (!box.empty()) {
-        grid["lower"] = {box.lower[0], box.lower[1], box.lower[2]};
-        grid["upper"] = {box.upper[0], box.upper[1], box.upper[2]};
-    }
+    const Json grid = grid_json(*view, options.file, input);
     const std::lock_guard lock(news_mutex);
     grid_text = text_of(grid);
     grid_is_new = true;
@@ -249,11 +227,7 @@ void Viewer::Data::take_hello(ConnectionNumber from, const HelloMessage& message
     alone_until.reset();
     longest_wait.reset();
     worker->add_page(from);
-    server->send_text(from, text_of({{"say", "welcome"},
-                                     {"version", options.version},
-                                     {"file", options.file},
-                                     {"maps", maps_json()},
-                                     {"out", options.out}}));
+    server->send_text(from, text_of(welcome_json(options.file, options.version, options.out)));
     const std::lock_guard lock(news_mutex);
     if (failure && !std::exchange(failure_told, true)) failed_at = now_seconds();
     if (!grid_text.empty()) server->send_text(from, grid_text);

@@ -10,23 +10,14 @@
 #include <string>
 #include <vector>
 
-#include <isotet/grid.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/refine.hpp>
 #include <isotet/result.hpp>
 
-#include "view/state.hpp"
+#include "view/greeting.hpp"
 #include "view/steps.hpp"
 
 namespace isotet::view {
-
-/// What a page can look at, once it is read.
-struct ViewerInput {
-    Grid grid;
-    ViewState state; ///< to begin with; no isovalues: Chart::first
-    std::vector<std::string> notes;
-    std::vector<double> times; ///< of the file's steps; fewer than two: it has one
-};
 
 struct ViewerOptions {
     std::string file;                                    ///< as the command line names it

@@ -11,6 +11,7 @@ export class ChartSlider {
     this.on = on;
     this.chart = null; // of the step that is shown; null: not there yet
     this.span = null;  // {lower, upper}: the ends of the slider
+    this.stops = null; // values that it stops at, rising; null: any
     this.spectrum = null; // area and volume against the isovalue
     this.curve = 'triangles'; // or 'area', 'volume_below'
     this.value = 0;
@@ -41,13 +42,27 @@ export class ChartSlider {
     this.on.input(this.limited(roundTo(this.span.lower + part * this.range(), this.range())));
   }
 
-  limited(value) { return Math.max(this.span.lower, Math.min(this.span.upper, value)); }
+  limited(value) { return this.allowed(Math.max(this.span.lower, Math.min(this.span.upper, value))); }
+
+  /** The nearest value that there is. */
+  allowed(value) {
+    return this.stops ? this.stops.reduce((best, one) => (Math.abs(one - value) < Math.abs(best - value) ? one : best)) : value;
+  }
 
   /** Moves by so many 200ths of the range. */
   step(steps) {
     if (!(this.range() > 0)) return;
+    if (this.stops) return this.stepOverStops(steps);
     const fine = this.range() * Math.min(1, Math.abs(steps));
     this.on.input(this.limited(roundTo(this.value + steps * this.range() / 200, fine)));
+    this.on.commit();
+  }
+
+  /** At least one of them. */
+  stepOverStops(steps) {
+    const {stops} = this, count = Math.max(1, Math.round(Math.abs(steps) * stops.length / 200));
+    const at = stops.indexOf(this.allowed(this.value)) + Math.sign(steps) * count;
+    this.on.input(stops[Math.max(0, Math.min(stops.length - 1, at))]);
     this.on.commit();
   }
 

@@ -3,7 +3,7 @@
 import {parseNumber, roundTo, short} from './format.js';
 import {maxPlanes, planesOf} from './state.js';
 
-const axes = {x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1]};
+const alongAxes = {x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1]};
 const same = (a, b) => a.every((v, i) => v === b[i]);
 
 export class Cuts {
@@ -23,8 +23,8 @@ export class Cuts {
   add(kind) {
     const state = this.on.state();
     if (planesOf(state, kind).length >= maxPlanes) return this.on.say(`There can be ${maxPlanes} planes of a kind.`);
-    const [from, to] = this.range(axes.x);
-    state.planes.push({kind, normal: axes.x.slice(), offset: roundTo((from + to) / 2, to - from)});
+    const [from, to] = this.range(alongAxes.x);
+    state.planes.push({kind, normal: alongAxes.x.slice(), offset: roundTo((from + to) / 2, to - from)});
     this.on.changed(false, kind);
     this.list.lastChild?.querySelector('input[type=range]').focus();
   }
@@ -38,7 +38,7 @@ export class Cuts {
 
   fill(row, {kind, normal, offset}, i) {
     const get = (name) => row.querySelector('.' + name), name = `${kind} ${i + 1}`;
-    const along = Object.keys(axes).find((axis) => same(axes[axis], normal.map(Math.abs)));
+    const along = Object.keys(alongAxes).find((axis) => same(alongAxes[axis], normal.map(Math.abs)));
     const [from, to] = this.range(normal), slider = get('place');
     get('kind').textContent = kind === 'clip' ? 'Clip' : 'Slice';
     if (document.activeElement !== get('axis')) get('axis').value = along || 'free';
@@ -65,7 +65,7 @@ export class Cuts {
     const get = (name) => row.querySelector('.' + name), plane = () => this.on.state().planes[i];
     get('axis').addEventListener('change', () => {
       const chosen = get('axis').value;
-      this.turn(plane(), axes[chosen] || (chosen === 'view' ? this.on.direction() : this.tilted(plane().normal)));
+      this.turn(plane(), alongAxes[chosen] || (chosen === 'view' ? this.on.direction() : this.tilted(plane().normal)));
     });
     get('normal').addEventListener('change', () => {
       const numbers = get('normal').value.split(/[ ,;]+/).filter(Boolean).map(Number);
@@ -96,10 +96,10 @@ export class Cuts {
     return row;
   }
 
-  /** A direction that is none of the axes, to be changed. */
+  /** A direction that is none of the alongAxes, to be changed. */
   tilted(normal) {
     const axis = normal.findIndex((v) => v !== 0);
-    return Object.values(axes).some((one) => same(one, normal.map(Math.abs))) ? normal.map((v, i) => (i === (axis + 1) % 3 ? 0.5 : v)) : normal;
+    return Object.values(alongAxes).some((one) => same(one, normal.map(Math.abs))) ? normal.map((v, i) => (i === (axis + 1) % 3 ? 0.5 : v)) : normal;
   }
 
   rounded(plane, offset) { const [from, to] = this.range(plane.normal); return roundTo(offset, to - from); }

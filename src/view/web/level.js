@@ -20,7 +20,7 @@ const level = {
 };
 
 export function setValue(value) {
-  app.state.value = value;
+  app.state.value = app.slider.allowed(value);
   level.automatic = false;
   showValue();
   wishSoon();
@@ -60,7 +60,7 @@ function showMeasures() {
   for (const option of id('curve').options) option.disabled = option.value !== 'triangles' && !spectrum;
   id('curve').value = spectrum ? app.slider.curve : 'triangles';
   document.body.dataset.spectrum = spectrum ? spectrum.field : '';
-  if (!spectrum || app.state.value === null) { id('measures').textContent = 'Area and volume come when nothing moves'; return; }
+  if (!spectrum || app.state.value === null) { id('measures').textContent = app.grid?.saved === 'surfaces' ? '' : 'Area and volume come when nothing moves'; return; }
   const [area, below] = ['area', 'volume_below'].map((name) => app.slider.measured(name, app.state.value));
   id('measures').textContent = area === null ? '' :
     `Area ${format.rounded(area, 4)}, volume below ${format.rounded(below, 4)}: ${format.share(below, spectrum.volume)} of ${format.rounded(spectrum.volume, 4)}`;

@@ -1,9 +1,10 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // The WebSocket to the server, opened again whenever it is lost.
+import {beginsWith, readFrame} from './frame.js';
 
 export class Link {
-  /** @param on  {text(message), frame(buffer), part(bytes): of a download, open(), lost(refused), waits(): whether
-   *              a large message is expected} */
+  /** @param on  {text(message), frame(frame): as readFrame() gives it, part(bytes): of a download, open(),
+   *              lost(refused), waits(): whether a large message is expected} */
   constructor(token, on) {
     this.token = token;
     this.on = on;
@@ -69,6 +70,9 @@ export class Link {
     this.on.lost(this.refused);
   }
 
+  /** Another connection, to which all is sent again. */
+  restart() { this.socket.close(); }
+
   send(message) {
     if (!this.ready || this.socket.readyState !== WebSocket.OPEN) return false;
     this.socket.send(JSON.stringify(message));
@@ -76,31 +80,7 @@ export class Link {
   }
 }
 
-const mark = (text) => [...text].reduce((number, letter, i) => number + letter.charCodeAt(0) * 256 ** i, 0);
-
-/** A frame begins with "isof", a part of a download with "isod". */
 function takeBytes(buffer, on) {
-  if (new DataView(buffer).getUint32(0, true) === mark('isod')) on.part(new Uint8Array(buffer, 4));
-  else on.frame(buffer);
-}
-
-/** A frame taken apart: its head, with arrays in place of where they stand. */
-export function readFrame(buffer) {
-  const view = new DataView(buffer);
-  if (view.getUint32(0, true) !== mark('isof')) throw new Error('a frame begins with "isof"');
-  const length = view.getUint32(4, true);
-  const head = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 8, length)));
-  const blocks = Math.ceil((8 + length) / 8) * 8;
-  for (const {mesh} of head.surfaces) {
-    if (!mesh) continue;
-    mesh.vertexBytes = new Uint8Array(buffer, blocks + mesh.vertices_at, 8 * mesh.vertices);
-    if (mesh.colors_at !== undefined) mesh.colors = new Uint16Array(buffer, blocks + mesh.colors_at, mesh.vertices);
-    if (mesh.corners_at !== undefined) {
-      const Type = mesh.wide ? Uint32Array : Uint16Array;
-      mesh.corners = new Type(buffer, blocks + mesh.corners_at, 3 * mesh.triangles);
-    }
-  }
-  if (head.picture) head.picture.coded = new Uint8Array(buffer, blocks + head.picture.at, head.picture.bytes);
-  head.bytes = buffer.byteLength;
-  return head;
+  if (beginsWith(buffer, 'isod')) on.part(new Uint8Array(buffer, 4));
+  else on.frame(readFrame(buffer));
 }

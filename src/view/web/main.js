@@ -104,9 +104,18 @@ function fill(select, names, chosen) {
   select.value = chosen;
 }
 
+/** The page is a file, of some isosurfaces or of a grid: it has nothing that only isotet can do, or only who has the grid. */
+function takeSaved({saved, values}) {
+  app.slider.stops = values ?? null;
+  app.save.endings = '.stl or .glb';
+  const gone = saved === 'grid' ? ['isotet'] : ['isotet', 'grid'];
+  for (const one of document.querySelectorAll('[data-needs]')) one.hidden = one.disabled = gone.includes(one.dataset.needs);
+}
+
 function takeGrid(message) {
   if (app.grid) { askChart(); app.sent = null; return wishSoon(); }
   app.grid = message;
+  if (message.saved) takeSaved(message);
   if (!app.grid.lower) [app.grid.lower, app.grid.upper] = [[0, 0, 0], [1, 1, 1]];
   app.time.set(app.grid.times);
   const names = app.grid.fields.map(({name}) => name), start = fromMessage(app.grid.state);
@@ -115,9 +124,12 @@ function takeGrid(message) {
   if (app.grid.times.length < 2) app.state.step = null;
   else if (app.state.step === null || app.state.step >= app.grid.times.length) app.state.step = start.step;
   if (!names.includes(app.state.field)) names.unshift(app.state.field);
+  if (app.state.value !== null) app.state.value = app.slider.allowed(app.state.value);
   const label = (name) => [name, name + (app.grid.fields.find((one) => one.name === name)?.cell ? ' (cells)' : '')];
   fill(id('field'), names.map(label), app.state.field);
-  fill(id('color-by'), [['', 'Surface'], ...names.map(label)], app.state.colorBy);
+  const colors = app.grid.colors ?? names;
+  if (app.grid.colors && !colors.includes(app.state.colorBy)) app.state.colorBy = '';
+  fill(id('color-by'), [['', 'Surface'], ...colors.map(label)], app.state.colorBy);
   showNotes();
   document.body.dataset.grid = `${app.grid.points} points, ${app.grid.cells} cells`;
   showState();
@@ -169,7 +181,7 @@ const messages = {
 
 try {
   app.scene = new Scene(id('scene'));
-  app.scene.onRestored = () => { app.frame = null; app.sent = null; app.link.socket.close(); };
+  app.scene.onRestored = () => { app.frame = null; app.sent = null; app.link.restart(); };
 } catch {
   app.scene = null; // the server draws
 }

@@ -5,7 +5,6 @@ import {showRange} from './colors.js';
 import * as format from './format.js';
 import {followStep, measureServer, rangeOf} from './level.js';
 import {paintLabels, showLabels} from './labels.js';
-import {readFrame} from './link.js';
 import {showNotes} from './notes.js';
 import {checkPicked, placeMark} from './picked.js';
 import {planesOf} from './state.js';
@@ -149,7 +148,9 @@ function tellFacts() {
   if (triangles === 0 && first) parts[0] = ['no triangles at this value', outside(first.isovalue)].filter(Boolean).join(': ');
   const {picture} = app.frame, made = picture ? app.frame : app.made || app.frame;
   if (picture) parts.push(`drawn by the server (${serverDraws() || 'until now'}): ${picture.type === 'image/png' ? 'exact' : 'while it moves'}, ${picture.width} × ${picture.height}`);
-  parts.push(`extract ${format.duration(made.extract_ms)}`, `${picture ? 'draw and encode' : 'encode'} ${format.duration(made.mesh_ms)}`, format.bytes(made.bytes),
+  if (app.grid.saved === 'surfaces') parts.push(`unpacked in ${format.duration(made.mesh_ms)}`);
+  else parts.push(`extract ${format.duration(made.extract_ms)}`, `${picture ? 'draw and encode' : 'encode'} ${format.duration(made.mesh_ms)}`);
+  parts.push(format.bytes(made.bytes),
     `${picture ? 'show' : 'draw'} ${format.duration(app.frame.draw_ms)}`, `${format.duration(app.frame.age_ms)} in all`);
   if (app.frame.field_bound != null) parts.push(`curved cells refined: within ${format.short(app.frame.field_bound)} of the field`);
   else if (app.grid.refines && !picture) parts.push('curved cells split at their nodes');
@@ -198,8 +199,7 @@ function acknowledge(one) {
   app.link.send({do: 'shown', number: one.number});
 }
 
-export function takeFrame(buffer) {
-  const next = readFrame(buffer);
+export function takeFrame(next) {
   measureLine(next);
   noteSize(next);
   if (next.picture) return takePicture(next);

@@ -1,8 +1,8 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // The dialog that saves files: as downloads, or by name into the folder of --out.
+import {id} from './app.js';
 import {parseNumber, short} from './format.js';
 
-const id = (name) => document.getElementById(name);
 const solids = ['above', 'below'];
 const surfaceRule = 'The name ends in .vtp, .vtk, .ply, .stl, .obj or .ts.';
 const rules = {above: `Closed: the grid where the field is at least the value of the slider. ${surfaceRule}`,
@@ -26,6 +26,7 @@ export class Save {
   constructor(on) {
     this.on = on;
     this.out = '';
+    this.endings = ''; // of surfaces, where they are not those of isotet extract
     this.number = 0;  // behind names that are taken
     this.own = '';    // the name that the page gave
     this.file = null; // that comes: {name, bytes, parts, got}
@@ -46,7 +47,7 @@ export class Save {
     id('save-to').options[1].disabled = !this.out;
     id('save-to').options[1].textContent = this.out ? `Folder ${this.out} of the server` : 'Folder of the server: start with --out FOLDER';
     if (!this.out) id('save-to').value = '';
-    id('save-kind').querySelector('[value="steps.webp"]').hidden = this.on.steps() < 2;
+    id('save-kind').querySelector('[value="steps.webp"]').hidden = this.endings !== '' || this.on.steps() < 2;
     this.command = null;
     this.on.send({do: 'command', state: this.on.state()});
     this.show();
@@ -59,7 +60,7 @@ export class Save {
   show() {
     const [kind, ending] = this.chosen(), fits = id('save-name').value.endsWith(`.${ending}`) && id('save-name').value !== this.own;
     if (!fits) this.suggest(ending);
-    id('save-hint').textContent = rules[kind];
+    id('save-hint').textContent = kind === 'surface' && this.endings ? `The name ends in ${this.endings}; places are as exact as on the screen.` : rules[kind];
     id('save-size').hidden = !asked[kind].includes('width');
     id('save-values').hidden = kind !== 'sweep';
     id('save-many').hidden = !asked[kind].includes('pictures');

@@ -1,0 +1,127 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// `isotet export`: isosurfaces in a page of one file.
+#include <filesystem>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include <isotet/jobs/grid_source.hpp>
+#include <isotet/jobs/number_text.hpp>
+#include <isotet/jobs/output_names.hpp>
+#include <isotet/version.hpp>
+#include <isotet/write_file.hpp>
+
+#include "commands.hpp"
+#include "console.hpp"
+#include "json_output.hpp"
+#include "report.hpp"
+#include "stopwatch.hpp"
+#include "text.hpp"
+#include "view/saved_surfaces.hpp"
+#include "view_input.hpp"
+
+namespace isotet::cli {
+
+namespace {
+
+/// Who reads the page need not know in which folder the grid lay.
+std::string name_without_folder(const std::string& file) {
+    return valid_utf8(std::filesystem::path(file).filename().string());
+}
+
+Result<void> check_export(const ExportCommand& command, const GridSource& source) {
+    if (ending_of(command.out) != ".html")
+        return usage_error("OUT is '{}', but a page ends in .html", command.out);
+    if (!command.range.empty() && (command.range.size() != 2 || !(command.range[0] < command.range[1])))
+        return usage_error("--between takes two numbers, the smaller one first, as in 0.1,0.5");
+    if (Result<void> paths = check_output_paths(source.info().files, {command.out, command.common.json}); !paths)
+        return paths;
+    return check_view_fields(source, command.field, command.color_by);
+}
+
+view::SavedSurfacesOptions options_of(const ExportCommand& command, const view::ViewerInput& input) {
+    view::SavedSurfacesOptions options;
+    options.file = name_without_folder(command.grid.file);
+    options.version = ISOTET_VERSION;
+    options.isovalues = command.isovalues;
+    options.count = command.count;
+    if (!command.range.empty()) options.range = ValueRange{command.range[0], command.range[1]};
+    options.refine = command.refine;
+    if (command.max_size) options.max_bytes = *command.max_size;
+    options.steps = {input.state.step.value_or(0)};
+    if (!command.all_steps || input.times.size() < 2) return options;
+    options.steps.resize(input.times.size());
+    std::iota(options.steps.begin(), options.steps.end(), std::size_t{0});
+    return options;
+}
+
+struct ExportTimes {
+    double read = 0, extract = 0, write = 0;
+};
+
+std::string export_table(const ExportCommand& command, const view::SavedSurfaces& saved, std::size_t steps,
+                         const ExportTimes& seconds) {
+    Table table = facts();
+    table.row({"grid", command.grid.file});
+    table.row({"isosurfaces", fmt::format("{} from {} to {}", grouped(saved.isovalues.size()),
+                                          rounded(saved.isovalues.front()), rounded(saved.isovalues.back()))});
+    if (steps > 1) table.row({"time steps", grouped(steps)});
+    table.row({"triangles", grouped(saved.triangles)});
+    table.row({"time", fmt::format("read {}, extract and compress {}, write {}", seconds_text(seconds.read),
+                                   seconds_text(seconds.extract), seconds_text(seconds.write))});
+    table.row({"file", fmt::format("{} ({})", command.out, format_bytes(saved.html.size()))});
+    return table.text();
+}
+
+Json export_report(const ExportCommand& command, const view::SavedSurfaces& saved, std::size_t steps,
+                   const ExportTimes& seconds) {
+    Json report = json_report("export");
+    report["grid"] = json_text(command.grid.file);
+    report["isovalues"] = saved.isovalues;
+    report["left_out"] = saved.left_out;
+    report["steps"] = steps;
+    report["triangles"] = saved.triangles;
+    report["boundary"] = saved.boundary;
+    report["seconds"] = {{"read", seconds.read}, {"extract", seconds.extract}, {"write", seconds.write}};
+    report["file"] = json_text(command.out);
+    report["bytes"] = saved.html.size();
+    return report;
+}
+
+} // namespace
+
+Result<ExitCode> run_export(const ExportCommand& command) {
+    Console console(command.common);
+    GridOptions grid = command.grid;
+    if (command.all_steps) grid.step = 0; // is read first
+    Result<GridSource> source = GridSource::open(grid, console);
+    if (!source) return source.error();
+    if (Result<void> checked = check_export(command, *source); !checked) return checked.error();
+
+    ExportTimes seconds;
+    const Stopwatch reading;
+    Result<view::ViewerInput> input = read_view_input(
+        {grid, command.field, command.isovalues, command.color_by}, *source, console, console.run());
+    if (!input) return input.error();
+    seconds.read = reading.seconds();
+
+    const Stopwatch extracting;
+    const view::SavedSurfacesOptions options = options_of(command, *input);
+    const view::ReadStep read_step = [&](std::size_t step, const Run& run) {
+        return source->read({}, step, console, run);
+    };
+    const Result<view::SavedSurfaces> saved =
+        view::save_surfaces(*std::move(input), read_step, options, console.run());
+    if (!saved) return saved.error();
+    console.notes(saved->notes);
+    console.note(fmt::format("{} will have {}", command.out, format_bytes(saved->html.size())));
+    seconds.extract = extracting.seconds();
+
+    const Stopwatch writing;
+    if (Result<void> written = write_text(saved->html, command.out, console.run()); !written) return written.error();
+    seconds.write = writing.seconds();
+    return finish(console, command.common, export_table(command, *saved, options.steps.size(), seconds),
+                  export_report(command, *saved, options.steps.size(), seconds));
+}
+
+} // namespace isotet::cli

@@ -1,0 +1,49 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "view_input.hpp"
+
+#include <isotet/jobs/first_choice.hpp>
+
+namespace isotet::cli {
+
+namespace {
+
+/// What the page shows first where no field is named: an opaque boundary hides what says nothing.
+void take_first_view(const FirstView& first, bool isovalues_are_given, view::ViewState& state, Console& console) {
+    state.field = first.field.empty() ? std::string("x") : first.field;
+    if (first.draw != FirstDraw::isosurfaces && !isovalues_are_given) state.boundary = 1;
+    console.note(first.field.empty() ? std::string("no field varies: this is the grid") : note_of(first));
+}
+
+} // namespace
+
+Result<void> check_view_fields(const GridSource& source, const FieldChoice& field, const std::string& color_by) {
+    if (!field.name.empty())
+        if (const Result<FoundField> found = choose_field(source, field); !found) return found.error();
+    if (!color_by.empty())
+        if (const Result<FoundField> found = choose_field(source, {color_by, false}); !found) return found.error();
+    return {};
+}
+
+Result<view::ViewerInput> read_view_input(const ViewStart& start, GridSource& source, Console& console,
+                                          const Run& run) {
+    ChoiceWish wish{Steps::one, start.field, {}, false};
+    const Result<FirstChoice> choice = choose_first(source, start.grid, wish, console, run);
+    if (!choice) return choice.error();
+    const std::size_t step = choice->steps.front();
+    const std::vector<FieldInfo> fields = source.info().fields;
+    Result<Grid> grid = source.read({}, step, console, run);
+    if (!grid) return grid.error();
+    view::ViewerInput input;
+    input.state.field = start.field.name;
+    if (input.state.field.empty())
+        take_first_view(first_view(*grid, fields), !start.isovalues.empty(), input.state, console);
+    input.state.isovalues = start.isovalues;
+    input.state.color_by = start.color_by;
+    input.times = source.info().times;
+    if (input.times.size() > 1) input.state.step = step;
+    input.notes = console.noted();
+    input.grid = *std::move(grid);
+    return input;
+}
+
+} // namespace isotet::cli

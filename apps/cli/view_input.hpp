@@ -1,0 +1,32 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What a page begins with, of `isotet view` and `isotet export`.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <isotet/jobs/field_choice.hpp>
+#include <isotet/jobs/grid_source.hpp>
+#include <isotet/progress.hpp>
+#include <isotet/result.hpp>
+
+#include "console.hpp"
+#include "view/greeting.hpp"
+
+namespace isotet::cli {
+
+/// What the command line says of it.
+struct ViewStart {
+    const GridOptions& grid;
+    const FieldChoice& field;
+    const std::vector<double>& isovalues;
+    const std::string& color_by;
+};
+
+/// Names that are no field's, before anything is read. Errors   as choose_field()
+Result<void> check_view_fields(const GridSource& source, const FieldChoice& field, const std::string& color_by);
+
+/// Reads all fields of the step to begin with, and finds the field. Errors   as choose_first()
+Result<view::ViewerInput> read_view_input(const ViewStart& start, GridSource& source, Console& console, const Run& run);
+
+} // namespace isotet::cli

@@ -1,0 +1,44 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "view/greeting.hpp"
+
+#include <utility>
+
+namespace isotet::view {
+
+namespace {
+
+/// 64 colours of each map, "rrggbb" one after another.
+Json maps_json() {
+    constexpr int colors = 64;
+    Json maps = Json::object();
+    for (const ColorMap map :
+         {ColorMap::viridis, ColorMap::cividis, ColorMap::plasma, ColorMap::turbo, ColorMap::cool_warm}) {
+        std::string text;
+        for (int i = 0; i < colors; ++i) text += color_text(color_at(map, i / (colors - 1.0))).substr(1);
+        maps[std::string(name_of(map))] = text;
+    }
+    return maps;
+}
+
+} // namespace
+
+Json welcome_json(const std::string& file, const std::string& version, const std::string& out) {
+    return {{"say", "welcome"}, {"version", version}, {"file", file}, {"maps", maps_json()}, {"out", out}};
+}
+
+Json grid_json(const GridView& view, const std::string& file, const ViewerInput& input) {
+    Json fields = Json::array();
+    for (const OfferedField& field : view.fields())
+        fields.push_back({{"name", field.name}, {"cell", field.association == Association::cell}});
+    Json grid = {{"say", "grid"},         {"file", file},          {"points", view.points()},
+                 {"cells", view.cells()}, {"fields", std::move(fields)}, {"state", to_json(input.state)},
+                 {"notes", input.notes},  {"times", input.times},  {"refines", view.refines()}};
+    const Box& box = view.bounds();
+    if (!box.empty()) {
+        grid["lower"] = {box.lower[0], box.lower[1], box.lower[2]};
+        grid["upper"] = {box.upper[0], box.upper[1], box.upper[2]};
+    }
+    return grid;
+}
+
+} // namespace isotet::view

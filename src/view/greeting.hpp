@@ -1,0 +1,31 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What a page is told first: who is there, and what there is to look at.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <isotet/grid.hpp>
+
+#include "view/grid_view.hpp"
+#include "view/json.hpp"
+#include "view/state.hpp"
+
+namespace isotet::view {
+
+/// What a page can look at, once it is read.
+struct ViewerInput {
+    Grid grid;
+    ViewState state; ///< to begin with; no isovalues: Chart::first
+    std::vector<std::string> notes;
+    std::vector<double> times; ///< of the file's steps; fewer than two: it has one
+};
+
+/// {"say": "welcome", ...}: 64 colours of each map among it.
+/// `out`   the folder where pages may save files; empty: none
+Json welcome_json(const std::string& file, const std::string& version, const std::string& out);
+
+/// {"say": "grid", ...}. Of `input` all but the grid, which is in `view`.
+Json grid_json(const GridView& view, const std::string& file, const ViewerInput& input);
+
+} // namespace isotet::view

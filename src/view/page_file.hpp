@@ -1,0 +1,52 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// The page as one file, with what it shows in it: nothing is loaded from anywhere.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <isotet/result.hpp>
+
+#include "view/json.hpp"
+
+namespace isotet::view {
+
+/// A module of the page.
+struct PageModule {
+    std::string_view name; ///< "camera.js"
+    std::string_view text;
+};
+
+/// Modules as one, in the order in which a browser would run them.
+///
+/// `modules`      must import names, or `* as NAME`, in one line, and export nothing but declarations; names that
+///                they declare outside functions must differ
+/// `replacement`  a module's name, and that of the one that is taken in its place
+/// Errors         internal: a module is not there, or written otherwise
+Result<std::string> bundle(std::span<const PageModule> modules, std::string_view first,
+                           const std::pair<std::string_view, std::string_view>& replacement);
+
+/// Bytes that stand in the file, compressed and in base64, as an element of this name.
+struct PagePart {
+    std::string name;
+    std::string base64;
+};
+
+/// The page of `isotet view` as an HTML document that says by its policy (Content-Security-Policy) that it runs one
+/// script, this one, and loads nothing.
+///
+/// `title`   any text
+/// `saved`   what web/saved_link.js says in place of a server
+/// Errors    as bundle()
+Result<std::string> page_document(std::string_view title, const Json& saved, const std::vector<PagePart>& parts);
+
+/// Text between tags and in attributes.
+std::string html_text(std::string_view text);
+
+/// JSON in an element <script>, where no "<" may stand.
+std::string json_in_html(const Json& json);
+
+} // namespace isotet::view
