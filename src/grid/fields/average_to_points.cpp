@@ -8,6 +8,7 @@
 #include "base/buffer.hpp"
 #include "base/parallel.hpp"
 #include "grid/fields/incidence.hpp"
+#include "grid/fields/running_mean.hpp"
 #include "grid/orientation.hpp"
 #include "grid/renumber.hpp"
 
@@ -28,21 +29,6 @@ Buffer<double> volumes_of(const Grid& grid, const CellReader& cells, const Array
     });
     return volumes;
 }
-
-/// Adds values to a mean one by one, so that equal values stay as they are and large ones do not overflow.
-struct RunningMean {
-    double mean = 0, weights = 0;
-
-    void add(double value, double weight) {
-        if (weight == 0) return;
-        const bool is_first = weights == 0;
-        weights += weight;
-        if (is_first) mean = value;
-        else if (std::isinf(value))
-            mean = std::isinf(mean) && mean != value ? std::numeric_limits<double>::quiet_NaN() : value;
-        else if (!std::isinf(mean)) mean += (value - mean) * (weight / weights);
-    }
-};
 
 template <class Index>
 Incidence<Index> cells_around_points(const CellReader& cells, const Buffer<double>& volumes) {

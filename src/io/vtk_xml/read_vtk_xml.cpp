@@ -25,6 +25,8 @@ constexpr std::array kinds{
     Named{"vtm", "VTK XML multi-block data", ".vtm", "vtkMultiBlockDataSet"},
     Named{"vtpc", "VTK XML partitioned data set collection", ".vtpc", "vtkPartitionedDataSetCollection"},
     Named{"vtpd", "VTK XML partitioned data set", ".vtpd", "vtkPartitionedDataSet"},
+    Named{"vth", "VTK XML overlapping AMR", ".vth", "vtkOverlappingAMR"},
+    Named{"vthb", "VTK XML hierarchical boxes (AMR)", ".vthb", "vtkHierarchicalBoxDataSet"},
     Named{"pvd", "ParaView collection of VTK files", ".pvd", "Collection"}};
 
 bool is_collection(const Named& kind) { return std::string_view(kind.type) == "Collection"; }
@@ -73,6 +75,8 @@ std::string_view vtk_type_of_name(std::string_view name) {
 
 Result<Loaded> load_vtk_file(const std::string& path, std::string_view type, const ReadOptions& options, Depth depth,
                              bool ids, const Progress& progress) {
+    if (type == "vtkOverlappingAMR" || type == "vtkHierarchicalBoxDataSet")
+        return load_amr(path, options, depth, progress);
     if (type.starts_with("vtk")) return load_blocks(path, type, options, depth, progress);
     if (type.starts_with("P")) return vtk_xml::load_pieces(path, type, options, depth, progress);
     return vtk_xml::load_file(path, type, options, depth, ids, progress);

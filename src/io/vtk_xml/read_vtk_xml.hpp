@@ -12,7 +12,7 @@
 
 namespace isotet::io {
 
-/// VTU, VTI, VTR, VTS, those in pieces, VTM, VTPC, VTPD and PVD.
+/// VTU, VTI, VTR, VTS, those in pieces, VTM, VTPC, VTPD, VTH, VTHB and PVD.
 std::vector<GridReader> vtk_xml_readers();
 
 /// The type that the name of a file of these formats stands for ("UnstructuredGrid" for .vtu); empty for others, and for
@@ -29,6 +29,12 @@ Result<Loaded> load_vtk_file(const std::string& path, std::string_view type, con
 ///          no block with a grid, a file of another kind; as load_files()
 Result<Loaded> load_blocks(const std::string& path, std::string_view type, const ReadOptions& options, Depth depth,
                            const Progress& progress);
+
+/// A VTH or VTHB: an index of images (VTI) by level, as one grid of hexahedra.
+///
+/// Errors   invalid_data: not such an index, a level without a spacing, a box without a file, an image that is not where
+///          its box is; as load_files() and amr::boxes_as_pieces()
+Result<Loaded> load_amr(const std::string& path, const ReadOptions& options, Depth depth, const Progress& progress);
 
 /// A PVD: an index of files of these formats by time; those of one time are pieces of one grid.
 Result<Loaded> load_collection(const std::string& path, const ReadOptions& options, Depth depth,

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// VTKHDF: unstructured grids, versions 1 and 2, alone or in collections, and images.
+// VTKHDF: unstructured grids, versions 1 and 2, alone or in collections, images, and overlapping boxes on levels.
 #include <algorithm>
 #include <limits>
 
@@ -7,6 +7,7 @@
 
 #include "io/confined/hdf5/hdf5_array.hpp"
 #include "io/confined/hdf5/hdf5_walk.hpp"
+#include "io/confined/hdf5/vtkhdf_amr.hpp"
 #include "io/confined/hdf5/vtkhdf_grid.hpp"
 #include "io/confined/hdf5/vtkhdf_image.hpp"
 #include "io/confined/length_check.hpp"
@@ -88,9 +89,10 @@ Result<Loaded> load_vtkhdf(const std::string& path, const ReadOptions& options, 
     if (type == "PartitionedDataSetCollection" || type == "MultiBlockDataSet")
         return load_collection(path, options, depth);
     if (type == "ImageData") return load_vtkhdf_image(path, options, depth);
+    if (type == "OverlappingAMR") return load_vtkhdf_amr(path, options, depth);
     if (type == "UnstructuredGrid") return load_grid(path, options, depth);
     return broken(path, fmt::format("it is a VTKHDF file of type \"{}\": UnstructuredGrid, ImageData, "
-                                    "PartitionedDataSetCollection and MultiBlockDataSet are read",
+                                    "OverlappingAMR, PartitionedDataSetCollection and MultiBlockDataSet are read",
                                     escaped(type)));
 }
 
