@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <isotet/opacity.hpp>
+
 namespace isotet::view {
 
 namespace {
@@ -19,8 +21,20 @@ void add_option(std::vector<std::string>& words, const std::string& name, const 
     else words.insert(words.end(), {name, value});
 }
 
-void add_surfaces(std::vector<std::string>& words, const ViewState& state) {
+void add_field(std::vector<std::string>& words, const ViewState& state) {
     if (!state.field.empty()) add_option(words, "--field", state.field);
+}
+
+void add_volume(std::vector<std::string>& words, const VolumeState& volume) {
+    words.emplace_back("--volume");
+    add_option(words, "--opacity", volume.opacity);
+    if (volume.length) add_option(words, "--opacity-length", fmt::format("{}", *volume.length));
+}
+
+/// Opacity of the boundary where isotet render is told nothing of it.
+double boundary_by_itself(const ViewState& state) { return state.volume ? 0 : default_boundary_opacity; }
+
+void add_isovalues(std::vector<std::string>& words, const ViewState& state) {
     if (!state.isovalues.empty()) add_option(words, "--isovalue", fmt::format("{}", fmt::join(state.isovalues, ",")));
 }
 
@@ -76,6 +90,22 @@ bool set_range(ViewState& state, const std::string& value) {
     return true;
 }
 
+VolumeState& volume_in(ViewState& state) {
+    if (!state.volume) state.volume.emplace();
+    return *state.volume;
+}
+
+/// A number is the opacity of surfaces, all else that of a volume.
+bool set_opacity(ViewState& state, const std::string& value) {
+    if (const auto number = number_of(value)) {
+        state.opacity = number;
+        return *number >= 0 && *number <= 1;
+    }
+    if (value.size() > max_name_bytes || !parse_opacity(value)) return false;
+    volume_in(state).opacity = value;
+    return true;
+}
+
 bool set_name(std::string& target, const std::string& value) {
     if (value.size() > max_name_bytes) return false;
     target = value;
@@ -95,10 +125,13 @@ constexpr PageOption page_options[] = {
          return map.has_value();
      }},
     {"--range", "", "two numbers, the smaller one first", set_range},
-    {"--opacity", "", "a number from 0 to 1",
+    {"--opacity", "", "a number from 0 to 1; of a volume VALUE:OPACITY,VALUE:OPACITY,..., ramp, peaks or shell",
+     set_opacity},
+    {"--opacity-length", "", "a number above 0",
      [](ViewState& state, const std::string& value) {
-         state.opacity = number_of(value);
-         return state.opacity && *state.opacity >= 0 && *state.opacity <= 1;
+         VolumeState& volume = volume_in(state);
+         volume.length = number_of(value);
+         return volume.length && *volume.length > 0;
      }},
     {"--camera", "", "a camera as isotet render tells it",
      [](ViewState& state, const std::string& value) {
@@ -197,6 +230,10 @@ bool set_flag(ViewState& state, std::string_view word) {
     if (word == "--log") return state.logarithmic = true;
     if (word == "--outline") return state.outline = true;
     if (word == "--edges") return state.edges = true;
+    if (word == "--volume") {
+        volume_in(state);
+        return true;
+    }
     return false;
 }
 
@@ -260,7 +297,8 @@ bool is_plain(char c) {
 std::vector<std::string> extract_words(const ViewState& state, const std::string& file,
                                        const std::vector<std::string>& reading) {
     std::vector<std::string> words = first_words("extract", file, reading, state.step);
-    add_surfaces(words, state);
+    add_field(words, state);
+    add_isovalues(words, state);
     words.insert(words.end(), {"-o", "surface.vtp"});
     return words;
 }
@@ -268,7 +306,9 @@ std::vector<std::string> extract_words(const ViewState& state, const std::string
 std::vector<std::string> render_words(const ViewState& state, const std::string& file,
                                       const std::vector<std::string>& reading) {
     std::vector<std::string> words = first_words("render", file, reading, state.step);
-    add_surfaces(words, state);
+    if (state.volume) add_volume(words, *state.volume);
+    add_field(words, state);
+    if (!state.volume || state.volume->surfaces) add_isovalues(words, state);
     if (!state.color_by.empty()) add_option(words, "--color-by", state.color_by);
     if (state.map != ColorMap::viridis) add_option(words, "--colormap", std::string(name_of(state.map)));
     if (state.range) add_option(words, "--range", fmt::format("{},{}", state.range->lower, state.range->upper));
@@ -276,7 +316,8 @@ std::vector<std::string> render_words(const ViewState& state, const std::string&
     if (state.opacity) add_option(words, "--opacity", fmt::format("{}", *state.opacity));
     if (state.outline) words.emplace_back("--outline");
     if (state.edges) words.emplace_back("--edges");
-    if (state.boundary != default_boundary_opacity) add_option(words, "--boundary", fmt::format("{}", state.boundary));
+    if (state.boundary != boundary_by_itself(state))
+        add_option(words, "--boundary", fmt::format("{}", state.boundary));
     for (const Plane& plane : state.clips) add_option(words, "--clip", plane_text(plane));
     for (const Plane& plane : state.slices) add_option(words, "--slice", plane_text(plane));
     if (state.camera) add_option(words, "--camera", to_text(*state.camera));
@@ -341,6 +382,8 @@ Result<PastedCommand> state_of_command(std::string_view text, const std::vector<
     const Result<std::size_t> begin = begin_of_options(*words);
     if (!begin) return begin.error();
     PastedCommand pasted;
+    constexpr double not_given = -1;
+    pasted.state.boundary = not_given;
     for (std::size_t i = *begin; i < words->size(); ++i) {
         const std::string& word = (*words)[i];
         if (word == "--") break;
@@ -357,6 +400,9 @@ Result<PastedCommand> state_of_command(std::string_view text, const std::vector<
             return Error{ErrorCode::invalid_argument,
                          fmt::format("{} got '{}', but it takes {}", option->name, value, option->rule)};
     }
+    ViewState& state = pasted.state;
+    if (state.volume) state.volume->surfaces = !state.isovalues.empty();
+    if (state.boundary == not_given) state.boundary = boundary_by_itself(state);
     return pasted;
 }
 

@@ -125,11 +125,17 @@ Result<ContourInput> GridView::input_of(const std::string& field, const std::str
 }
 
 Result<std::optional<ColorScale>> GridView::scale_of(const ViewState& state, const Run& run) {
-    if (state.color_by.empty()) return std::optional<ColorScale>();
+    const std::string& name = state.volume ? state.field : state.color_by;
+    if (name.empty()) return std::optional<ColorScale>();
+    if (state.volume && !state.color_by.empty() && state.color_by != name)
+        return Error{ErrorCode::invalid_argument,
+                     fmt::format("colours are those of '{}', but the volume is one of '{}', and a picture has one colour "
+                                 "scale",
+                                 state.color_by, name)};
     Array values;
-    if (const Field* cells = cell_colors(grid_, state.color_by)) values = cells->values;
+    if (const Field* cells = state.volume ? nullptr : cell_colors(grid_, name)) values = cells->values;
     else {
-        const Result<PointField> field = field_of(state.color_by, run);
+        const Result<PointField> field = field_of(name, run);
         if (!field) return field.error();
         values = field->values;
     }

@@ -142,6 +142,8 @@ private:
     Result<Frame> picture_frame(const ShowMessage& message, double wait_seconds, std::vector<std::string>& known,
                                 const Run& run);
     Result<void> make_scene(const ShowMessage& message, const std::optional<ColorScale>& scale, const Run& run);
+    Result<void> show_volume(const ViewState& state, const ColorScale& scale, const Run& run);
+    Result<OpacityCurve> opacity_of_volume(const ViewState& state, const Run& run);
     std::optional<ColorField> color_field(const ViewState& state, const ColorScale& scale, const Run& run);
     Result<void> go_to_step(std::optional<std::uint64_t> wanted, const Run& run);
     void read_ahead(const ShowMessage& message);
@@ -191,6 +193,9 @@ private:
     std::optional<ValueRange> range_; ///< of range_key_
     std::string range_key_;
     std::vector<double> scene_isovalues_;
+    std::optional<VolumeState> scene_volume_; ///< what scene_ draws
+    ValueRange volume_range_;                 ///< that presets of opacity are over, of volume_field_: that of the step
+    std::string volume_field_;                ///< which was shown first, so that steps can be compared
     std::mutex boundary_mutex_;
     std::shared_ptr<const Mesh> boundary_; ///< of the cells and points of grid_; null: not there yet
     std::uint64_t boundary_number_ = 0;    ///< another one for each boundary, in its key

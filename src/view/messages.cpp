@@ -223,6 +223,11 @@ std::string frame_bytes(const FrameFacts& facts, const std::vector<FrameSurface>
                          {"upper", facts.scale->upper},
                          {"logarithmic", facts.scale->logarithmic},
                          {"no_data", color_text(facts.scale->no_data)}};
+    if (facts.opacity_length > 0) {
+        Json& points = head["opacity"] = Json::array();
+        for (const auto& [value, opacity] : facts.opacity) points.push_back({value, opacity});
+        head["opacity_length"] = facts.opacity_length;
+    }
     Json& list = head["surfaces"] = Json::array();
     for (const FrameSurface& surface : surfaces) list.push_back(surface_json(surface, blocks));
     if (facts.picture) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <isotet/contour_spectrum.hpp>
+#include <isotet/opacity.hpp>
 #include <isotet/result.hpp>
 
 #include "view/chart.hpp"
@@ -117,6 +118,8 @@ struct FrameFacts {
     std::optional<ValueRange> range = {};   ///< of its values in this step, where the file has several
     std::optional<double> field_bound = {};     ///< of the refined cells; nothing: none was refined
     std::optional<EncodedPicture> picture = {}; ///< instead of meshes
+    std::vector<OpacityPoint> opacity = {};     ///< of the volume in the picture
+    double opacity_length = 0;                  ///< of a volume: what that opacity is of
 };
 
 /// A frame in bytes: "isof", the bytes of its head (uint32), the head (JSON), then from the next multiple of 8 on the blocks

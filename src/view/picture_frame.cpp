@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include <isotet/draw.hpp>
+#include <isotet/opacity.hpp>
 
 #include "view/grid_view.hpp"
 
@@ -18,17 +19,23 @@ double picture_seconds(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Of what a scene is made of, the isovalues aside.
+/// Of what a scene is made of, the isovalues and how the volume looks aside.
 std::string scene_key(const ShowMessage& message, std::size_t step) {
     ViewState state = message.state;
     state.isovalues.clear();
     state.camera.reset();
+    if (state.volume) state.volume = VolumeState{};
     return fmt::format("{}|{}|{}", text_of(to_json(state)), step, (*message.picture)[1]);
 }
 
-SceneLook look_of(const ShowMessage& message, std::optional<ColorField> colors) {
+SceneLook look_of(const ShowMessage& message, std::optional<ColorField> colors,
+                  const std::optional<ColorScale>& scale) {
     const ViewState& state = message.state;
     SceneLook look;
+    if (state.volume && scale) {
+        look.volume.emplace(VolumeLook{*scale, {}});
+        look.isovalue_range = {scale->lower, scale->upper}; // surfaces have the colours of the volume there
+    }
     look.colors = std::move(colors);
     look.map = state.map;
     look.opacity = state.opacity;
@@ -46,8 +53,9 @@ SceneLook look_of(const ShowMessage& message, std::optional<ColorField> colors) 
 Result<void> GridView::make_scene(const ShowMessage& message, const std::optional<ColorScale>& scale, const Run& run) {
     const ViewState& state = message.state;
     std::vector<double> isovalues; // each once
-    for (const double one : state.isovalues)
-        if (std::ranges::find(isovalues, one) == isovalues.end()) isovalues.push_back(one);
+    if (!state.volume || state.volume->surfaces)
+        for (const double one : state.isovalues)
+            if (std::ranges::find(isovalues, one) == isovalues.end()) isovalues.push_back(one);
     const std::string key = scene_key(message, step_);
     if (!scene_ || scene_key_ != key) {
         scene_.reset();
@@ -59,18 +67,50 @@ Result<void> GridView::make_scene(const ShowMessage& message, const std::optiona
         options.field = *std::move(field);
         options.surfaces = isovalues.size();
         options.where = ExtractOn::cpu;
+        const bool colored = scale && !state.color_by.empty();
         auto scene = IsosurfaceScene::create(
-            {}, std::move(options), look_of(message, scale ? color_field(state, *scale, run) : std::nullopt), run);
+            {}, std::move(options), look_of(message, colored ? color_field(state, *scale, run) : std::nullopt, scale),
+            run);
         if (!scene) return scene.error();
         scene_ = *std::move(scene);
         scene_key_ = key;
         scene_isovalues_.clear();
+        scene_volume_.reset();
     }
-    if (scene_isovalues_ == isovalues) return {};
+    const bool same_volume = scene_volume_ == state.volume;
+    if (scene_isovalues_ == isovalues && same_volume) return {};
     scene_isovalues_.clear();
+    scene_volume_.reset();
+    if (state.volume && scale)
+        if (Result<void> looks = show_volume(state, *scale, run); !looks) return looks;
     if (Result<void> shown = scene_->show(isovalues, run); !shown) return shown;
     scene_isovalues_ = std::move(isovalues);
+    scene_volume_ = state.volume;
     return {};
+}
+
+/// From the scene's next show() on.
+Result<void> GridView::show_volume(const ViewState& state, const ColorScale& scale, const Run& run) {
+    Result<OpacityCurve> opacity = opacity_of_volume(state, run);
+    if (!opacity) return opacity.error();
+    scene_->set_volume({scale, *std::move(opacity), state.volume->length});
+    return {};
+}
+
+Result<OpacityCurve> GridView::opacity_of_volume(const ViewState& state, const Run& run) {
+    const Result<OpacityText> text = parse_opacity(state.volume->opacity);
+    if (!text) return text.error();
+    if (text->preset && volume_field_ != state.field) {
+        const Result<PointField> field = field_of(state.field, run);
+        if (!field) return field.error();
+        const ValueRange range = typical_range(field->values);
+        if (!(range.lower <= range.upper))
+            return Error{ErrorCode::invalid_data,
+                         fmt::format("field '{}' has no finite value: there is nothing to draw", state.field)};
+        volume_range_ = range;
+        volume_field_ = state.field;
+    }
+    return opacity_of(*text, volume_range_);
 }
 
 Result<Frame> GridView::picture_frame(const ShowMessage& message, double wait_seconds, std::vector<std::string>& known,
@@ -91,7 +131,7 @@ Result<Frame> GridView::picture_frame(const ShowMessage& message, double wait_se
     facts.extract_seconds = picture_seconds(start);
     const auto drawing = std::chrono::steady_clock::now();
     PictureOptions options;
-    const std::uint32_t part = message.moving ? 2 : 1;
+    const std::uint32_t part = !message.moving ? 1 : message.state.volume ? 3 : 2;
     options.width = std::max(1U, (*message.picture)[0] / part);
     options.height = std::max(1U, (*message.picture)[1] / part);
     if (message.moving) options.samples = 1;
@@ -102,8 +142,15 @@ Result<Frame> GridView::picture_frame(const ShowMessage& message, double wait_se
     if (!encoded) return encoded.error();
     facts.picture = *std::move(encoded);
     facts.mesh_seconds = picture_seconds(drawing);
+    if (message.state.volume) {
+        Result<OpacityCurve> opacity = opacity_of_volume(message.state, run);
+        if (!opacity) return opacity.error();
+        facts.opacity = std::move(opacity->points);
+        facts.opacity_length = scene_->report().opacity_length;
+    }
     std::vector<FrameSurface> surfaces;
     for (const double isovalue : message.state.isovalues) {
+        if (scene_isovalues_.empty()) break; // a volume alone
         const auto which =
             static_cast<std::size_t>(std::ranges::find(scene_isovalues_, isovalue) - scene_isovalues_.begin());
         FrameSurface& surface = surfaces.emplace_back();

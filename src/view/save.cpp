@@ -189,8 +189,9 @@ Result<std::vector<std::string>> save_words(const SaveRequest& request, const st
                                             const std::string& file, const std::vector<std::string>& reading) {
     if (Result<void> fits = check_request(request); !fits) return fits.error();
     const bool surface = is_surface(request.kind);
-    std::vector<std::string> words =
-        surface ? extract_words(request.state, file, reading) : render_words(request.state, file, reading);
+    ViewState state = request.state;
+    if (request.kind == SaveKind::sweep && state.volume) state.volume->opacity = "peaks"; // one, from value to value
+    std::vector<std::string> words = surface ? extract_words(state, file, reading) : render_words(state, file, reading);
     words.resize(words.size() - 2); // -o, and what it names
     if (!surface) {
         words.push_back("--size");

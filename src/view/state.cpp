@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <isotet/opacity.hpp>
+
 namespace isotet::view {
 
 namespace {
@@ -72,6 +74,22 @@ Json planes_json(const std::vector<Plane>& planes) {
     return json;
 }
 
+/// Errors   as state_of()
+Result<VolumeState> volume_of(const Json& json) {
+    if (!json.is_object()) return wrong_state("volume", "an object");
+    VolumeState volume;
+    StateReader reader(json);
+    reader.read_text("opacity", volume.opacity);
+    reader.read_flag("surfaces", volume.surfaces);
+    reader.read("length", "a number above 0", [&](const Json& value) {
+        volume.length = finite_number(value);
+        return volume.length && *volume.length > 0;
+    });
+    if (reader.error()) return *reader.error();
+    if (const Result<OpacityText> parsed = parse_opacity(volume.opacity); !parsed) return parsed.error();
+    return volume;
+}
+
 bool same_planes(const std::vector<Plane>& a, const std::vector<Plane>& b) {
     return std::ranges::equal(
         a, b, [](const Plane& p, const Plane& q) { return p.normal == q.normal && p.offset == q.offset; });
@@ -87,7 +105,7 @@ bool operator==(const ViewState& a, const ViewState& b) {
     return a.field == b.field && a.isovalues == b.isovalues && a.color_by == b.color_by && a.map == b.map &&
            range(a) == range(b) && a.logarithmic == b.logarithmic && a.opacity == b.opacity && a.outline == b.outline &&
            camera(a) == camera(b) && a.boundary == b.boundary && a.edges == b.edges && same_planes(a.clips, b.clips) &&
-           same_planes(a.slices, b.slices) && a.step == b.step;
+           same_planes(a.slices, b.slices) && a.step == b.step && a.volume == b.volume;
 }
 
 Json to_json(const ViewState& state) {
@@ -105,6 +123,10 @@ Json to_json(const ViewState& state) {
     if (state.range) json["range"] = {state.range->lower, state.range->upper};
     if (state.opacity) json["opacity"] = *state.opacity;
     if (state.camera) json["camera"] = to_text(*state.camera);
+    if (state.volume) {
+        json["volume"] = {{"opacity", state.volume->opacity}, {"surfaces", state.volume->surfaces}};
+        if (state.volume->length) json["volume"]["length"] = *state.volume->length;
+    }
     return json;
 }
 
@@ -153,6 +175,11 @@ Result<ViewState> state_of(const Json& json) {
         return state.camera.has_value();
     });
     if (reader.error()) return *reader.error();
+    if (const Json* json_volume = find(json, "volume")) {
+        Result<VolumeState> volume = volume_of(*json_volume);
+        if (!volume) return volume.error();
+        state.volume = *std::move(volume);
+    }
     return state;
 }
 

@@ -22,6 +22,15 @@ inline constexpr std::size_t max_name_bytes = 4096;
 inline constexpr std::size_t max_planes = 6;            ///< to clip with, and as many slices
 inline constexpr double default_boundary_opacity = 0.1; ///< as SceneLook has it
 
+/// The field as a volume, as isotet render --volume draws it: the server draws.
+struct VolumeState {
+    std::string opacity = "ramp";        ///< as parse_opacity() takes it
+    std::optional<double> length = {};   ///< that the opacity is of, above 0; nothing: default_opacity_length()
+    bool surfaces = true;                ///< isosurfaces are drawn with it
+
+    friend bool operator==(const VolumeState&, const VolumeState&) = default;
+};
+
 struct ViewState {
     std::string field;             ///< as find_field() takes it
     std::vector<double> isovalues; ///< the one that the slider moves, then the pinned ones
@@ -36,6 +45,7 @@ struct ViewState {
     bool edges = false;                         ///< as SceneLook::edges
     std::vector<Plane> clips, slices;           ///< as SceneLook; at most `max_planes` each
     std::optional<std::uint64_t> step;          ///< nothing: the one that is read
+    std::optional<VolumeState> volume;          ///< coloured by `field`, as then nothing is by another one
 };
 
 bool operator==(const ViewState& a, const ViewState& b);

@@ -73,6 +73,21 @@ TEST(StateOfCommand, TakesEveryWayToWriteAnOption) {
     }
 }
 
+TEST(StateOfCommand, TakesVolumesWithSurfacesAndWithout) {
+    const auto both = state_of_command("isotet render g.vtu -f p --volume --opacity shell --opacity 0.5 -i 1");
+    ASSERT_TRUE(both) << both.error().message;
+    EXPECT_EQ(both->state.volume, (VolumeState{"shell", {}, true}));
+    EXPECT_EQ(both->state.opacity, 0.5);
+    EXPECT_EQ(both->state.boundary, 0) << "as isotet render has it";
+    const auto alone = state_of_command("render g.vtu --volume --opacity-length 2 --boundary 0.25");
+    ASSERT_TRUE(alone) << alone.error().message;
+    EXPECT_EQ(alone->state.volume, (VolumeState{"ramp", 2, false}));
+    EXPECT_EQ(alone->state.boundary, 0.25);
+    EXPECT_EQ(state_of_command("render g.vtu -i 1")->state.boundary, default_boundary_opacity);
+    for (const char* text : {"--opacity 0.5:0.1,0.4:1", "--opacity half", "--opacity-length 0", "--opacity-length"})
+        EXPECT_FALSE(state_of_command(text)) << text;
+}
+
 TEST(StateOfCommand, NamesWhatItDoesNotTake) {
     const auto pasted = state_of_command("isotet render x.vtu -f p -i 0.2 --view +x --zoom=2 --boundary-color-by p "
                                          "--scale 1,1,5 --merge-points 0 --block a -q --size 800x600 -o y.png",
@@ -98,7 +113,9 @@ TEST(StateOfCommand, SaysWhatIsWrong) {
 TEST(StateOf, RefusesWhatIsNoState) {
     for (const char* text : {"[]", "3", R"({"isovalues":3})", R"({"isovalues":["a"]})", R"({"isovalues":[1e999]})",
                              R"({"field":3})", R"({"map":"jet"})", R"({"range":[1,1]})", R"({"range":[1]})",
-                             R"({"opacity":-0.1})", R"({"opacity":"1"})", R"({"camera":"x"})", R"({"outline":1})"}) {
+                             R"({"opacity":-0.1})", R"({"opacity":"1"})", R"({"camera":"x"})", R"({"outline":1})", R"({"volume":"ramp"})",
+                             R"({"volume":{"opacity":"steep"}})", R"({"volume":{"opacity":3}})",
+                             R"({"volume":{"length":0}})", R"({"volume":{"surfaces":1}})"}) {
         const auto json = parse_json(text);
         if (!json) continue; // 1e999 is no JSON number for the library
         EXPECT_FALSE(state_of(*json)) << text;

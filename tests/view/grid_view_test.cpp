@@ -349,6 +349,49 @@ TEST_F(GridViewTest, OfLinearCellsHasNothingToRefine) {
     EXPECT_FALSE(frame(message).contains("field_bound"));
 }
 
+ShowMessage show_volume(std::uint64_t number, const std::string& opacity, std::vector<double> isovalues = {}) {
+    ShowMessage message = show(number, std::move(isovalues));
+    message.state.volume = VolumeState{opacity, {}, !message.state.isovalues.empty()};
+    message.state.camera = camera_of(30, 20);
+    message.state.camera->fit(Box{{-1, -1, -1}, {1, 1, 1}}, 1);
+    message.picture = {60, 60};
+    return message;
+}
+
+TEST_F(GridViewTest, VolumesArePicturesThatFollowTheirOpacity) {
+    const auto picture_of = [&](const ShowMessage& message) {
+        const view::Frame made = view_->frame(message, 0, known_, {}).value();
+        const Json head = head_of(made.bytes);
+        return std::pair(head, made.bytes.substr(made.bytes.find("PNG")));
+    };
+    const auto [ramp, ramp_bytes] = picture_of(show_volume(1, "ramp"));
+    EXPECT_TRUE(ramp["surfaces"].empty());
+    EXPECT_EQ(ramp["picture"]["width"], 60);
+    EXPECT_GT(ramp["opacity_length"].get<double>(), 0);
+    EXPECT_EQ(ramp["opacity"].size(), 2U);
+    EXPECT_EQ(ramp["scale"]["lower"], 0) << "of the field itself";
+    const auto [points, points_bytes] = picture_of(show_volume(2, "0.5:0,0.8:1"));
+    EXPECT_EQ(points["opacity"], Json::parse("[[0.5, 0.0], [0.8, 1.0]]"));
+    EXPECT_NE(points_bytes, ramp_bytes);
+    const auto [both, both_bytes] = picture_of(show_volume(3, "0.5:0,0.8:1", {0.4}));
+    EXPECT_EQ(both["surfaces"].size(), 1U);
+    EXPECT_NE(both_bytes, points_bytes);
+    EXPECT_EQ(picture_of(show_volume(4, "ramp")).second, ramp_bytes) << "nothing stays of what was shown before";
+    ShowMessage moving = show_volume(5, "ramp");
+    moving.moving = true;
+    EXPECT_EQ(head_of(view_->frame(moving, 0, known_, {})->bytes)["picture"]["width"], 20);
+}
+
+TEST_F(GridViewTest, VolumesHaveTheColoursOfTheirField) {
+    ShowMessage message = show_volume(1, "ramp");
+    message.state.color_by = "gyroid";
+    const auto refused = view_->frame(message, 0, known_, {});
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("one colour scale"), std::string::npos) << refused.error().message;
+    message.state.color_by = "sphere";
+    EXPECT_TRUE(view_->frame(message, 0, known_, {}));
+}
+
 TEST_F(GridViewTest, WrongWishesAreErrorsAndLeaveWhatThePageHas) {
     frame(show(1, {0.7}));
     const std::vector<std::string> before = known_;

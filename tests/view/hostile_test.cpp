@@ -112,7 +112,7 @@ TEST(Server, ThePageIsSmallAndNeedsNothingFromElsewhere) {
         for (const char* place : {"http://", "https://", "//cdn", "@import", "url("})
             EXPECT_EQ(file.content.find(place), std::string::npos) << file.name << " has " << place;
     }
-    EXPECT_LT(bytes, 150'000U);
+    EXPECT_LT(bytes, 200'000U);
 }
 
 TEST(Server, AnswersOnlyToNamesOfThisMachine) {

@@ -143,6 +143,10 @@ TEST(SaveWords, SweepsReplaceTheIsovaluesAndTurnsKeepThem) {
     const std::string sweep = shell_text(save_words(request, "out", "grid.vtu", {}).value());
     EXPECT_NE(sweep.find("--sweep=-1,2,5"), std::string::npos) << sweep;
     EXPECT_EQ(sweep.find("--isovalue"), std::string::npos) << sweep;
+    request.state.volume = VolumeState{"0:0,1:1"};
+    const std::string peak = shell_text(save_words(request, "out", "grid.vtu", {}).value());
+    EXPECT_NE(peak.find("--volume --opacity peaks"), std::string::npos) << "a sweep says where the peak is: " << peak;
+    request.state.volume.reset();
     request.kind = SaveKind::turn;
     const std::string turn = shell_text(save_words(request, "out", "grid.vtu", {}).value());
     EXPECT_NE(turn.find("--orbit=5"), std::string::npos) << turn;

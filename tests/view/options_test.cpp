@@ -20,6 +20,17 @@ void expect_same_planes(const std::vector<Plane>& a, const std::vector<Plane>& b
     }
 }
 
+void expect_same_volume(const cli::RenderCommand& render, const std::optional<view::VolumeState>& volume) {
+    ASSERT_EQ(render.volume, volume.has_value());
+    ASSERT_EQ(render.volume_opacity.has_value(), volume.has_value());
+    if (!volume) return;
+    const OpacityText opacity = parse_opacity(volume->opacity).value();
+    EXPECT_EQ(render.volume_opacity->curve.points, opacity.curve.points);
+    EXPECT_EQ(render.volume_opacity->preset, opacity.preset);
+    EXPECT_EQ(render.volume_opacity->peaks, opacity.peaks);
+    EXPECT_EQ(render.opacity_length, volume->length);
+}
+
 TEST(RenderWords, AreOptionsOfTheProgramWithTheSameMeaning) {
     for (unsigned seed = 1; seed <= 200; ++seed) {
         SCOPED_TRACE(seed);
@@ -33,7 +44,8 @@ TEST(RenderWords, AreOptionsOfTheProgramWithTheSameMeaning) {
         EXPECT_EQ(render.grid.file, "grid.vtu");
         EXPECT_TRUE(render.grid.keep_pieces);
         EXPECT_EQ(render.grid.step, state.step);
-        EXPECT_EQ(render.boundary.value_or(view::default_boundary_opacity), state.boundary);
+        EXPECT_EQ(render.boundary.value_or(state.volume ? 0 : view::default_boundary_opacity), state.boundary);
+        expect_same_volume(render, state.volume);
         EXPECT_EQ(render.edges, state.edges);
         expect_same_planes(render.clips, state.clips);
         expect_same_planes(render.slices, state.slices);

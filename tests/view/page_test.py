@@ -607,6 +607,59 @@ def test_surfaces_that_are_too_large_are_drawn_by_the_server(browser, viewer):
     browser.value('delete document.body.dataset.most')
 
 
+def test_volume(browser, viewer):
+    """The field as a volume: presets, a curve that the hand drags, surfaces with it, the address and the command line."""
+    at_rest_in_full = 'document.body.dataset.preview === "false" && document.body.dataset.picture === "image/png"'
+    start(browser, viewer, '&labels=0')
+    value = shown(browser)
+    browser.click('#volume')
+    browser.wait(f'document.body.dataset.volume === "ramp" && {at_rest_in_full}')
+    check(browser.value('document.getElementById("shown").textContent') == 'Volume shown', 'it says what is shown')
+    check(0.1 < share_of_surface(browser) < 0.9, 'the volume is in the picture')
+    check(browser.value('document.getElementById("color-by").disabled'), 'it has colours of its own')
+    ramp = browser.picture(pictures and f'{pictures}/volume.png')
+    choose(browser, '#opacity-preset', 'peaks')
+    browser.wait(f'document.body.dataset.volume === "peaks" && {at_rest_in_full}')
+    check(browser.picture() != ramp, 'peaks are another picture')
+    points = browser.value('document.body.dataset.curve').split(',')
+    check(len(points) > 6, f'the curve of the preset is shown: {points}')
+    choose(browser, '#opacity-text', '0.3:0,0.7:0.3')
+    browser.wait(f'document.body.dataset.volume === "0.3:0,0.7:0.3" && {at_rest_in_full}')
+    check(browser.value('document.getElementById("opacity-preset").value') == '', 'points are no preset')
+
+    browser.value('document.getElementById("opacity-curve").scrollIntoView()')
+    x, y, w, h = browser.box('#opacity-curve')
+    lower, upper = span(browser)
+    at = x + (0.7 - lower) / (upper - lower) * w, y + 4 + (h - 8) * (1 - 0.3 ** 0.5)
+    browser.value('window.numbers = []; new MutationObserver(() => numbers.push(Number(document.body.dataset.frame)))'
+                  '.observe(document.body, {attributes: true, attributeFilter: ["data-frame"]})')
+    browser.drag(at, (at[0] - 20, y + 6), steps=20)
+    browser.wait('document.body.dataset.volume.endsWith(":" + document.body.dataset.curve.split(":").pop())')
+    browser.wait(f'document.body.dataset.volume === document.body.dataset.curve && {at_rest_in_full}')
+    dragged, opacity = map(float, browser.value('document.body.dataset.volume').split(',')[1].split(':'))
+    check(dragged < 0.7 and opacity > 0.8, f'the point follows the hand: {dragged}:{opacity}')
+    numbers = browser.value('numbers')
+    check(numbers == sorted(numbers), f'no picture of the past comes late: {numbers}')
+
+    before = browser.picture()
+    browser.click('#volume-surfaces')
+    browser.wait(f'Number(document.body.dataset.shown) === {value} && {at_rest_in_full}')
+    check(browser.picture() != before, 'the surface is drawn with it')
+    browser.wait('location.hash.includes("surfaces=1")')
+    curve = browser.value('document.body.dataset.curve')
+    browser.click('#copy-render')
+    browser.wait(f'document.getElementById("copied").textContent.includes("--volume --opacity {curve}")')
+    browser.call('Page.reload')
+    browser.wait('document.readyState === "complete" && document.body.dataset.shown !== undefined')
+    browser.wait(f'document.body.dataset.volume === "{curve}" && {at_rest_in_full}')
+    choose(browser, '#opacity-text', '0.5:0,0.3:1')
+    browser.wait('document.getElementById("message").textContent.includes("ascend")')
+    choose(browser, '#field', 'gyroid')
+    browser.wait(f'document.body.dataset.volume === "ramp" && document.body.dataset.field === "gyroid" && {at_rest_in_full}')
+    browser.click('#volume')
+    browser.wait('document.body.dataset.volume === "" && document.body.dataset.picture === ""')
+
+
 def test_without_webgl_the_server_draws(browser, viewer):
     script = browser.call('Page.addScriptToEvaluateOnNewDocument', source='HTMLCanvasElement.prototype.getContext = (get => function(kind, '
                           '...more) { return kind === "webgl2" ? null : get.call(this, kind, ...more); })(HTMLCanvasElement.prototype'

@@ -2,6 +2,7 @@
 // States with everything that a state can have, from a seed.
 #pragma once
 
+#include <array>
 #include <random>
 
 #include "view/state.hpp"
@@ -53,6 +54,16 @@ inline view::ViewState random_state(unsigned seed) {
             planes->push_back(plane);
         }
     if (chance(0.3)) state.step = std::uniform_int_distribution<std::uint64_t>(0, 99)(random);
+    if (chance(0.3)) {
+        constexpr std::array texts{"ramp", "peaks", "peaks:5", "shell", "-1:0,0:0.5,0:1,1e3:0.25"};
+        view::VolumeState& volume = state.volume.emplace();
+        volume.opacity = texts[std::uniform_int_distribution<std::size_t>(0, texts.size() - 1)(random)];
+        if (chance(0.5)) volume.length = std::abs(number()) + 1e-9;
+        if (chance(0.5)) state.isovalues.clear(); // a command line without isovalues has no surfaces
+        volume.surfaces = !state.isovalues.empty();
+        if (chance(0.5)) state.color_by = state.field;
+        else state.color_by.clear();
+    }
     return state;
 }
 

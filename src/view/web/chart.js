@@ -2,6 +2,16 @@
 // The slider on the histogram of the field.
 import {roundTo, short} from './format.js';
 
+/** The histogram of a chart, `room` high above `base`; `x` is the place of a value. */
+export function paintBars(context, {points, lower, upper}, x, base, room) {
+  // Square roots: bins with few points stay visible beside a bin with most of them.
+  const most = Math.sqrt(Math.max(1, ...points)), wide = x(lower + (upper - lower) / points.length) - x(lower);
+  points.forEach((count, i) => {
+    const tall = room * Math.sqrt(count) / most;
+    if (count > 0) context.fillRect(x(lower) + i * wide, base - Math.max(1, tall), Math.max(1, wide - 0.5), Math.max(1, tall));
+  });
+}
+
 export class ChartSlider {
   /** @param on  {input(value): the hand moves; commit(): it rests} */
   constructor(element, canvas, on) {
@@ -147,14 +157,9 @@ export class ChartSlider {
 
   /** Histogram and curve, in their part of the slider. */
   drawChart(width, height, color) {
-    const {context} = this, {points, lower, upper} = this.chart, base = height - 2, room = height - 14;
-    // Square roots: bins with few points stay visible beside a bin with most of them.
-    const most = Math.sqrt(Math.max(1, ...points)), wide = this.part(lower + (upper - lower) / points.length) - this.part(lower);
+    const {context} = this, base = height - 2, room = height - 14;
     context.fillStyle = color('bars');
-    points.forEach((count, i) => {
-      const tall = room * Math.sqrt(count) / most, left = this.part(lower) + i * wide;
-      if (count > 0) context.fillRect(left * width, base - Math.max(1, tall), Math.max(1, wide * width - 0.5), Math.max(1, tall));
-    });
+    paintBars(context, this.chart, (value) => this.part(value) * width, base, room);
     context.strokeStyle = color('curve');
     context.lineWidth = 1.5;
     context.lineJoin = 'round';

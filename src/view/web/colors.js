@@ -4,6 +4,7 @@ import {app, id} from './app.js';
 import * as format from './format.js';
 import {say} from './notes.js';
 import {drawSoon} from './picture.js';
+import {coloredBy} from './state.js';
 import {showSurfaces} from './surfaces.js';
 import {commitSoon} from './undo.js';
 import {wishSoon} from './wishes.js';
@@ -30,7 +31,7 @@ export function showRange() {
 }
 
 export function colorsChanged() {
-  id('color-details').hidden = !app.state.colorBy;
+  id('color-details').hidden = !coloredBy(app.state);
   showMap();
   showRange();
   showSurfaces();

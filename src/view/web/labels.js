@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // What is written in the scene: colour scale or legend, field, isovalue and time, as isotet render has it.
 import {app, css, id} from './app.js';
+import {coloredBy} from './state.js';
 import {numberLabel, ticksOf} from './ticks.js';
 
 const size = 13; // of letters, in pixels of the page
@@ -69,10 +70,10 @@ function paintEntry(context, [color, text], x, y) {
 
 /** At the right: the scale of the colours, else the colours of several surfaces. */
 function paintColumn(context, width, height) {
-  const {frame, state} = app, scale = state.colorBy ? frame.scale : null, surfaces = shown();
+  const {frame, state} = app, scale = coloredBy(state) ? frame.scale : null, surfaces = shown();
   const entries = scale || surfaces.length < 2 ? [] : surfaces.map((one) => [colorOf(one), numberLabel(one.isovalue)]).reverse();
   if (!scale && entries.length === 0) return;
-  const tall = scale ? Math.round(Math.min(0.55 * height, 320)) : line * entries.length, title = scale ? state.colorBy : frame.field;
+  const tall = scale ? Math.round(Math.min(0.55 * height, 320)) : line * entries.length, title = scale ? coloredBy(state) : frame.field;
   const ticks = scale ? ticksOf(scale, Math.floor(tall / (3 * size))) : [];
   const wide = Math.max(context.measureText(title).width, ...[...ticks, ...entries].map(([, text]) => swatch + 9 + context.measureText(text).width));
   const x = Math.round(width - wide - size), y = Math.round((height - tall) / 2);

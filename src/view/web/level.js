@@ -6,6 +6,7 @@ import * as format from './format.js';
 import {say} from './notes.js';
 import {pinColor, showSurfaces} from './surfaces.js';
 import {address, commit, commitSoon} from './undo.js';
+import {forgetPoints, showCurve} from './volume.js';
 import {wishSoon} from './wishes.js';
 
 app.slider = new ChartSlider(id('slider'), id('chart'), {input: setValue, commit});
@@ -39,6 +40,7 @@ export function showValue() {
   const ms = expected === null || !level.msPerTriangle ? '' : `, ${format.duration(expected * level.msPerTriangle)}`;
   id('prediction').textContent = expected === null ? '' : expected === 0 ? 'No triangles expected' : `About ${format.rough(expected)} triangles${ms} expected`;
   showMeasures();
+  showCurve();
 }
 
 export function measureServer(made) {
@@ -178,6 +180,7 @@ id('field').addEventListener('change', () => {
   Object.assign(state, {field: id('field').value, value: null, pins: []}, level.left.get(id('field').value));
   app.slider.chart = app.slider.spectrum = null;
   level.automatic = false;
+  forgetPoints();
   commit();
   askChart();
   showValue();

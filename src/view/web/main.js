@@ -15,10 +15,11 @@ import {drawSoon, pictureAsSeen, takeFrame} from './picture.js';
 import {Pointer} from './pointer.js';
 import {Save} from './save.js';
 import {Scene} from './scene.js';
-import {fromMessage} from './state.js';
+import {coloredBy, fromMessage} from './state.js';
 import {showSurfaces} from './surfaces.js';
 import {TimeSteps} from './time.js';
 import {address, commit, commitSoon, onReturn} from './undo.js';
+import {showVolume} from './volume.js';
 import {serverDraws, stopWaiting, wishSoon} from './wishes.js';
 
 /** The controls and the picture follow a new state. */
@@ -32,9 +33,10 @@ function showState() {
   id('edges').checked = app.state.edges;
   id('labels-on').checked = app.state.labels;
   id('parallel').checked = app.camera.projection === 'parallel';
-  id('color-details').hidden = !app.state.colorBy;
+  id('color-details').hidden = !coloredBy(app.state);
   id('drawn-by').value = app.scene ? app.state.drawn : 'server';
   id('drawn-by').disabled = !app.scene;
+  showVolume();
   id('picture').hidden = !serverDraws();
   showBoundary();
   app.cuts.show();

@@ -7,7 +7,8 @@ import {serverDraws} from './wishes.js';
 
 export function pickAt(x, y) {
   if (serverDraws()) {
-    if (!app.grid?.lower) return;
+    const {volume, planes} = app.state; // there may be no surface
+    if (!app.grid?.lower || (volume && !volume.surfaces && !planes.some(({kind}) => kind === 'slice'))) return;
     const [point, ray] = app.camera.ray(x, y, aspect(), app.grid.lower, app.grid.upper);
     app.picked = {point: null, isovalue: null, key: null, field: app.frame?.field, step: app.frame?.step};
     app.link.send({do: 'pick', state: {...toMessage(app.state), camera: undefined}, point, ray});

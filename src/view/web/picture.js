@@ -9,6 +9,7 @@ import {showNotes} from './notes.js';
 import {checkPicked, placeMark} from './picked.js';
 import {planesOf} from './state.js';
 import {showSurfaces} from './surfaces.js';
+import {showVolume} from './volume.js';
 import {measureLine, measureSpeed, noteSize, pictureSize, refineSoon, restSoon, serverDraws, stopWaiting, wishSoon} from './wishes.js';
 
 /** Colour and opacity of what the frame has: the slider's surface, pinned ones, slices, the boundary. */
@@ -143,9 +144,11 @@ function tellFacts() {
   const [first] = isosurfaces();
   const triangles = [...new Map(isosurfaces().map((one) => [one.isovalue, one.triangles])).values()].reduce((a, b) => a + b, 0);
   const drawn = isosurfaces().reduce((sum, one) => sum + (app.scene?.meshes.get(one.key)?.count || 0) / 3, 0);
-  id('shown').textContent = first ? `${format.short(first.isovalue)} shown` : 'No surface';
+  const volume = app.frame.opacity_length > 0;
+  id('shown').textContent = first ? `${format.short(first.isovalue)} shown` : volume ? 'Volume shown' : 'No surface';
   const parts = [`${format.grouped(triangles)} triangles` + (app.frame.preview && !app.frame.picture ? `, preview of ${format.rough(drawn)}` : '')];
   if (triangles === 0 && first) parts[0] = ['no triangles at this value', outside(first.isovalue)].filter(Boolean).join(': ');
+  if (volume && !first) parts[0] = `opacity of a length of ${format.short(app.frame.opacity_length)}`;
   const {picture} = app.frame, made = picture ? app.frame : app.made || app.frame;
   if (picture) parts.push(`drawn by the server (${serverDraws() || 'until now'}): ${picture.type === 'image/png' ? 'exact' : 'while it moves'}, ${picture.width} × ${picture.height}`);
   if (app.grid.saved === 'surfaces') parts.push(`unpacked in ${format.duration(made.mesh_ms)}`);
@@ -159,7 +162,7 @@ function tellFacts() {
   id('facts').title = parts.join('\n');
   Object.assign(document.body.dataset, {shown: first?.isovalue ?? '', triangles, drawn, preview: app.frame.preview, method: app.frame.method,
     bound: app.frame.field_bound ?? '', frame: app.frame.number, field: app.frame.field, step_shown: app.frame.step,
-    picture: app.frame.picture?.type ?? '', kinds: app.frame.surfaces.map(({kind}) => kind).join(' ')});
+    volume: volume ? app.state.volume?.opacity ?? '' : '', picture: app.frame.picture?.type ?? '', kinds: app.frame.surfaces.map(({kind}) => kind).join(' ')});
   id('scene').setAttribute('aria-label', `Isosurface of ${app.state.field} at ${first ? format.short(first.isovalue) : 'no value'}, ` +
     `${format.grouped(triangles)} triangles. Arrow keys turn, with Shift they move, plus and minus zoom.`);
 }
@@ -185,6 +188,7 @@ async function takePicture(next) {
   checkPicked();
   showSurfaces();
   showRange();
+  showVolume();
   tellFacts();
   drawSoon();
   if (next.preview && next.number >= app.number) restSoon();

@@ -6,6 +6,7 @@ export const firstState = () => ({
   color: null, opacity: null,       // of the surface that the slider moves
   colorBy: '', map: 'viridis', range: null, logarithmic: false, outline: false, edges: false, camera: null,
   boundary: 0.1, planes: [], step: null, drawn: '', // 'server': pictures, 'browser': never
+  volume: null, // {opacity, length, surfaces}: as isotet render --volume draws it
   labels: true, // scale, field, isovalue and time in the scene
   span: '', // of the slider: 'step', else all steps that were seen
   // planes: [{kind: 'clip' or 'slice', normal, offset}]
@@ -33,6 +34,9 @@ export function toAddress(state) {
   if (state.step !== null) parts.set('step', state.step);
   if (state.drawn) parts.set('drawn', state.drawn);
   if (state.span) parts.set('span', state.span);
+  if (state.volume) parts.set('volume', state.volume.opacity);
+  if (state.volume?.length) parts.set('length', state.volume.length);
+  if (state.volume?.surfaces) parts.set('surfaces', 1);
   if (!state.labels) parts.set('labels', 0);
   if (state.camera) parts.set('camera', state.camera);
   return parts.toString();
@@ -70,10 +74,17 @@ export function fromAddress(text) {
   if (step !== null && Number.isInteger(step) && step >= 0) state.step = step;
   if (['server', 'browser'].includes(parts.get('drawn'))) state.drawn = parts.get('drawn');
   if (parts.get('span') === 'step') state.span = 'step';
+  if (parts.get('volume')) {
+    const length = number(parts.get('length'));
+    state.volume = {opacity: parts.get('volume').slice(0, 4096), length: length > 0 ? length : null, surfaces: parts.get('surfaces') === '1'};
+  }
   state.labels = parts.get('labels') !== '0';
   state.camera = parts.get('camera');
   return state;
 }
+
+/** The field that colours: a volume has its own colours. */
+export const coloredBy = ({volume, field, colorBy}) => (volume ? field : colorBy);
 
 /** As messages have it (src/view/state.hpp). */
 export function toMessage(state) {
@@ -85,6 +96,11 @@ export function toMessage(state) {
   if (state.value === null) message.isovalues.shift();
   if (state.range) message.range = state.range;
   if (state.camera) message.camera = state.camera;
+  if (state.volume) {
+    const {opacity, length, surfaces} = state.volume;
+    message.volume = length ? {opacity, length, surfaces} : {opacity, surfaces};
+    if (state.colorBy !== state.field) message.color_by = '';
+  }
   const opacities = [state.opacity, ...state.pins.map((pin) => pin.opacity)];
   if (opacities[0] !== null && opacities.every((one) => one === opacities[0])) message.opacity = opacities[0];
   return message;
@@ -97,5 +113,6 @@ export function fromMessage(message) {
     colorBy: message.color_by, map: message.map, logarithmic: message.logarithmic, outline: message.outline,
     edges: message.edges, boundary: message.boundary, step: message.step ?? null,
     planes: ['clip', 'slice'].flatMap((kind) => message[kind + 's'].map((plane) => ({kind, normal: plane.slice(0, 3), offset: plane[3]}))),
+    volume: message.volume ? {length: null, ...message.volume} : null,
     range: message.range ?? null, camera: message.camera ?? null};
 }

@@ -5,7 +5,7 @@ import * as format from './format.js';
 import {planesOf, toMessage} from './state.js';
 
 /** Why the server draws, or nothing where the browser does. */
-export const serverDraws = () => (!app.scene ? 'no WebGL2 here' : app.grid?.saved ? '' : app.state.drawn === 'server' ? 'chosen' :
+export const serverDraws = () => (!app.scene ? 'no WebGL2 here' : app.grid?.saved ? '' : app.state.volume ? 'a volume' : app.state.drawn === 'server' ? 'chosen' :
   app.large && app.state.drawn !== 'browser' ? `${format.rough(app.large)} triangles are too many for the browser` : '');
 
 /** Where surfaces are too large for the browser the server draws, until they are a quarter smaller. */
