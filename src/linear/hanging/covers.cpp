@@ -5,6 +5,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -33,6 +34,8 @@ struct ShapeOfFace {
     Point middle{}, normal{}; ///< the normal has twice the face's area
     Point lower{}, upper{};
     double extent = 0;
+
+    double squared_area() const { return dot(normal, normal); } ///< four times the area's square
 };
 
 struct DirectedEdge {
@@ -43,15 +46,20 @@ struct DirectedEdge {
 class CoverFinder {
 public:
     CoverFinder(const OpenFaces& faces, const core::CellReader& cells, const core::PointReader& points)
-        : faces_(faces), points_(points), shapes_(faces.size()), turned_(faces.size()), tree_(shape_all(cells)) {}
+        : faces_(faces), points_(points), shapes_(faces.size()), turned_(faces.size()), tree_(shape_all(cells)) {
+        note_smallest(cells.points());
+    }
 
     std::vector<Cover> find_candidates(const Progress& progress) const {
         std::vector<Cover> all(faces_.size());
         core::parallel_pieces(faces_.size(), 1 << 9, progress, [&](std::size_t begin, std::size_t end) {
             for (std::size_t face = begin; face < end; ++face) {
                 all[face].face = face;
-                find_smaller(face, all[face].by);
-                for (const std::uint32_t other : all[face].by) all[face].distances.push_back(distance(face, other));
+                if (!meets_smaller(face)) continue;
+                for (const auto& [other, distance] : smaller_of(face)) {
+                    all[face].by.push_back(other);
+                    all[face].distances.push_back(distance);
+                }
             }
         });
         std::erase_if(all, [](const Cover& cover) { return cover.by.size() < 2; });
@@ -61,13 +69,9 @@ public:
     bool has_any_smaller() const {
         std::atomic<bool> found{false};
         core::parallel_ranges(faces_.size(), 1 << 9, [&](std::size_t begin, std::size_t end) {
-            std::vector<std::uint32_t> by;
-            for (std::size_t face = begin; face < end && !found.load(std::memory_order_relaxed); ++face) {
-                by.clear();
-                find_smaller(face, by);
-                if (std::ranges::any_of(by, [&](std::uint32_t other) { return distance(face, other) <= near_face; }))
+            for (std::size_t face = begin; face < end && !found.load(std::memory_order_relaxed); ++face)
+                if (std::ranges::any_of(smaller_of(face), [](const Smaller& one) { return one.distance <= near_face; }))
                     found.store(true, std::memory_order_relaxed);
-            }
         });
         return found;
     }
@@ -116,6 +120,19 @@ private:
         return middles;
     }
 
+    void note_smallest(std::size_t points) {
+        smallest_.assign(points, std::numeric_limits<double>::infinity());
+        for (std::size_t face = 0; face < faces_.size(); ++face)
+            for (const std::uint64_t point : faces_.loop(face))
+                smallest_[point] = std::min(smallest_[point], shapes_[face].squared_area());
+    }
+
+    /// What covers a face has its corners: a smaller one is at some of them.
+    bool meets_smaller(std::size_t face) const {
+        const double area = shapes_[face].squared_area();
+        return std::ranges::any_of(faces_.loop(face), [&](std::uint64_t point) { return smallest_[point] < area; });
+    }
+
     ShapeOfFace shape_of_face(std::span<const std::uint64_t> loop) const {
         ShapeOfFace out;
         const Point origin = points_[loop[0]];
@@ -134,7 +151,14 @@ private:
         return out;
     }
 
-    void find_smaller(std::size_t face, std::vector<std::uint32_t>& by) const {
+    struct Smaller {
+        std::uint32_t face;
+        double distance;
+    };
+
+    /// Those that may cover a face, ascending.
+    std::vector<Smaller> smaller_of(std::size_t face) const {
+        std::vector<Smaller> out;
         const ShapeOfFace& shape = shapes_[face];
         const double more = beside_face * shape.extent;
         Point lower = shape.lower, upper = shape.upper;
@@ -143,15 +167,17 @@ private:
             upper[axis] += more;
         }
         tree_.each_in(lower, upper, [&](std::uint32_t other) {
-            if (faces_.place(other).cell != faces_.place(face).cell && is_over(face, other)) by.push_back(other);
+            if (faces_.place(other).cell == faces_.place(face).cell || !is_over(face, other)) return;
+            if (const double far = distance(face, other); far <= beside_face) out.push_back({other, far});
         });
-        std::ranges::sort(by);
+        std::ranges::sort(out, {}, &Smaller::face);
+        return out;
     }
 
     /// A smaller face that faces the other way, with its middle over a face.
     bool is_over(std::size_t face, std::size_t other) const {
         const ShapeOfFace &shape = shapes_[face], &small = shapes_[other];
-        const double area = dot(shape.normal, shape.normal), small_area = dot(small.normal, small.normal);
+        const double area = shape.squared_area(), small_area = small.squared_area();
         if (!(area > 0) || !(small_area < largest_share * largest_share * area)) return false;
         if (!(dot(shape.normal, small.normal) < most_cosine * std::sqrt(area) * std::sqrt(small_area))) return false;
         const auto loop = faces_.loop(face);
@@ -162,7 +188,7 @@ private:
             if (turned_[face] ? inside > 0 : inside < 0) return false;
         }
         const double height = std::abs(dot(minus(small.middle, shape.middle), shape.normal)) / std::sqrt(area);
-        return height <= 2 * beside_face * shape.extent && distance(face, other) <= beside_face;
+        return height <= 2 * beside_face * shape.extent;
     }
 
     /// Of the middle of one face from another, in extents of that.
@@ -179,6 +205,7 @@ private:
     std::vector<ShapeOfFace> shapes_;
     std::vector<std::uint8_t> turned_; ///< loops that are clockwise seen from outside of their cells
     PlaceTree tree_;                   ///< of their middles
+    std::vector<double> smallest_;     ///< by point: the squared area of the smallest face that has it
 };
 
 std::vector<DirectedEdge> CoverFinder::outline_of(std::span<const std::uint32_t> some, const SplitEdges& edges) const {

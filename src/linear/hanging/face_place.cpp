@@ -50,8 +50,7 @@ FacePlace place_on_quadrilateral(const std::array<Point, 4>& corners, const Poin
         v = next_v;
         if (stays) break;
     }
-    const auto weights = bilinear_weights(u, v);
-    return {{weights.begin(), weights.end()}, std::sqrt(dot(rest, rest))};
+    return {4, {0, 1, 2, 3}, bilinear_weights(u, v), std::sqrt(dot(rest, rest))};
 }
 
 FacePlace place_on_triangle(const std::array<Point, 3>& corners, const Point& point) {
@@ -60,7 +59,7 @@ FacePlace place_on_triangle(const std::array<Point, 3>& corners, const Point& po
     u = std::clamp(u, 0.0, 1.0);
     v = std::clamp(v, 0.0, 1 - u);
     const Point rest = minus(point, moved_by(moved_by(a, u, minus(b, a)), v, minus(c, a)));
-    return {{1 - u - v, u, v}, std::sqrt(dot(rest, rest))};
+    return {3, {0, 1, 2}, {1 - u - v, u, v}, std::sqrt(dot(rest, rest))};
 }
 
 } // namespace
@@ -71,14 +70,10 @@ FacePlace place_on_face(std::span<const std::uint64_t> loop, const core::Point& 
         return place_on_quadrilateral({points[loop[0]], points[loop[1]], points[loop[2]], points[loop[3]]}, point);
     FacePlace best;
     for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
-        const FacePlace found =
-            place_on_triangle({points[loop[0]], points[loop[i]], points[loop[i + 1]]}, point);
-        if (!best.weights.empty() && !(found.distance < best.distance)) continue;
-        best.distance = found.distance;
-        best.weights.assign(loop.size(), 0);
-        best.weights[0] = found.weights[0];
-        best.weights[i] = found.weights[1];
-        best.weights[i + 1] = found.weights[2];
+        FacePlace found = place_on_triangle({points[loop[0]], points[loop[i]], points[loop[i + 1]]}, point);
+        if (best.count > 0 && !(found.distance < best.distance)) continue;
+        found.corners = {0, i, i + 1};
+        best = found;
     }
     return best;
 }
@@ -87,7 +82,7 @@ FacePlace place_on_edge(const core::Point& from, const core::Point& to, const co
     const Point along = minus(to, from);
     const double part = std::clamp(dot(minus(point, from), along) / dot(along, along), 0.0, 1.0);
     const Point rest = minus(point, moved_by(from, part, along));
-    return {{1 - part, part}, std::sqrt(dot(rest, rest))};
+    return {2, {0, 1}, {1 - part, part}, std::sqrt(dot(rest, rest))};
 }
 
 } // namespace isotet::linear

@@ -2,18 +2,21 @@
 // Where a point is on a face: weights of its corners, and the distance.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "grid/orientation.hpp"
 
 namespace isotet::linear {
 
+/// Up to four corners of a loop, by their places in it, and their weights; the sum of these is 1.
 struct FacePlace {
-    std::vector<double> weights; ///< of the corners, in their order; the sum is 1
-    double distance = 0;         ///< of the point from the place that the weights give
+    std::size_t count = 0;
+    std::array<std::size_t, 4> corners{};
+    std::array<double, 4> weights{};
+    double distance = 0; ///< of the point from the place that the weights give
 };
 
 /// The nearest place, of a triangle, a quadrilateral as its bilinear map, or a larger loop as the fan from its first

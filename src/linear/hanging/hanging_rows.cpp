@@ -2,8 +2,11 @@
 #include "linear/hanging/hanging_rows.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <mutex>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -27,9 +30,9 @@ struct HangingRow {
     std::uint64_t point = 0;
     bool on_face = false;     ///< and not on an edge of it
     double size = 0;          ///< of the edge or face, squared
-    std::vector<std::uint64_t> corners;
-    std::vector<double> weights;
-    double distance = 0;
+    std::size_t count = 0;        ///< of corners
+    std::array<std::uint64_t, 4> corners{};
+    std::array<double, 4> weights{};
     int depth = 0;
 
     /// A point has the row that comes first: of an edge, of the longest one.
@@ -45,8 +48,7 @@ public:
         : open_(open), covers_(covers), points_(points) {}
 
     std::vector<HangingRow> make() {
-        std::vector<HangingRow> rows;
-        for (const Cover& cover : covers_.whole) add(cover, rows);
+        std::vector<HangingRow> rows = rows_of_covers();
         for (const PointOnEdge& at : covers_.edges.all()) add_on_edge(at.low, at.high, at.point, rows);
         tbb::parallel_sort(rows.begin(), rows.end(),
                            [](const HangingRow& a, const HangingRow& b) { return a.comes_before(b); });
@@ -57,13 +59,8 @@ public:
         return rows;
     }
 
-    /// The largest distance of the points of a cover from its face.
-    double distance_of(const Cover& cover) const {
-        double most = 0;
-        for (const std::uint64_t point : points_of_cover(cover))
-            most = std::max(most, place_on_face(open_.loop(cover.face), points_[point], points_).distance);
-        return most;
-    }
+    /// By cover: the largest distance of its points from its face.
+    const std::vector<double>& distances() const { return distances_; }
 
 private:
     std::vector<std::uint64_t> points_of_cover(const Cover& cover) const {
@@ -79,29 +76,50 @@ private:
         return out;
     }
 
-    void add(const Cover& cover, std::vector<HangingRow>& rows) const {
+    std::vector<HangingRow> rows_of_covers() {
+        distances_.resize(covers_.whole.size());
+        std::vector<HangingRow> rows;
+        std::mutex mutex;
+        core::parallel_ranges(distances_.size(), 1 << 8, [&](std::size_t begin, std::size_t end) {
+            std::vector<HangingRow> part;
+            for (std::size_t i = begin; i < end; ++i) distances_[i] = add(covers_.whole[i], part);
+            const std::lock_guard lock(mutex);
+            rows.insert(rows.end(), part.begin(), part.end());
+        });
+        return rows;
+    }
+
+    /// Rows of the points that are on no edge of the face. Returns the largest distance of all.
+    double add(const Cover& cover, std::vector<HangingRow>& rows) const {
         const auto loop = open_.loop(cover.face);
+        double farthest = 0;
         for (const std::uint64_t point : points_of_cover(cover)) {
+            const FacePlace at = place_on_face(loop, points_[point], points_);
+            farthest = std::max(farthest, at.distance);
             const auto has = [&](const std::vector<std::uint64_t>& some) {
                 return std::ranges::find(some, point) != some.end();
             };
             if (std::ranges::any_of(cover.between, has)) continue; // on an edge
-            FacePlace at = place_on_face(loop, points_[point], points_);
-            HangingRow& row = rows.emplace_back();
-            row.point = point;
-            row.on_face = true;
-            row.size = core::squared_distance(points_[loop[0]], points_[loop[loop.size() / 2]]);
-            row.corners.assign(loop.begin(), loop.end());
-            row.weights = std::move(at.weights);
+            rows.push_back(row_of(point, loop, at));
+            rows.back().on_face = true;
+            rows.back().size = core::squared_distance(points_[loop[0]], points_[loop[loop.size() / 2]]);
         }
+        return farthest;
+    }
+
+    static HangingRow row_of(std::uint64_t point, std::span<const std::uint64_t> loop, const FacePlace& at) {
+        HangingRow row;
+        row.point = point;
+        row.count = at.count;
+        row.weights = at.weights;
+        for (std::size_t i = 0; i < at.count; ++i) row.corners[i] = loop[at.corners[i]];
+        return row;
     }
 
     void add_on_edge(std::uint64_t low, std::uint64_t high, std::uint64_t point, std::vector<HangingRow>& rows) const {
-        HangingRow& row = rows.emplace_back();
-        row.point = point;
-        row.size = core::squared_distance(points_[low], points_[high]);
-        row.corners = {low, high};
-        row.weights = place_on_edge(points_[low], points_[high], points_[point]).weights;
+        const std::array ends{low, high};
+        rows.push_back(row_of(point, ends, place_on_edge(points_[low], points_[high], points_[point])));
+        rows.back().size = core::squared_distance(points_[low], points_[high]);
     }
 
     /// Rows whose corners hang come after these.
@@ -110,7 +128,7 @@ private:
         for (int pass = 0; deeper && pass < max_chain; ++pass) {
             deeper = false;
             for (HangingRow& row : rows)
-                for (const std::uint64_t corner : row.corners) {
+                for (const std::uint64_t corner : std::span(row.corners).first(row.count)) {
                     const auto parent = std::ranges::lower_bound(rows, corner, {}, &HangingRow::point);
                     if (parent == rows.end() || parent->point != corner || parent->depth < row.depth) continue;
                     row.depth = parent->depth + 1;
@@ -122,19 +140,20 @@ private:
     const OpenFaces& open_;
     const Covers& covers_;
     const core::PointReader& points_;
+    std::vector<double> distances_;
 };
 
 void put_rows(const std::vector<HangingRow>& rows, ClosedGrid& out) {
     std::size_t terms = 0;
-    for (const HangingRow& row : rows) terms += row.corners.size();
+    for (const HangingRow& row : rows) terms += row.count;
     core::Buffer<std::uint64_t> points(rows.size()), first(rows.size() + 1), corners(terms);
     core::Buffer<double> weights(terms);
     first[0] = 0;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         points[i] = rows[i].point;
-        std::ranges::copy(rows[i].corners, corners.begin() + first[i]);
-        std::ranges::copy(rows[i].weights, weights.begin() + first[i]);
-        first[i + 1] = first[i] + rows[i].corners.size();
+        std::copy_n(rows[i].corners.begin(), rows[i].count, corners.begin() + first[i]);
+        std::copy_n(rows[i].weights.begin(), rows[i].count, weights.begin() + first[i]);
+        first[i + 1] = first[i] + rows[i].count;
     }
     out.points = std::move(points).to_array();
     out.parents = {std::move(first).to_array(), std::move(corners).to_array(), std::move(weights).to_array()};
@@ -150,9 +169,7 @@ void describe_hanging(const OpenFaces& open, const Covers& covers, const core::P
     HangingReport& report = out.report;
     report.points = rows.size();
     report.faces = covers.whole.size();
-    std::vector<double> distances(covers.whole.size());
-    core::parallel_each(distances.size(), 1 << 8,
-                        [&](std::size_t i) { distances[i] = maker.distance_of(covers.whole[i]); });
+    const std::vector<double>& distances = maker.distances();
     for (std::size_t i = 0; i < distances.size(); ++i) {
         const Cover& cover = covers.whole[i];
         const auto loop = open.loop(cover.face);

@@ -21,6 +21,17 @@ namespace {
 
 constexpr std::size_t cells_per_part = 1 << 13;
 
+/// The points of a polyhedron, ascending, each once.
+std::vector<std::uint64_t> points_of(const std::vector<std::uint64_t>& faces) {
+    std::vector<std::uint64_t> out;
+    for (std::size_t at = 1; at < faces.size(); at += faces[at] + 1)
+        out.insert(out.end(), faces.begin() + static_cast<std::ptrdiff_t>(at + 1),
+                   faces.begin() + static_cast<std::ptrdiff_t>(at + 1 + faces[at]));
+    std::ranges::sort(out);
+    out.erase(std::unique(out.begin(), out.end()), out.end());
+    return out;
+}
+
 class CellLister {
 public:
     CellLister(const core::CellReader& cells, const core::FaceReader& faces, const OpenFaces& open,
@@ -40,9 +51,10 @@ public:
             std::vector<ListedCell> part;
             for (std::size_t cell = begin; cell < end; ++cell) {
                 if (!has_marked_edge(cell)) continue;
-                ListedCell listed{cell, {}};
-                if (loops.read(cell) && list_faces(loops, listed) && closes(listed.faces))
-                    part.push_back(std::move(listed));
+                ListedCell listed{cell, {}, {}};
+                if (!loops.read(cell) || !list_faces(loops, listed) || !closes(listed.faces)) continue;
+                listed.points = points_of(listed.faces);
+                part.push_back(std::move(listed));
             }
             const std::lock_guard lock(mutex);
             std::ranges::move(part, std::back_inserter(out));
@@ -123,17 +135,6 @@ private:
     core::Buffer<std::uint8_t> marked_; ///< corners of covered faces, ends of edges with points on them
 };
 
-/// The points of a polyhedron, ascending, each once.
-std::vector<std::uint64_t> points_of(const std::vector<std::uint64_t>& faces) {
-    std::vector<std::uint64_t> out;
-    for (std::size_t at = 1; at < faces.size(); at += faces[at] + 1)
-        out.insert(out.end(), faces.begin() + static_cast<std::ptrdiff_t>(at + 1),
-                   faces.begin() + static_cast<std::ptrdiff_t>(at + 1 + faces[at]));
-    std::ranges::sort(out);
-    out.erase(std::unique(out.begin(), out.end()), out.end());
-    return out;
-}
-
 /// Cells one after another, listed ones in place of the grid's.
 template <class Index>
 class CellWriter {
@@ -156,7 +157,7 @@ public:
                 Index* corner = connectivity.data() + offsets_[cell];
                 Index* face = stream.data() + face_offsets_[cell];
                 if (next != listed_.end() && next->cell == cell) {
-                    for (const std::uint64_t point : points_of(next->faces)) *corner++ = static_cast<Index>(point);
+                    for (const std::uint64_t point : next->points) *corner++ = static_cast<Index>(point);
                     for (const std::uint64_t entry : next->faces) *face++ = static_cast<Index>(entry);
                     ++next;
                     continue;
@@ -186,7 +187,7 @@ private:
                 const bool listed = next != listed_.end() && next->cell == cell;
                 types[cell] = listed ? core::polyhedron_type : cells_.type(cell);
                 offsets_[cell + 1] =
-                    static_cast<Index>(listed ? points_of(next->faces).size() : cells_.corners(cell));
+                    static_cast<Index>(listed ? next->points.size() : cells_.corners(cell));
                 face_offsets_[cell + 1] =
                     static_cast<Index>(listed ? next->faces.size() : faces_.end(cell) - faces_.begin(cell));
                 next += listed;

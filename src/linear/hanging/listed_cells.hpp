@@ -17,6 +17,7 @@ namespace isotet::linear {
 struct ListedCell {
     std::uint64_t cell;
     std::vector<std::uint64_t> faces;
+    std::vector<std::uint64_t> points; ///< ascending, each once
 };
 
 /// Cells with a covered face or an edge with points on it: covered faces are those that cover them, with the points on

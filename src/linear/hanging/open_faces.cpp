@@ -2,6 +2,7 @@
 #include "linear/hanging/open_faces.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <limits>
 #include <mutex>
@@ -12,6 +13,7 @@
 #include "base/buffer.hpp"
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
+#include "grid/cell/native_cells.hpp"
 #include "linear/hanging/cell_loops.hpp"
 
 namespace isotet::linear {
@@ -43,6 +45,17 @@ FaceHash hash_of(std::span<const std::uint64_t> loop) {
     return out;
 }
 
+FaceHash hash_of(const core::WholeCell& cell, const core::CellFace& face,
+                 const std::array<std::uint64_t, 8>& of_corners) {
+    FaceHash out{std::numeric_limits<std::uint64_t>::max(), 0};
+    for (const std::uint8_t corner : face.all()) {
+        out.lowest = std::min(out.lowest, cell.corners[corner]);
+        out.hash += of_corners[corner];
+    }
+    out.hash = scattered(out.hash);
+    return out;
+}
+
 struct HashedFace {
     std::uint64_t hash, cell;
     std::uint32_t face;
@@ -68,13 +81,10 @@ private:
         std::ranges::fill(sums_, std::uint64_t{0});
         core::parallel_pieces(cells_.count(), cells_per_look, progress_, [&](std::size_t begin, std::size_t end) {
             CellLoops loops(cells_, faces_);
-            for (std::size_t cell = begin; cell < end; ++cell) {
-                if (!loops.read(cell)) continue;
-                for (std::size_t face = 0; face < loops.count(); ++face) {
-                    const FaceHash hash = hash_of(loops.loop(face));
+            for (std::size_t cell = begin; cell < end; ++cell)
+                each_face(cell, loops, [&](std::size_t, const FaceHash& hash) {
                     std::atomic_ref(sums_[hash.lowest]).fetch_xor(hash.hash, std::memory_order_relaxed);
-                }
-            }
+                });
         });
     }
 
@@ -84,15 +94,42 @@ private:
             CellLoops loops(cells_, faces_);
             std::vector<HashedFace> part;
             for (std::size_t cell = begin; cell < end; ++cell) {
-                if (!loops.read(cell)) continue;
-                for (std::size_t face = 0; face < loops.count(); ++face)
-                    if (const FaceHash hash = hash_of(loops.loop(face)); sums_[hash.lowest] != 0)
-                        part.push_back({hash.hash, cell, static_cast<std::uint32_t>(face)});
+                if (core::is_contoured(cells_.type(cell)) && !has_odd_corner(cell)) continue;
+                each_face(cell, loops, [&](std::size_t face, const FaceHash& hash) {
+                    if (sums_[hash.lowest] != 0) part.push_back({hash.hash, cell, static_cast<std::uint32_t>(face)});
+                });
             }
             const std::lock_guard lock(mutex);
             found_.insert(found_.end(), part.begin(), part.end());
         });
         tbb::parallel_sort(found_.begin(), found_.end());
+    }
+
+    /// Calls use(number, hash) for each face of a cell. Those of a cell with eight corners or fewer need no list.
+    template <class Use>
+    void each_face(std::size_t cell, CellLoops& loops, const Use& use) const {
+        if (core::is_contoured(cells_.type(cell))) {
+            const core::WholeCell whole = cells_.whole(cell);
+            if (!core::has_repeated_corner(whole)) return each_whole_face(whole, use);
+        }
+        if (!loops.read(cell)) return;
+        for (std::size_t face = 0; face < loops.count(); ++face) use(face, hash_of(loops.loop(face)));
+    }
+
+    template <class Use>
+    static void each_whole_face(const core::WholeCell& cell, const Use& use) {
+        std::array<std::uint64_t, 8> hashes{};
+        for (std::size_t i = 0; i < core::corner_count(cell.kind); ++i) hashes[i] = scattered(cell.corners[i]);
+        std::size_t number = 0;
+        for (const core::CellFace& face : core::shape_of(cell.kind).faces()) use(number++, hash_of(cell, face, hashes));
+    }
+
+    /// Some face of it may have no neighbour.
+    bool has_odd_corner(std::size_t cell) const {
+        const std::uint64_t first = cells_.first(cell), end = first + cells_.corners(cell);
+        for (std::uint64_t i = first; i < end; ++i)
+            if (sums_[cells_.corner(i)] != 0) return true;
+        return false;
     }
 
     /// Faces of one hash are one face: a single one stays.

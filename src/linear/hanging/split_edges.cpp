@@ -43,6 +43,8 @@ void SplitEdges::add(std::vector<PointOnEdge> more) {
         return std::tie(a.low, a.high, a.point) == std::tie(b.low, b.high, b.point);
     };
     all_.erase(std::unique(all_.begin(), all_.end(), same), all_.end());
+    if (!all_.empty()) is_low_.resize(all_.back().low + 1);
+    for (const PointOnEdge& at : all_) is_low_[at.low] = 1;
     std::vector<Placed> placed;
     placed.reserve(all_.size());
     for (const PointOnEdge& at : all_) placed.push_back({at, part_of(at)});
@@ -54,6 +56,7 @@ void SplitEdges::add(std::vector<PointOnEdge> more) {
 
 void SplitEdges::append_between(std::uint64_t from, std::uint64_t to, std::vector<std::uint64_t>& out) const {
     const std::pair ends = std::minmax(from, to);
+    if (ends.first >= is_low_.size() || is_low_[ends.first] == 0) return;
     const auto [begin, end] = std::ranges::equal_range(all_, std::pair(ends.first, ends.second), {}, ends_of);
     if (begin == end) return;
     std::uint64_t before = from;

@@ -39,7 +39,8 @@ private:
     double part_of(const PointOnEdge& at) const;
 
     const core::PointReader& points_;
-    std::vector<PointOnEdge> all_; ///< by edge, then along it
+    std::vector<PointOnEdge> all_;     ///< by edge, then along it
+    std::vector<std::uint8_t> is_low_; ///< by point: whether it is the lower end of some edge
 };
 
 } // namespace isotet::linear
