@@ -15,6 +15,7 @@
 
 #include "grid/cell/node_order.hpp"
 #include "linear/curved_grid.hpp"
+#include "support/seeds.hpp"
 
 namespace isotet::test {
 namespace {
@@ -93,6 +94,7 @@ std::vector<OwnCase> all_cases() {
         for (const unsigned p : {2u, 3u, 4u})
             for (const bool bezier : {false, true}) {
                 if (bezier && k == 3) continue;
+                if (p == 4 && seed_share > 1) continue; // a minute where every access is watched
                 const auto type = static_cast<std::uint8_t>((bezier ? first_bezier : first_lagrange) + k);
                 out.push_back({"kind " + std::to_string(k) + " degree " + std::to_string(p) + (bezier ? " bezier" : ""),
                                type, tried[k], p, core::node_count(tried[k], p), whole_space(tried[k], p), bezier});
@@ -244,7 +246,7 @@ TEST(OwnFunctions, AreWithinTheBoundInCellsOfEveryKind) {
 
 TEST(OwnFunctions, AreFollowedTheSameFromBothSides) {
     for (const char* shape : {"kuhn", "hex", "wedge", "pyramid", "mixed"})
-        for (const unsigned seed : {1u, 2u}) {
+        for (const std::uint32_t seed : Seeds(1, 2)) {
             const CurvedGrid made = curved_grid({.shape = shape,
                                                  .side = 2,
                                                  .seed = seed,

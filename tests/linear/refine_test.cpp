@@ -9,6 +9,7 @@
 #include <isotet/refine.hpp>
 
 #include "linear/curved_grid.hpp"
+#include "support/seeds.hpp"
 
 namespace isotet::test {
 namespace {
@@ -116,7 +117,7 @@ TEST(CurvedCells, ReproduceQuadraticFieldsAtTheirNodesInEveryKind) {
 
 TEST(CurvedCells, OfAllKindsAreSplitTheSameFromBothSides) {
     for (const double keep_linear : {0.0, 0.3})
-        for (const unsigned seed : {1u, 2u, 3u}) {
+        for (const std::uint32_t seed : Seeds(1, 3)) {
             const CurvedGrid made =
                 curved_grid({.side = 3, .seed = seed, .shuffle = seed > 1, .field = wave, .keep_linear = keep_linear});
             expect_no_hole_inside(linearize(made.grid).value());
@@ -127,7 +128,7 @@ TEST(CurvedCells, OfAllKindsAreSplitTheSameFromBothSides) {
 }
 
 TEST(CurvedCells, WithCurvedEdgesAreSplitTheSameFromBothSides) {
-    for (const unsigned seed : {1u, 2u, 3u}) {
+    for (const std::uint32_t seed : Seeds(1, 3)) {
         const CurvedGrid flat = curved_grid({.side = 3, .seed = seed, .shuffle = true, .field = wave});
         const CurvedGrid bent = curved_grid({.side = 3, .seed = seed, .shuffle = true, .warp = bulge, .field = wave});
         const LinearGrid coarse = linearize(flat.grid).value();
@@ -143,7 +144,7 @@ TEST(CurvedCells, WithCurvedEdgesAreSplitTheSameFromBothSides) {
 }
 
 TEST(CurvedCells, WithTiedLengthsAndRandomIntegersStayClosed) {
-    for (const unsigned seed : {1u, 2u, 3u, 4u}) {
+    for (const std::uint32_t seed : Seeds(1, 4)) {
         std::mt19937 random(seed);
         const CurvedGrid made = curved_grid(
             {.shape = seed % 2 ? "mixed" : "kuhn", .side = 2, .seed = seed, .shuffle = true, .field = [&](At) {
