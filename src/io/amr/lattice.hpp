@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include <isotet/export.hpp>
 #include <isotet/result.hpp>
 
 namespace isotet::io::amr {
@@ -43,7 +44,7 @@ struct Hierarchy {
 };
 
 /// Points of all levels by the finest one's steps.
-class Lattice {
+class ISOTET_API Lattice {
 public:
     /// Errors   invalid_data: no box; an origin, spacing or box that is none; a spacing that is no whole multiple of
     ///          the next level's; more points than 62 bits number

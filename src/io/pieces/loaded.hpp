@@ -58,6 +58,6 @@ void append(Loaded& whole, Loaded part);
 ISOTET_API Error broken(const std::string& path, std::string_view what);
 
 /// An error about content, with the path of its file in front; others as they are.
-Error in_file(const std::string& path, const Error& error);
+ISOTET_API Error in_file(const std::string& path, const Error& error);
 
 } // namespace isotet::io
