@@ -276,10 +276,13 @@ SolidChoice parse_solid(const std::string& text) {
     return out;
 }
 
-/// "largest", "3", "area>0.5", "volume>2".
+/// "largest", "3", "area>0.5", "volume>2", "touching:material=2".
 PartChoice parse_parts(const std::string& text) {
+    constexpr std::string_view touching = "touching:";
     if (text == "largest") return {};
     PartChoice out;
+    if (text.starts_with(touching) && text.size() > touching.size())
+        return {PartChoice::Kind::touching, 0, text.substr(touching.size())};
     std::string_view number = text;
     for (const auto& [word, kind] : {std::pair<std::string_view, PartChoice::Kind>{"area>", PartChoice::Kind::area},
                                      {"volume>", PartChoice::Kind::volume}}) {
@@ -295,7 +298,7 @@ PartChoice parse_parts(const std::string& text) {
         counts ? std::from_chars(number.data(), end, count) : std::from_chars(number.data(), end, out.limit);
     if (counts) out.limit = static_cast<double>(count);
     if (read.ec != std::errc{} || read.ptr != end || (counts && count == 0) || !(out.limit >= 0))
-        refuse_value("--keep", text, "largest, a number of parts from 1, area>A or volume>V");
+        refuse_value("--keep", text, "largest, a number of parts from 1, area>A, volume>V or touching:REGION");
     return out;
 }
 
@@ -798,9 +801,11 @@ void add_surface_options(const Command& command, ExtractJob& job, const std::str
     command.add_value(
         "--solid", [&job](const std::string& text) { job.solid = parse_solid(text); }, "above|below|A:B", solids);
     command.add_value(
-        "--keep", [&job](const std::string& text) { job.keep = parse_parts(text); }, "largest|N|area>A|volume>V",
-        "Only these connected parts of each surface or solid: the largest by area, the N largest, or those of more area or "
-        "enclosed volume; cell field part: their numbers");
+        "--keep", [&job](const std::string& text) { job.keep = parse_parts(text); },
+        "largest|N|area>A|volume>V|touching:REGION",
+        "Only these connected parts of each surface or solid: the largest by area, the N largest, those of more area or "
+        "enclosed volume, or those that touch boundary, a named region, or cells with FIELD=VALUE; cell field part: "
+        "their numbers");
     command.add_file("--parts", job.parts_table, "FILE.csv",
                      "Write a table of the connected parts: triangles, area, volume, place, means of the fields");
     command.add_value(

@@ -50,4 +50,17 @@ ISOTET_API Result<SurfaceParts> find_parts(const Surface& surface, const Run& ru
 ISOTET_API Result<Surface> keep_parts(const Surface& surface, const SurfaceParts& parts,
                                       const std::vector<std::uint64_t>& kept, const Run& run = {});
 
+/// A region by what its cells have: a value of a cell field in [lower, upper], of any component.
+struct Region {
+    std::string field; ///< a cell field that the surface carries; "boundary" of a solid is 1 on the grid's boundary
+    double lower = 0, upper = 0;
+};
+
+/// Numbers of the parts that touch a region, ascending: those with a triangle in one of its cells.
+///
+/// Errors   invalid_argument when the surface has no such cell field, the range does not ascend, or the parts are of
+///          another surface
+ISOTET_API Result<std::vector<std::uint64_t>> parts_touching(const Surface& surface, const SurfaceParts& parts,
+                                                             const Region& region);
+
 } // namespace isotet

@@ -159,6 +159,17 @@ void add_surfaces(nb::module_& module) {
         "surface"_a, "kept"_a, "call"_a);
 
     module.def(
+        "parts_touching",
+        [](const Surface& surface, const std::string& field, double lower, double upper, const CallOptions& options) {
+            return call(options, [&](const Run& run) -> Result<std::vector<std::uint64_t>> {
+                const Result<SurfaceParts> found = find_parts(surface, run);
+                if (!found) return found.error();
+                return parts_touching(surface, *found, {field, lower, upper});
+            });
+        },
+        "surface"_a, "field"_a, "lower"_a, "upper"_a, "call"_a);
+
+    module.def(
         "reduce",
         [](const Surface& surface, double share, double error, const CallOptions& options) {
             return call(options, [&](const Run& run) { return reduce(surface, {share, error}, run); }).surface;

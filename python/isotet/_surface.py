@@ -161,6 +161,19 @@ class Surface:
             raise ValueError(f"part {min(numbers)} is asked for, but parts are counted from 0")
         return Surface._of(_isotet.keep_parts(self._surface, numbers, call_options(threads, progress)), dict(self._how))
 
+    def parts_touching(
+        self, field: str, value: float | tuple[float, float], *, threads: int = 0, progress: Progress | None = None
+    ) -> list[int]:
+        """The connected parts that touch a region, for `keep_parts`: those with a triangle in a cell of it.
+
+        field: a cell field that the surface carries; "boundary" of a solid is 1 on the grid's boundary
+        value: the region's value, or the lowest and the highest of several
+
+        Raises ValueError where the surface has no such cell field.
+        """
+        lower, upper = value if isinstance(value, tuple) else (value, value)
+        return _isotet.parts_touching(self._surface, field, lower, upper, call_options(threads, progress))
+
     def reduce(
         self, share: float = 0.9, error: float | None = None, *, threads: int = 0, progress: Progress | None = None
     ) -> Surface:

@@ -214,6 +214,12 @@ Result<SurfaceParts> parts_of(const Surface& surface, const Progress& progress) 
     return out;
 }
 
+Result<void> check_same_surface(const Surface& surface, const SurfaceParts& parts) {
+    if (parts.numbers.tuples() == surface.triangle_count()) return {};
+    return invalid_argument(fmt::format("the parts are of a surface of {} triangles, but this one has {}",
+                                        parts.numbers.tuples(), surface.triangle_count()));
+}
+
 } // namespace
 } // namespace checking
 
@@ -222,12 +228,34 @@ Result<SurfaceParts> find_parts(const Surface& surface, const Run& run) {
                            [&](const Progress& progress) { return checking::parts_of(surface, progress); });
 }
 
+Result<std::vector<std::uint64_t>> parts_touching(const Surface& surface, const SurfaceParts& parts,
+                                                  const Region& region) {
+    if (auto same = checking::check_same_surface(surface, parts); !same) return same.error();
+    if (!(region.lower <= region.upper))
+        return invalid_argument(fmt::format("the region has values of '{}' from {} to {}, but these must not descend",
+                                            region.field, region.lower, region.upper));
+    const auto field = std::ranges::find(surface.cell_fields, region.field, &Field::name);
+    if (field == surface.cell_fields.end())
+        return invalid_argument(fmt::format("the surface has no cell field '{}'", region.field));
+    const auto numbers = parts.numbers.as<std::uint32_t>();
+    std::vector<std::uint8_t> touches(parts.parts.size());
+    field->values.visit([&](auto typed) {
+        const std::size_t components = field->values.components();
+        for (std::size_t i = 0; i < typed.size(); ++i) {
+            const auto value = static_cast<double>(typed[i]);
+            if (value >= region.lower && value <= region.upper) touches[numbers[i / components]] = 1;
+        }
+    });
+    std::vector<std::uint64_t> out;
+    for (std::uint64_t part = 0; part < touches.size(); ++part)
+        if (touches[part]) out.push_back(part);
+    return out;
+}
+
 Result<Surface> keep_parts(const Surface& surface, const SurfaceParts& parts, const std::vector<std::uint64_t>& kept,
                            const Run& run) {
     return core::carry_out("keeping parts of a surface", run, [&](const Progress&) -> Result<Surface> {
-        if (parts.numbers.tuples() != surface.triangle_count())
-            return invalid_argument(fmt::format("the parts are of a surface of {} triangles, but this one has {}",
-                                                parts.numbers.tuples(), surface.triangle_count()));
+        if (auto same = checking::check_same_surface(surface, parts); !same) return same.error();
         std::vector<std::uint8_t> keep(parts.parts.size());
         for (const std::uint64_t part : kept) {
             if (part >= keep.size())

@@ -326,7 +326,7 @@ Result<void> ExtractRun::open_packed() {
     Result<PackedFile> file = PackedFile::open(job_.grid.file, {job_.memory.value_or(0)}, caller_.run());
     if (!file) return file.error();
     const PackedFileInfo& info = file->info();
-    const bool reworks_cells = job_.piece || job_.solid || job_.volumes || !job_.shares.empty() ||
+    const bool reworks_cells = job_.piece || job_.solid || plan_.touched || job_.volumes || !job_.shares.empty() ||
                                job_.exact_vertices || job_.split_cells || job_.grid.merge_points ||
                                !job_.grid.displace.empty() || job_.method == Method::direct ||
                                job_.engine == EngineChoice::reference || job_.field.shape;
@@ -546,10 +546,14 @@ Result<void> ExtractRun::find_parts_of(Surface& surface, SurfaceNumbers& numbers
     caller_.detail("finding the parts of the surface");
     Result<SurfaceParts> found = find_parts(surface, caller_.run());
     if (!found) return found.error();
-    const std::vector<std::uint64_t> kept = kept_parts(*found, job_.keep);
+    const Result<std::vector<std::uint64_t>> which = kept_parts(surface, *found, job_.keep, plan_.touched);
+    if (!which) return which.error();
+    const std::vector<std::uint64_t>& kept = *which;
     Result<Surface> some = keep_parts(surface, *found, kept, caller_.run());
     if (!some) return some.error();
     surface = *std::move(some);
+    if (plan_.touched && plan_.touched->field != "boundary" && !is_carried(plan_, plan_.touched->field))
+        std::erase_if(surface.cell_fields, [&](const Field& field) { return field.name == plan_.touched->field; });
     if (!plan_.holds_fields) std::erase_if(surface.cell_fields, [](const Field& field) { return field.name == "part"; });
     numbers.vertices = surface.vertex_count();
     numbers.triangles = surface.triangle_count();

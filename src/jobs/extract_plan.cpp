@@ -17,6 +17,7 @@
 #include <isotet/write_file.hpp>
 
 #include "jobs/refuse.hpp"
+#include "jobs/touched_region.hpp"
 
 namespace isotet::jobs {
 
@@ -204,7 +205,11 @@ Result<void> choose_fields(const ExtractJob& job, const GridSource& source, Extr
     if (!carried) return carried.error();
     plan.field = *std::move(field);
     plan.carried = *std::move(carried);
+    Result<std::optional<Region>> touched = find_touched(job, source);
+    if (!touched) return touched.error();
+    plan.touched = *std::move(touched);
     plan.read = fields_to_read(plan);
+    if (plan.touched && job.keep->region != "boundary") add_names(*plan.read.cell, {plan.touched->field});
     const bool all_cell_fields = job.field.shape && !plan.carried && plan.out_holds_cell_fields;
     if (all_cell_fields && !source.names(Association::cell).empty()) plan.read.cell.reset();
     return {};
@@ -281,11 +286,18 @@ Result<std::vector<double>> choose_isovalues(const ExtractJob& job, const std::v
     return distinct;
 }
 
+bool is_carried(const ExtractPlan& plan, const std::string& cell_field) {
+    if (!plan.carried) return !plan.read.cell;
+    return std::ranges::find(plan.carried->cell, cell_field) != plan.carried->cell.end();
+}
+
 Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid, const Run& run) {
     StepFields fields;
+    const auto is_touched = [&](const Field& field) { return plan.touched && field.name == plan.touched->field; };
     if (!plan.carried) {
         fields.point = grid.point_fields;
-        if (!plan.read.cell) fields.cell = grid.cell_fields;
+        for (const Field& field : grid.cell_fields)
+            if (!plan.read.cell || is_touched(field)) fields.cell.push_back(field);
         return fields;
     }
     const auto has = [](const std::vector<std::string>& names, const Field& field) {
@@ -295,7 +307,7 @@ Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid, con
         if (has(plan.carried->point, field)) fields.point.push_back(field);
     }
     for (const Field& field : grid.cell_fields) {
-        if (has(plan.carried->cell, field)) fields.cell.push_back(field);
+        if (has(plan.carried->cell, field) || is_touched(field)) fields.cell.push_back(field);
     }
     const auto is_read = [&](const std::string& name) {
         return std::ranges::find(grid.point_fields, name, &Field::name) != grid.point_fields.end();

@@ -24,6 +24,7 @@ struct ExtractPlan {
     std::optional<CarriedFields> carried; ///< nothing: all point fields, and all cell fields where all are read
     FieldsToRead read;
     bool out_holds_fields = true, out_holds_cell_fields = true;
+    std::optional<Region> touched;               ///< by the parts that are kept (find_touched())
     ContourOptions contour;                      ///< but for the device
     std::optional<ReadActiveCells> active_cells; ///< where others need not be read
 };
@@ -54,7 +55,10 @@ Result<void> choose_fields(const ExtractJob& job, const GridSource& source, Extr
 Result<std::vector<double>> choose_isovalues(const ExtractJob& job, const std::vector<double>& shares,
                                              const Array& field, const FieldReport& packed, Caller& caller);
 
-/// The fields of the plan, taken from the grid of one step.
+/// Whether surfaces that are written carry a cell field of the grid: one that parts touch need not be.
+bool is_carried(const ExtractPlan& plan, const std::string& cell_field);
+
+/// The fields of the plan, taken from the grid of one step, and the one that parts touch.
 struct StepFields {
     std::vector<Field> point, cell;
 };

@@ -16,6 +16,7 @@ bool is_kept(const SurfacePart& part, std::size_t number, const PartChoice& choi
     switch (choice.kind) {
     case PartChoice::Kind::largest: return static_cast<double>(number) < choice.limit;
     case PartChoice::Kind::area: return part.area > choice.limit;
+    case PartChoice::Kind::touching: return !part.closed;
     case PartChoice::Kind::volume: break;
     }
     return part.closed && part.volume > choice.limit;
@@ -60,7 +61,10 @@ void add_row(const SurfaceNumbers& surface, std::size_t number, const std::vecto
 
 } // namespace
 
-std::vector<std::uint64_t> kept_parts(const SurfaceParts& found, const std::optional<PartChoice>& choice) {
+Result<std::vector<std::uint64_t>> kept_parts(const Surface& surface, const SurfaceParts& found,
+                                              const std::optional<PartChoice>& choice,
+                                              const std::optional<Region>& touched) {
+    if (touched) return parts_touching(surface, found, *touched);
     std::vector<std::uint64_t> out;
     for (std::size_t i = 0; i < found.parts.size(); ++i)
         if (!choice || is_kept(found.parts[i], i, *choice)) out.push_back(i);

@@ -12,7 +12,12 @@
 namespace isotet::jobs {
 
 /// Numbers of the parts that are kept, ascending; all without a choice.
-std::vector<std::uint64_t> kept_parts(const SurfaceParts& found, const std::optional<PartChoice>& choice);
+///
+/// `touched`   of PartChoice::Kind::touching; nothing: the grid's boundary, where isosurfaces are open
+/// Errors      as parts_touching()
+Result<std::vector<std::uint64_t>> kept_parts(const Surface& surface, const SurfaceParts& found,
+                                              const std::optional<PartChoice>& choice,
+                                              const std::optional<Region>& touched);
 
 /// A row for each part of each surface, kept or not, with a line of names first; numbers as they read back.
 std::string parts_csv(const ExtractNumbers& numbers);

@@ -96,6 +96,30 @@ TEST(Parts, OfASurfaceThatEndsAtTheBoundaryAreOpen) {
     EXPECT_FALSE(found.parts[0].closed);
 }
 
+TEST(Parts, TouchARegionWhereATriangleIsInACellOfIt) {
+    Surface surface = three_balls();
+    const SurfaceParts found = find_parts(surface).value();
+    const auto part = found.numbers.as<std::uint32_t>();
+    std::vector<std::int16_t> material(2 * surface.triangle_count(), 1);
+    const auto first_of = [&](std::uint32_t wanted) {
+        return static_cast<std::size_t>(std::ranges::find(part, wanted) - part.begin());
+    };
+    material[2 * first_of(2)] = 7;
+    material[2 * first_of(0) + 1] = 8;
+    surface.cell_fields.push_back({"material", Array::own(std::move(material), 2)});
+    const auto touching = [&](double lower, double upper) {
+        return parts_touching(surface, found, {"material", lower, upper}).value();
+    };
+    EXPECT_EQ(touching(7, 7), (std::vector<std::uint64_t>{2}));
+    EXPECT_EQ(touching(7, 8), (std::vector<std::uint64_t>{0, 2}));
+    EXPECT_EQ(touching(1, 1), (std::vector<std::uint64_t>{0, 1, 2}));
+    EXPECT_TRUE(touching(7.1, 7.9).empty());
+    EXPECT_TRUE(parts_touching(surface, found, {"boundary", 1, 1}).value().empty());
+    for (const Region& region : {Region{"materials", 1, 1}, Region{"material", 2, 1}, Region{"material", NAN, NAN}})
+        EXPECT_EQ(parts_touching(surface, found, region).error().code, ErrorCode::invalid_argument);
+    EXPECT_EQ(parts_touching(Surface{}, found, {"material", 1, 1}).error().code, ErrorCode::invalid_argument);
+}
+
 TEST(Parts, OfNothingAreNone) { EXPECT_TRUE(find_parts(Surface{}).value().parts.empty()); }
 
 TEST(Parts, AskedForThatAreNotThereAreErrors) {

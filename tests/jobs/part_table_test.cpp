@@ -7,9 +7,12 @@
 
 #include <gtest/gtest.h>
 
+#include <isotet/make.hpp>
 #include <isotet/read.hpp>
+#include <isotet/write.hpp>
 
 #include "jobs/listener.hpp"
+#include "support/places.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace isotet::jobs {
@@ -51,7 +54,7 @@ TEST(PartTable, KeepsPartsOfMoreAreaOrVolume) {
     job.grid.file = "make:kuhn:20:gyroid";
     job.isovalues = {0.95};
     for (const auto kind : {PartChoice::Kind::area, PartChoice::Kind::volume}) {
-        job.keep = PartChoice{kind, kind == PartChoice::Kind::area ? 0.3 : 100.0};
+        job.keep = PartChoice{kind, kind == PartChoice::Kind::area ? 0.3 : 100.0, {}};
         const ExtractNumbers numbers = extract_files(job, listener).value();
         const SurfaceNumbers& surface = numbers.surfaces.at(0);
         const auto kept =
@@ -60,6 +63,70 @@ TEST(PartTable, KeepsPartsOfMoreAreaOrVolume) {
             }));
         EXPECT_EQ(surface.parts_kept, kept);
         EXPECT_LT(kept, surface.parts->parts.size());
+    }
+}
+
+/// A gyroid's grid with the cell field material: 2 where x > 0, else 1.
+std::string two_materials(const test::TemporaryFolder& folder) {
+    Grid grid = make_grid({.shape = "kuhn", .side = 20, .fields = {"gyroid"}}).value();
+    std::vector<std::int32_t> material(grid.cells.count());
+    for (std::size_t cell = 0; cell < material.size(); ++cell) {
+        double sum = 0;
+        for (std::size_t k = 0; k < 4; ++k)
+            sum += grid.points.at(static_cast<std::size_t>(grid.cells.connectivity.at(4 * cell + k)), 0);
+        material[cell] = sum > 0 ? 2 : 1;
+    }
+    grid.cell_fields.push_back({"material", Array::own(std::move(material))});
+    const std::string file = folder.file("two.vtu");
+    EXPECT_TRUE(static_cast<bool>(write_grid(grid, file)));
+    return file;
+}
+
+TEST(PartTable, KeepsPartsThatTouchARegionOrTheBoundary) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    ExtractJob job;
+    job.grid.file = two_materials(folder);
+    job.field.name = "gyroid";
+    job.out = folder.file("s.vtp");
+    for (const bool solid : {false, true})
+        for (const char* region : {"material=2", "material=2:7", "boundary"}) {
+            SCOPED_TRACE(testing::Message() << region << (solid ? " of a solid" : ""));
+            job.keep = PartChoice{PartChoice::Kind::touching, 0, region};
+            job.isovalues = {solid ? 1.35 : 0.95};
+            if (solid) job.solid = SolidChoice{};
+            const ExtractNumbers numbers = extract_files(job, listener).value();
+            const std::vector<SurfacePart>& parts = numbers.surfaces.at(0).parts->parts;
+            const bool is_boundary = region[0] == 'b';
+            const auto touches = [&](const SurfacePart& part) {
+                if (!is_boundary) return part.upper[0] > 1e-6;
+                return std::ranges::any_of(part.lower, [](double x) { return x < -1 + 1e-6; }) ||
+                       std::ranges::any_of(part.upper, [](double x) { return x > 1 - 1e-6; });
+            };
+            const auto kept = static_cast<std::uint64_t>(std::ranges::count_if(parts, touches));
+            EXPECT_EQ(numbers.surfaces[0].parts_kept, kept);
+            EXPECT_GT(kept, 0u);
+            EXPECT_LT(is_boundary ? 0 : kept, parts.size());
+            for (const Field& field : read_surface(job.out).value().surface.cell_fields)
+                EXPECT_NE(field.name, "material"); // is read, but not asked for
+        }
+}
+
+TEST(PartTable, KnowsRegionsByTheirNames) {
+    Listener listener;
+    ExtractJob job;
+    job.grid.file = (test::source_folder() / "data/msh/inclusions_v41_ascii.msh").string();
+    job.field.name = "x";
+    job.isovalues = {0.5};
+    for (const char* region : {"domain", "inclusions", "gmsh:physical=2"}) {
+        job.keep = PartChoice{PartChoice::Kind::touching, 0, region};
+        EXPECT_EQ(extract_files(job, listener).value().surfaces.at(0).parts_kept, 1u) << region;
+    }
+    for (const char* region : {"inclusion", "material=2", "gmsh:physical=b", "gmsh:physical=2:1", "="}) {
+        job.keep = PartChoice{PartChoice::Kind::touching, 0, region};
+        const auto refused = extract_files(job, listener);
+        ASSERT_FALSE(refused) << region;
+        EXPECT_EQ(refused.error().code, ErrorCode::invalid_argument);
     }
 }
 

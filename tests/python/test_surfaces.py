@@ -490,6 +490,16 @@ def test_parts_are_told_and_kept():
         surface.keep_parts(len(table))
 
 
+def test_parts_that_touch_a_region_are_told():
+    solid = isotet.make("kuhn", 20, ["gyroid"]).solid("gyroid", above=0.95)
+    touching = solid.parts_touching("boundary", 1)
+    on_boundary = [i for i, part in enumerate(isotet.parts(solid)) if part["means"]["boundary"] > 0]
+    assert touching == on_boundary and solid.parts_touching("boundary", (0.5, 2)) == touching
+    assert set(solid.keep_parts(touching).cell_fields["part"]) == set(touching)
+    with pytest.raises(ValueError, match="no cell field 'material'"):
+        solid.parts_touching("material", 3)
+
+
 def test_clipped_cells_carry_fields_and_numbers_and_fill_the_solid():
     grid = isotet.make("mixed", 6, ["gyroid", "plane"])
     clipper = isotet.Clipper(grid, "gyroid", edge_ends=True)

@@ -40,10 +40,12 @@ struct PartChoice {
     enum class Kind : std::uint8_t {
         largest, ///< the `limit` ones of largest area
         area,    ///< those of a larger area than `limit`
-        volume   ///< closed ones that enclose more than `limit`
+        volume,  ///< closed ones that enclose more than `limit`
+        touching ///< those that touch `region` (parts_touching()), or the grid's boundary
     };
     Kind kind = Kind::largest;
     double limit = 1;
+    std::string region; ///< "boundary", a region that the file names, or "FIELD=VALUE" or "FIELD=LOWER:UPPER" of cells
 };
 
 /// Colours that go with each surface, as its point field "rgb".
