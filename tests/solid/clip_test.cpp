@@ -11,6 +11,7 @@
 
 #include <isotet/clip.hpp>
 
+#include "solid/all_cases.hpp"
 #include "solid/cell_boundary.hpp"
 #include "support/mixed_grid.hpp"
 #include "support/random_grid.hpp"
@@ -161,41 +162,6 @@ TEST(Clip, OfCollapsedCellsHasAboutTheVolumeOfTheSolid) {
             EXPECT_EQ(unused_points(clipped.grid), 0u);
         }
     }
-}
-
-/// A cell of one kind for each way to give its corners the values 0, 1 and 2.
-NastyGrid all_cases(core::CellKind kind) {
-    static constexpr std::array<std::uint8_t, core::cell_kind_count> vtk_types{10, 14, 13, 12};
-    const Grid one = made_grid(kind == core::CellKind::tetrahedron ? "kuhn"
-                               : kind == core::CellKind::pyramid   ? "pyramid"
-                               : kind == core::CellKind::wedge     ? "wedge"
-                                                                   : "hex",
-                               1, {});
-    const core::WholeCell cell = core::CellReader::open(one).value().whole(0);
-    const std::size_t corners = core::corner_count(kind);
-    const auto cases = static_cast<std::size_t>(std::pow(3, corners));
-    std::vector<double> points;
-    std::vector<float> values;
-    std::vector<std::int64_t> connectivity, offsets{0};
-    for (std::size_t index = 0; index < cases; ++index) {
-        std::size_t rest = index;
-        for (std::size_t k = 0; k < corners; ++k, rest /= 3) {
-            connectivity.push_back(static_cast<std::int64_t>(values.size()));
-            values.push_back(static_cast<float>(rest % 3));
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                points.push_back(one.points.at(cell.corners[k], axis) +
-                                 (axis == 0 ? 2.0 * static_cast<double>(index % 81)
-                                  : axis == 1 ? 2.0 * static_cast<double>(index / 81) : 0.0));
-        }
-        offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
-    }
-    NastyGrid out;
-    out.grid.points = Array::own(std::move(points), 3);
-    out.grid.cells.connectivity = Array::own(std::move(connectivity));
-    out.grid.cells.offsets = Array::own(std::move(offsets));
-    out.grid.cells.types = Array::own(std::vector<std::uint8_t>(cases, vtk_types[static_cast<std::size_t>(kind)]));
-    out.field = {"value", Array::own(std::move(values)), false, {}};
-    return out;
 }
 
 TEST(Clip, OfEveryWayToPutCornersBelowAtAndAboveIsSound) {
