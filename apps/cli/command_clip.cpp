@@ -74,6 +74,7 @@ Json clip_json(const ClipNumbers& numbers) {
                          {"cut_cells", step.cut_cells},
                          {"polyhedra", step.polyhedra},
                          {"flat_pieces", step.flat_pieces},
+                         {"folded_pieces", step.folded_pieces},
                          {"tied_points", step.tied_points},
                          {"seconds", {{"clip", step.clip_seconds}, {"write", step.write_seconds}}},
                          {"file", step.file.empty() ? Json(nullptr) : json_text(step.file)}});

@@ -175,6 +175,11 @@ Result<void> ClipRun::clip_step(std::size_t step) {
     numbers.cut_cells = clipped->cut_cells;
     numbers.polyhedra = clipped->polyhedra;
     numbers.flat_pieces = clipped->flat_pieces;
+    numbers.folded_pieces = clipped->folded_pieces;
+    if (clipped->folded_pieces > 0)
+        caller_.note(fmt::format("no point sees all faces of {} of the pieces that were split: some of their cells are "
+                                 "inside out",
+                                 grouped(clipped->folded_pieces)));
     for (const Extraction& surface : clipped->contour.surfaces) numbers.tied_points += surface.report.tied_points;
     numbers.clip_seconds = clipping.seconds();
     if (auto written = write(*clipped, step, numbers); !written) return written;

@@ -39,7 +39,8 @@ struct ClipJob {
 struct ClipStepNumbers {
     std::optional<double> time;
     std::uint64_t points = 0, cells = 0;
-    std::uint64_t whole_cells = 0, cut_cells = 0, polyhedra = 0, flat_pieces = 0; ///< as ClippedGrid
+    std::uint64_t whole_cells = 0, cut_cells = 0, polyhedra = 0; ///< as ClippedGrid
+    std::uint64_t flat_pieces = 0, folded_pieces = 0;            ///< the same
     std::uint64_t tied_points = 0; ///< of both ends of the range
     double clip_seconds = 0, write_seconds = 0;
     std::string file; ///< empty without OUT
