@@ -69,12 +69,13 @@ or a number from 0. Velocity stands for the fields VelocityX, VelocityY and Velo
 disp_z, where no field is called so. x, y and z alone are the coordinates, unless fields are called so. A cell field is
 averaged to the points, weighted by volume (ParaView's Cell Data to Point Data takes the plain mean).
 
-OUT ends in .vtp, .ply, .stl, .obj, .vtk or .ts. Several isovalues in one OUT make one surface with a cell field
-isovalue. With {value}, {time} or {step} in OUT there is one file each: values and times are the shortest decimals that
-read back, steps are numbers of equal length, from 0. Beside the .vtp files of several time steps a collection is
-written, front.pvd for front-{step}.vtp, which ParaView opens as one series with its times, unless there is one that
-isotet has not written. Files that were complete when Ctrl-C came stay. Without OUT only the numbers are printed.
-Without an isovalue the middle of the range is taken.
+OUT ends in .vtp, .ply, .stl, .3mf, .obj, .glb, .usda, .vtk or .ts. Several isovalues in one OUT make one surface with
+a cell field isovalue. With {value}, {time} or {step} in OUT there is one file each: values and times are the shortest
+decimals that read back, steps are numbers of equal length, from 0. Beside the .vtp files of several time steps a
+collection is written, front.pvd for front-{step}.vtp, which ParaView opens as one series with its times, unless there is
+one that isotet has not written; beside .usda files front.usda for front-{step}.usda, which shows them one after another.
+A .glb without {step} has all time steps, and shows them one after another. Files that were complete when Ctrl-C came
+stay. Without OUT only the numbers are printed. Without an isovalue the middle of the range is taken.
 
 A point whose value equals the isovalue counts as above it. Triangles face the side of higher values. The methods give
 the same vertices and triangles in a different order; but of cells that repeat others direct gives the triangles again,

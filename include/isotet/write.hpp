@@ -29,6 +29,9 @@ enum class Compression : std::uint8_t {
 /// "none", "zlib", "lz4".
 ISOTET_API std::string_view name_of(Compression compression) noexcept;
 
+/// A cell field of times: GLB shows what has one of them after the other.
+inline constexpr std::string_view animation_field = "animation_time";
+
 struct WriteOptions {
     std::string format = {}; ///< "vtp", "ply" and so on; empty: from the ending of the path
     Compression compression =

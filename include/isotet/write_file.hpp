@@ -30,7 +30,8 @@ struct CollectionEntry {
 };
 
 /// Writes a ParaView collection (.pvd): an index by which a series of VTK XML files opens as one data set with times.
-/// Files below the folder of `path` are named relative to it, so that the folder can be moved.
+/// Files below the folder of `path` are named relative to it, so that the folder can be moved. A `path` that ends in
+/// .usda is a stage of USD that shows USD files one after another, four times a second.
 ///
 /// Errors   as write_text()
 ISOTET_API Result<void> write_collection(const std::vector<CollectionEntry>& entries, const std::string& path,

@@ -58,14 +58,14 @@ std::vector<TriangleGroup> triangle_groups(const Surface& surface, std::span<con
         if (auto groups = by_values(surface, found)) {
             std::vector<TriangleGroup> named;
             for (auto& [key, triangles] : *groups)
-                named.push_back({name_of_group(key, found), std::move(triangles)});
+                named.push_back({name_of_group(key, found), key, std::move(triangles)});
             return named;
         }
     }
     if (surface.triangle_count() == 0) return {};
     std::vector<std::uint64_t> all(surface.triangle_count());
     std::iota(all.begin(), all.end(), std::uint64_t{0});
-    return {{"surface", std::move(all)}};
+    return {{"surface", {}, std::move(all)}};
 }
 
 } // namespace isotet::checking

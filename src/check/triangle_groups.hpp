@@ -15,7 +15,8 @@
 namespace isotet::checking {
 
 struct TriangleGroup {
-    std::string name; ///< "isovalue 0.5, part 2"
+    std::string name;        ///< "isovalue 0.5, part 2"
+    std::vector<double> key; ///< the values of the fields that there are
     std::vector<std::uint64_t> triangles;
 };
 

@@ -83,6 +83,7 @@ private:
     std::uint64_t coarse_tets_ = 0;                ///< of the step at hand, with direct extraction
     std::optional<std::uint64_t> resident_before_; ///< with the grid of the first step
     std::vector<CollectionEntry> series_;          ///< files so far
+    std::vector<Surface> animated_;                ///< of the steps that go into one file
     std::vector<std::size_t> skipped_;             ///< steps without the field
     std::set<std::string> not_carried_;            ///< fields that some steps do not have
     ExtractNumbers numbers_;
@@ -642,7 +643,14 @@ Result<void> ExtractRun::extract_step(std::size_t step) {
     note_what_the_step_holds(numbers_, grid_, coarse_tets_, caller_);
     if (auto measured = measure_volumes(before); !measured) return measured;
     if (!one_file) return {};
-    return write(joined.size() == 1 ? joined.front() : join(joined, isovalues_), numbers_.surfaces.back());
+    Surface surface = joined.size() == 1 ? joined.front() : join(joined, isovalues_);
+    if (plan_.steps.size() == 1 || !is_animated(plan_.names))
+        return write(std::move(surface), numbers_.surfaces.back());
+    const double time = time_of(source_->info(), step).value_or(static_cast<double>(step));
+    surface.cell_fields.push_back(
+        {std::string(animation_field), Array::own(std::vector<double>(surface.triangle_count(), time))});
+    animated_.push_back(std::move(surface));
+    return {};
 }
 
 /// Of steps that do not have all fields.
@@ -671,6 +679,8 @@ Result<void> ExtractRun::run() {
     }
     if (skipped_.size() == plan_.steps.size()) return source_->no_such_field(plan_.field.name);
     note_what_steps_miss();
+    if (!animated_.empty())
+        if (auto written = write(join(animated_, {}), numbers_.surfaces.back()); !written) return written;
     if (packed_) numbers_.packed_file = packed_->residency();
     if (const auto peak = peak_resident_memory()) {
         if (resident_before_) numbers_.peak_bytes = *peak - std::min(*peak, *resident_before_);

@@ -108,9 +108,11 @@ Result<void> check_solid(const ExtractJob& job) {
 
 } // namespace
 
+bool is_animated(const OutputNames& names) { return names.fixed() && ending_of(names.pattern()) == ".glb"; }
+
 Result<void> check_names(const ExtractJob& job, const ExtractPlan& plan, const FileInfo& info) {
     if (plan.names.none()) return {};
-    if (plan.steps.size() > 1 && !plan.names.by_step())
+    if (plan.steps.size() > 1 && !plan.names.by_step() && !is_animated(plan.names))
         return refusal("`all_steps` has {} time steps, but OUT, '{}', has neither {{step}} nor {{time}}: there is "
                        "one file for each step",
                        plan.steps.size(), job.out);
@@ -130,8 +132,9 @@ Result<void> check_names(const ExtractJob& job, const ExtractPlan& plan, const F
 
 Result<std::string> plan_collection(const ExtractJob& job, const ExtractPlan& plan, Caller& caller) {
     const std::string ending = ending_of(job.out);
-    if (plan.steps.size() < 2 || (ending != ".vtp" && ending != ".vtu")) return std::string();
+    if (plan.steps.size() < 2 || (ending != ".vtp" && ending != ".vtu" && ending != ".usda")) return std::string();
     std::string collection = plan.names.collection();
+    if (ending == ".usda") collection.replace(collection.size() - 4, 4, ending);
     if (same_file(collection, job.grid.file)) {
         caller.note(fmt::format("no collection of the series is written: '{}' is the input", collection));
         return std::string();

@@ -33,7 +33,10 @@ struct ExtractPlan {
 /// Errors   invalid_argument: OUT, a field, a step or a combination of options is wrong; invalid_data: no field varies
 Result<ExtractPlan> plan_extract(ExtractJob& job, GridSource& source, Caller& caller);
 
-/// Whether the names of outputs tell the steps of the plan apart.
+/// Whether all time steps go into one file, which shows them one after another.
+bool is_animated(const OutputNames& names);
+
+/// Whether the names of outputs tell the steps of the plan apart, or need not.
 Result<void> check_names(const ExtractJob& job, const ExtractPlan& plan, const FileInfo& info);
 
 /// The collection of a series that ParaView opens; nothing where there is no series.

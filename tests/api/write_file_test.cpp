@@ -41,5 +41,23 @@ TEST(WriteCollection, NamesFilesRelativeToItsFolder) {
     EXPECT_EQ(folder.entries(), 1u);
 }
 
+TEST(WriteCollection, OfUsdShowsFilesOneAfterAnother) {
+    const Folder folder;
+    const std::string path = folder / "all.usda";
+    ASSERT_TRUE(write_collection(
+        {{0, 0, folder / "a.usda"}, {0, 1, folder / "b.usda"}, {7, 0, folder / "c.usda"}}, path));
+    const std::string text = content_of(path);
+    EXPECT_NE(text.find("@@@./a.usda@@@"), std::string::npos) << text;
+    EXPECT_NE(text.find("endTimeCode = 1\n"), std::string::npos) << text;
+    const std::string first = "visibility.timeSamples = { 0: \"inherited\", 1: \"invisible\" }";
+    EXPECT_NE(text.find(first, text.find("b.usda")), std::string::npos) << "of one time both";
+    EXPECT_NE(text.find("visibility.timeSamples = { 0: \"invisible\", 1: \"inherited\", 2: \"invisible\" }"),
+              std::string::npos)
+        << text;
+    EXPECT_TRUE(is_written_collection(path));
+    put_content(path, "#usda 1.0\n");
+    EXPECT_FALSE(is_written_collection(path));
+}
+
 } // namespace
 } // namespace isotet::test

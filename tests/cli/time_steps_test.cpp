@@ -35,6 +35,18 @@ TEST_F(Program, InfoShowsTheFirstAndTheLastOfManyTimes) {
     EXPECT_EQ(json_of({"info", path("many.msh")})["times"].size(), 11u);
 }
 
+TEST_F(ProgramWithTimes, OneGlbHasAllStepsAndUsdFilesAStage) {
+    ASSERT_EQ(isotet({"extract", grid, path("all.glb"), "-f", "p", "-i", "0.5", "--all-steps"}).status, 0);
+    const std::string glb = content_of(path("all.glb"));
+    const json head = json::parse(glb.substr(20, static_cast<unsigned char>(glb[12]) +
+                                                     256U * static_cast<unsigned char>(glb[13])));
+    EXPECT_EQ(head["meshes"].size(), 3u);
+    EXPECT_EQ(head["animations"][0]["channels"].size(), 3u);
+    EXPECT_EQ(isotet({"extract", grid, path("all.stl"), "-f", "p", "-i", "0.5", "--all-steps"}).status, 2);
+    ASSERT_EQ(isotet({"extract", grid, path("u_{step}.usda"), "-f", "p", "-i", "0.5", "--all-steps"}).status, 0);
+    EXPECT_NE(content_of(path("u.usda")).find("@@@./u_2.usda@@@"), std::string::npos);
+}
+
 TEST_F(ProgramWithTimes, TheFirstStepIsTakenWithANote) {
     const RunResult run = isotet({"extract", grid, "-f", "p", "-i", "0.5"});
     EXPECT_EQ(run.status, 0);

@@ -113,6 +113,33 @@ TEST(WriteGlb, HoldsFieldsNormalsAndColors) {
     EXPECT_FALSE(attributes.contains("_gap"));
 }
 
+TEST(WriteGlb, ShowsTimesOneAfterAnother) {
+    Surface surface = two_tets();
+    surface.cell_fields.push_back(
+        {std::string(animation_field), Array::own(std::vector<double>{2.5, 2.5, 2.5, 2.5, 10, 10, 10, 10})});
+    const Glb glb = written_glb(surface);
+    ASSERT_EQ(glb.json.at("animations").size(), 1U);
+    const Json& animation = glb.json.at("animations")[0];
+    const Json& nodes = glb.json.at("nodes");
+    ASSERT_EQ(animation.at("channels").size(), 2U);
+    EXPECT_EQ(nodes[1].at("name"), "time 2.5, part 0");
+    EXPECT_FALSE(nodes[1].contains("scale"));
+    EXPECT_EQ(nodes[2].at("scale"), Json::array({0, 0, 0}));
+    for (std::size_t step = 0; step < 2; ++step) {
+        const Json& channel = animation.at("channels")[step];
+        EXPECT_EQ(channel.at("target"), (Json{{"node", step + 1}, {"path", "scale"}}));
+        const Json& sampler = animation.at("samplers")[channel.at("sampler").get<std::size_t>()];
+        EXPECT_EQ(sampler.at("interpolation"), "STEP");
+        EXPECT_EQ(glb.values<float>(sampler.at("input")), (std::vector<float>{0, 0.25F, 0.5F}));
+        EXPECT_EQ(glb.values<float>(sampler.at("output")), (step == 0 ? std::vector<float>{1, 1, 1, 0, 0, 0, 0, 0, 0}
+                                                                      : std::vector<float>{0, 0, 0, 1, 1, 1, 1, 1, 1}));
+        EXPECT_EQ(glb.accessor(sampler.at("output")).at("count"), 3);
+        EXPECT_FALSE(glb.json.at("bufferViews")[glb.accessor(sampler.at("input")).at("bufferView").get<std::size_t>()]
+                         .contains("target"));
+    }
+    EXPECT_FALSE(written_glb(two_tets()).json.contains("animations"));
+}
+
 TEST(WriteGlb, CountsFromTheMiddleFarFromZero) {
     const Surface far = moved(two_tets(), {5e9, 0, 0});
     const Folder folder;

@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// GLB: glTF 2.0 in one binary file. A mesh for each isovalue and part; vertices once, for all of them.
+// GLB: glTF 2.0 in one binary file. A mesh for each isovalue and part; vertices once, for all of them. Time steps are
+// shown one after another.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -29,8 +30,9 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::uint32_t glb_magic = 0x46546C67, glb_version = 2, json_chunk = 0x4E4F534A, binary_chunk = 0x004E4942;
 constexpr int type_uint16 = 5123, type_uint32 = 5125, type_float32 = 5126;
-constexpr int vertex_buffer = 34962, index_buffer = 34963;
-constexpr std::array<std::string_view, 3> group_fields{"isovalue", "part", "boundary"};
+constexpr int vertex_buffer = 34962, index_buffer = 34963, no_target = 0;
+constexpr std::array<std::string_view, 4> group_fields{animation_field, "isovalue", "part", "boundary"};
+constexpr double seconds_each = 0.25; ///< of a time step in an animation
 constexpr std::array<const char*, 5> shapes{"", "SCALAR", "VEC2", "VEC3", "VEC4"};
 
 /// A part of the binary chunk, in words of four bytes.
@@ -48,7 +50,8 @@ struct Document {
     /// Returns its number among the accessors.
     std::size_t add(Block block, int component, const char* shape, int target, Json more = Json::object()) {
         const std::uint64_t size = std::uint64_t{block.rows} * block.bytes_a_row;
-        views.push_back({{"buffer", 0}, {"byteOffset", bytes}, {"byteLength", size}, {"target", target}});
+        views.push_back({{"buffer", 0}, {"byteOffset", bytes}, {"byteLength", size}});
+        if (target != no_target) views.back()["target"] = target;
         const std::size_t count = target == index_buffer ? 3 * block.rows : block.rows;
         Json accessor{
             {"bufferView", views.size() - 1}, {"componentType", component}, {"count", count}, {"type", shape}};
@@ -172,6 +175,44 @@ Block indices_of(const Surface& surface, const TriangleGroup& group) {
     return {group.triangles.size(), 12, write};
 }
 
+Block block_of(std::vector<float> numbers, std::size_t components) {
+    const std::size_t rows = numbers.size() / components;
+    const auto write = [all = std::move(numbers), components](std::size_t begin, std::size_t end, std::string& out) {
+        for (std::size_t i = begin * components; i < end * components; ++i) put(all[i], out);
+    };
+    return {rows, 4 * components, write};
+}
+
+/// Of nodes behind the first one, which have the groups' meshes: those of one time after another have the scale 1, the
+/// others 0. Where no animation is played, those of the first time are there.
+void add_animation(Document& document, const std::vector<TriangleGroup>& groups, Json& gltf) {
+    std::vector<double> times;
+    for (const TriangleGroup& group : groups)
+        if (times.empty() || times.back() != group.key[0]) times.push_back(group.key[0]); // they ascend
+    std::vector<float> begins;
+    for (std::size_t i = 0; i <= times.size(); ++i) begins.push_back(static_cast<float>(seconds_each * double(i)));
+    const Json range{{"min", Json::array({begins.front()})}, {"max", Json::array({begins.back()})}};
+    const std::size_t input = document.add(block_of(begins, 1), type_float32, "SCALAR", no_target, range);
+    Json samplers = Json::array(), channels = Json::array();
+    for (std::size_t step = 0; step < times.size(); ++step) {
+        std::vector<float> scales(3 * begins.size());
+        const std::size_t last = step + 1 == times.size() ? step + 1 : step; // the last one stays
+        for (std::size_t i = 3 * step; i < 3 * (last + 1); ++i) scales[i] = 1;
+        const std::size_t output = document.add(block_of(std::move(scales), 3), type_float32, "VEC3", no_target);
+        samplers.push_back({{"input", input}, {"interpolation", "STEP"}, {"output", output}});
+    }
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+        const std::size_t step = static_cast<std::size_t>(std::ranges::find(times, groups[i].key[0]) - times.begin());
+        channels.push_back({{"sampler", step}, {"target", {{"node", i + 1}, {"path", "scale"}}}});
+        if (step > 0) gltf["nodes"][i + 1]["scale"] = Json::array({0, 0, 0});
+    }
+    gltf["animations"] = Json::array({Json{{"name", "time"}, {"channels", channels}, {"samplers", samplers}}});
+}
+
+bool has_times(const Surface& surface) {
+    return std::ranges::find(surface.cell_fields, animation_field, &Field::name) != surface.cell_fields.end();
+}
+
 /// Z is up in isotet and Y in glTF: a node above all turns.
 Json scene_of(Document& document, const SurfaceToWrite& input, const std::vector<TriangleGroup>& groups,
               const FloatPositions& positions) {
@@ -186,7 +227,8 @@ Json scene_of(Document& document, const SurfaceToWrite& input, const std::vector
     nodes.push_back({{"name", "isotet"}, {"rotation", turn}});
     for (const TriangleGroup& group : groups) {
         const std::size_t indices = document.add(indices_of(input.surface, group), type_uint32, "SCALAR", index_buffer);
-        const std::string name = printable_name(group.name);
+        std::string name = printable_name(group.name);
+        if (name.starts_with(animation_field)) name.replace(0, animation_field.size(), "time");
         const Json primitive{{"attributes", attributes}, {"indices", indices}, {"material", 0}};
         meshes.push_back({{"name", name}, {"primitives", Json::array({primitive})}});
         children.push_back(nodes.size());
@@ -201,6 +243,7 @@ Json scene_of(Document& document, const SurfaceToWrite& input, const std::vector
     gltf["meshes"] = std::move(meshes);
     const Json look{{"baseColorFactor", color}, {"metallicFactor", 0}, {"roughnessFactor", 0.6}};
     gltf["materials"] = Json::array({Json{{"name", "surface"}, {"pbrMetallicRoughness", look}, {"doubleSided", true}}});
+    if (groups.size() > 1 && has_times(input.surface) && !groups[0].key.empty()) add_animation(document, groups, gltf);
     gltf["accessors"] = document.accessors;
     gltf["bufferViews"] = document.views;
     gltf["buffers"] = Json::array({Json{{"byteLength", document.bytes}}});
