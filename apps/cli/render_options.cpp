@@ -156,6 +156,9 @@ void add_cuts(const Command& command, RenderCommand& render) {
     add_planes("--slice", render.slices,
                "Show the cut through the grid along a plane, coloured by --color-by or else by the field; isosurfaces "
                "only with -i, --levels or --sweep; may be repeated");
+    command.add_choice<std::optional<SolidSide>>(
+        "--solid", render.solid, {{"above", SolidSide::above}, {"below", SolidSide::below}},
+        "Closed solids in place of isosurfaces: the grid where the field is at least the isovalue, or below it");
     command.add_flag(
         "--edges", render.edges,
         "Draw the edges of the triangles of boundary and slices, or of the surfaces where neither is drawn");

@@ -24,6 +24,7 @@
 #include <isotet/result.hpp>
 #include <isotet/search.hpp>
 #include <isotet/slice.hpp>
+#include <isotet/solid.hpp>
 #include <isotet/surface.hpp>
 
 namespace isotet {
@@ -34,6 +35,9 @@ enum class ShadeBy : std::uint8_t {
     gradient, ///< of the field
     faces     ///< every triangle is flat
 };
+
+/// The side of an isosurface that is shown as a solid.
+enum class SolidSide : std::uint8_t { above, below };
 
 /// How the field is drawn as a volume.
 ///
@@ -63,6 +67,8 @@ struct SceneLook {
     std::vector<Plane> clips;      ///< of isosurfaces and boundary only normal . p <= offset is shown
     std::vector<Plane> slices;     ///< through the grid; not clipped
     std::optional<VolumeLook> volume = {}; ///< of the field; curved cells are then split at their nodes
+    std::optional<SolidSide> solid = {};   ///< in place of isosurfaces: the closed part of the grid on one side of
+                                           ///< each; the CPU makes them, and no volume goes with them
 };
 
 /// Colour and opacity of one of several isosurfaces.
@@ -86,6 +92,9 @@ ISOTET_API std::vector<SurfaceLook> looks_of(std::span<const double> isovalues, 
 /// Cost     a direct extraction
 /// Errors   as slice_field(), linearize() and extract_direct()
 ISOTET_API Result<Surface> slice_of(const Grid& grid, const Plane& plane, const ColorField* field, const Run& run = {});
+
+/// A solid as IsosurfaceScene draws it: triangles of its boundary share no vertex, so that each is flat.
+ISOTET_API Surface drawn_solid(const Solid& solid);
 
 /// Where surfaces of a grid are extracted.
 enum class ExtractOn : std::uint8_t {
@@ -141,9 +150,9 @@ public:
     ///
     /// `look`     with a volume the grid is packed, and the scene is one for draw()
     /// `device`   that will draw the scene; nothing: surfaces stay in the machine's memory, for draw()
-    /// Errors   as Contour::create(), Contour::prepare(), boundary_of(), TetStore::upload() and TetIndex::create();
-    ///          invalid_argument when options need a device and there is none, or a volume is to be drawn by one, or
-    ///          has no field
+    /// Errors   as Contour::create(), Contour::prepare(), Solids::create(), boundary_of(), TetStore::upload() and
+    ///          TetIndex::create(); invalid_argument when options need a device and there is none, or a volume is to be
+    ///          drawn by one, or has no field, or solids go with either
     static Result<IsosurfaceScene> create(const std::optional<Device>& device, IsosurfaceOptions options,
                                           SceneLook look, const Run& run = {});
 

@@ -128,6 +128,17 @@ Result<void> check_method(const DrawJob& job) {
     return {};
 }
 
+/// Refuses what makes no solids.
+Result<void> check_drawn_solid(const DrawJob& job) {
+    if (!job.solid) return {};
+    if (job.method.draw)
+        return refusal("`solid` draws surfaces, but `method` {} makes none", name_of(*job.method.draw));
+    if (draws_volume(job)) return refusal("`solid` was asked for, which does not go with `volume`");
+    if (job.engine == EngineChoice::vulkan)
+        return refusal("`solid` is made by the CPU, but `engine` vulkan was asked for");
+    return {};
+}
+
 /// Refuses what does not go with a volume, or needs one.
 Result<void> check_volume(const DrawJob& job) {
     if (!draws_volume(job)) {
@@ -151,6 +162,7 @@ Result<void> check_volume(const DrawJob& job) {
 Result<DrawReport> draw_files(const DrawJob& job, Caller& caller) {
     if (Result<void> fits = check_method(job); !fits) return fits.error();
     if (Result<void> fits = check_volume(job); !fits) return fits.error();
+    if (Result<void> fits = check_drawn_solid(job); !fits) return fits.error();
     // The number of steps is known only when the file was looked into; all else is checked before.
     std::optional<PictureFiles> files;
     const auto open = [&](std::size_t steps) -> Result<void> {

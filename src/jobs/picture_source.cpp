@@ -28,11 +28,12 @@ bool names_isovalues(const DrawJob& job) {
 }
 
 /// Whether isovalues were asked for, or a volume, which is one of a field as well.
-bool asks_for_field(const DrawJob& job) { return names_isovalues(job) || draws_volume(job); }
+bool asks_for_field(const DrawJob& job) { return names_isovalues(job) || draws_volume(job) || job.solid; }
 
 Result<std::vector<double>> choose_levels(const DrawJob& job, const PointField& field, const ValueRange& range) {
     std::vector<double> levels = evenly_spaced_levels(
-        range.lower, range.upper, job.levels > 0 ? job.levels : default_levels, LevelRounding::short_decimals);
+        range.lower, range.upper, job.levels > 0 ? job.levels : job.solid ? 1 : default_levels,
+        LevelRounding::short_decimals);
     if (!levels.empty()) return levels;
     return Error{ErrorCode::invalid_data,
                  fmt::format("field '{}' has no finite value: there is nothing to contour", field.name)};
@@ -170,6 +171,7 @@ SceneLook PictureSource::look_of(const Contents& contents) const {
     look.outline = job_.outline;
     look.line_width = std::max(1.0, job_.picture.height / 600.0);
     look.edges = job_.edges;
+    look.solid = job_.solid;
     look.shade_by = job_.shade_by;
     look.clips = job_.clips;
     look.slices = job_.slices;
@@ -182,9 +184,9 @@ SceneLook PictureSource::look_of(const Contents& contents) const {
 
 Result<DrawInput> PictureSource::take_surface(const std::optional<Device>& device, Caller& caller) {
     if (asks_for_field(job_) || !job_.field.name.empty() || job_.boundary || job_.method.extract ||
-        !job_.boundary_color_by.empty() || !job_.slices.empty()) {
+        !job_.boundary_color_by.empty() || !job_.slices.empty() || job_.solid) {
         return refusal("{} is a surface: it has no isovalues, no field to contour (`color_by` colours it), no "
-                       "boundary, no volume, no slices and no tets",
+                       "boundary, no volume, no solids, no slices and no tets",
                        job_.grid.file);
     }
     DrawInput input;

@@ -49,6 +49,7 @@ Result<void> IsosurfaceScene::show(std::span<const double> isovalues, const Run&
         const core::Stopwatch extracting;
         const Result<void> done = data.surface   ? data.add_surface(*data.surface)
                                   : data.store   ? data.show_tets(isovalues)
+                                  : data.solids  ? data.show_solids(isovalues, run)
                                   : data.contour ? data.show_extracted(isovalues, run)
                                                  : Result<void>();
         if (!done) return done;

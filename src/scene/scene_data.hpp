@@ -23,6 +23,7 @@ struct IsosurfaceScene::Data {
     SceneLook look = {};
     std::optional<Surface> surface = {}; ///< that was given; else there is
     std::optional<Contour> contour = {}; ///< with gradient normals
+    std::optional<Solids> solids = {};   ///< in its place
     ContourInput without_device = {};    ///< of the session, if it has a device: to go on without it
     bool required = false;               ///< the device
     Box bounds = {};
@@ -57,6 +58,7 @@ struct IsosurfaceScene::Data {
     Result<void> load_tets(const IsosurfaceOptions& options, const Run& run);
     Result<void> show_tets(std::span<const double> isovalues);
     Result<void> show_extracted(std::span<const double> isovalues, const Run& run);
+    Result<void> show_solids(std::span<const double> isovalues, const Run& run);
     Result<void> show_on_device(std::span<const double> isovalues, const Run& run);
     Result<void> add_surface(Surface one);
     bool draws_surface_edges() const { return look.edges && (surface || (!boundary && slices.empty())); }

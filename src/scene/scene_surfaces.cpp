@@ -26,7 +26,8 @@ std::uint64_t picture_bytes(const PictureOptions& picture, std::uint64_t tets) {
 /// Starts the session. A device colours by the grid's own values; on the CPU surfaces carry the field that colours.
 Result<void> IsosurfaceScene::Data::start(IsosurfaceOptions wanted, const Run& run) {
     ContourOptions options;
-    options.normals = look.shade_by == ShadeBy::gradient || wanted.draw || wanted.where == ExtractOn::device
+    const bool by_gradient = look.shade_by == ShadeBy::gradient && !look.solid;
+    options.normals = by_gradient || wanted.draw || wanted.where == ExtractOn::device
                           ? Normals::gradient
                           : Normals::none;
     options.method = wanted.draw || look.volume ? Method::clusters : wanted.method;
@@ -44,7 +45,8 @@ Result<void> IsosurfaceScene::Data::start(IsosurfaceOptions wanted, const Run& r
         !look.clips.empty() || look.shade_by == ShadeBy::vertices || draws_surface_edges();
     const bool card = device && device->info().kind != DeviceKind::software &&
                       options.method.value_or(method_for(options.surfaces, true)) == Method::clusters;
-    const bool use_device = !wanted.draw && (required || (card && !in_memory && wanted.where == ExtractOn::best));
+    const bool use_device =
+        !wanted.draw && (required || (card && !in_memory && !look.solid && wanted.where == ExtractOn::best));
     if (!use_device && !wanted.draw && !look.volume) options.refine = wanted.refine;
     if (use_device) {
         options.engine = vulkan_engine(*device);
@@ -52,6 +54,14 @@ Result<void> IsosurfaceScene::Data::start(IsosurfaceOptions wanted, const Run& r
         options.edge_ends = by_points;
         options.source_cells = by_cells;
         without_device = carrying;
+    }
+    if (look.solid) {
+        if (use_device || wanted.draw || look.volume)
+            return invalid_argument("solids on a device or with a volume, but the CPU makes them alone");
+        Result<Solids> created = Solids::create(std::move(carrying), options, run);
+        if (!created) return created.error();
+        solids = *std::move(created);
+        return {};
     }
     const core::Stopwatch packing;
     Result<Contour> created = Contour::create(use_device ? std::move(plain) : std::move(carrying), options, run);
@@ -158,7 +168,7 @@ Result<void> IsosurfaceScene::Data::add_surface(Surface one) {
         fields = {{look.colors->name, look.colors->values}};
     }
     for (const Plane& plane : look.clips) one = scene::clipped(one, plane);
-    if (look.shade_by == ShadeBy::vertices) {
+    if (look.shade_by == ShadeBy::vertices || (look.solid && look.shade_by == ShadeBy::gradient)) {
         Result<Array> normals = vertex_normals(one);
         if (!normals) return normals.error();
         one.normals = *std::move(normals);

@@ -72,6 +72,49 @@ TEST(SceneOnCpu, SlicesAreFlatAndCarryTheColours) {
     EXPECT_EQ(scene.report().slice_triangles, slice.triangles->triangle_count());
 }
 
+TEST(SceneOnCpu, SolidsAreClosedAndTheirBoundaryIsFlat) {
+    const IsosurfaceOptions options = contour_of("gyroid");
+    Solids solids = Solids::create({options.grid, options.field, {}, {}}).value();
+    for (const SolidSide side : {SolidSide::above, SolidSide::below}) {
+        SceneLook look;
+        look.solid = side;
+        look.boundary_opacity = 0;
+        look.colors = ColorField{"sphere", find_field(options.grid, "sphere").value().values, Association::point, {}};
+        IsosurfaceScene scene = IsosurfaceScene::create(std::nullopt, options, look).value();
+        ASSERT_TRUE(scene.show(std::array{0.2, 0.4}));
+        ASSERT_EQ(scene.scene().surfaces.size(), 2u);
+        for (std::size_t i = 0; i < 2; ++i) {
+            const double isovalue = *scene.surfaces()[i].isovalue;
+            const Solid solid =
+                solids.extract(side == SolidSide::above ? SolidRange::above(isovalue) : SolidRange::below(isovalue))
+                    .value();
+            const Surface& drawn = *scene.scene().surfaces[i].triangles;
+            EXPECT_EQ(drawn.triangle_count(), solid.surface.triangle_count());
+            EXPECT_NEAR(area(drawn), area(solid.surface), 1e-6);
+            EXPECT_EQ(scene.scene().surfaces[i].values->values.tuples(), drawn.vertex_count());
+            for (std::size_t t = solid.isosurface_triangles; t < drawn.triangle_count(); ++t)
+                for (std::size_t k = 0; k < 3; ++k) { // sides of the cube from -1 to 1
+                    const auto vertex = static_cast<std::size_t>(drawn.triangles.at(t, k));
+                    double most = 0;
+                    for (std::size_t axis = 0; axis < 3; ++axis)
+                        most = std::max(most, std::abs(drawn.normals.at(vertex, axis)));
+                    ASSERT_NEAR(most, 1, 1e-5);
+                }
+        }
+    }
+}
+
+TEST(SceneOnCpu, SolidsDoNotGoWithVolumesOrDevices) {
+    SceneLook look;
+    look.solid = SolidSide::above;
+    IsosurfaceOptions on_device = contour_of("gyroid");
+    on_device.where = ExtractOn::device;
+    EXPECT_EQ(IsosurfaceScene::create(std::nullopt, on_device, look).error().code, ErrorCode::invalid_argument);
+    look.volume = VolumeLook{};
+    EXPECT_EQ(IsosurfaceScene::create(std::nullopt, contour_of("gyroid"), look).error().code,
+              ErrorCode::invalid_argument);
+}
+
 TEST(SceneOnCpu, TheBoundaryHasTheColoursOfItsPointsAndCells) {
     IsosurfaceOptions options = contour_of("sphere");
     const Grid grid = options.grid;

@@ -54,6 +54,7 @@ struct DrawJob {
     bool scale_bar = false;
     std::vector<double> stretch; ///< of x, y and z; or none
     std::vector<Plane> clips, slices;
+    std::optional<SolidSide> solid; ///< in place of isosurfaces: solids on this side of them
     bool edges = false;
     bool split_cells = false;
     ShadeBy shade_by = ShadeBy::vertices;
