@@ -36,6 +36,7 @@ double boundary_by_itself(const ViewState& state) { return state.volume ? 0 : de
 
 void add_isovalues(std::vector<std::string>& words, const ViewState& state) {
     if (!state.isovalues.empty()) add_option(words, "--isovalue", fmt::format("{}", fmt::join(state.isovalues, ",")));
+    if (state.solid && !state.volume) add_option(words, "--solid", std::string(name_of(*state.solid)));
 }
 
 std::vector<std::string> first_words(const char* command, const std::string& file,
@@ -192,6 +193,11 @@ constexpr PageOption more_page_options[] = {
      [](ViewState& state, const std::string& value) { return add_plane(state.clips, value); }},
     {"--slice", "", plane_rule,
      [](ViewState& state, const std::string& value) { return add_plane(state.slices, value); }},
+    {"--solid", "", "above or below",
+     [](ViewState& state, const std::string& value) {
+         state.solid = parse_solid_side(value);
+         return state.solid.has_value();
+     }},
     {"--step", "", "a whole number",
      [](ViewState& state, const std::string& value) {
          std::uint64_t step = 0;

@@ -8,6 +8,25 @@
 
 namespace isotet::view {
 
+/// A solid with all fields.
+Result<Surface> GridView::solid_of_pick(const PickMessage& message, const Run& run) {
+    if (Result<void> here = need_cells(run); !here) return here.error();
+    Result<PointField> field = field_of(message.state.field, run);
+    if (!field) return field.error();
+    ContourOptions options;
+    options.method = Method::direct;
+    options.source_cells = true;
+    Result<Solids> solids =
+        Solids::create({grid_, *std::move(field), grid_.point_fields, grid_.cell_fields}, options, run);
+    if (!solids) return solids.error();
+    const double isovalue = message.state.isovalues.front();
+    Result<Solid> solid = solids->extract(
+        message.state.solid == SolidSide::above ? SolidRange::above(isovalue) : SolidRange::below(isovalue), run);
+    if (!solid) return solid.error();
+    solid->surface.cell_fields.pop_back(); // which part of the solid a triangle is of
+    return std::move(solid->surface);
+}
+
 Result<Surface> GridView::surface_of_pick(const PickMessage& message, const Run& run) {
     const bool packed = is_packed_.load(std::memory_order_acquire) && lean_;
     ExtractOptions with_all;
@@ -15,6 +34,7 @@ Result<Surface> GridView::surface_of_pick(const PickMessage& message, const Run&
     with_all.point_fields = grid_.point_fields;
     with_all.cell_fields = grid_.cell_fields;
     const Plane* plane = message.slice ? &message.state.slices[*message.slice] : nullptr;
+    if (message.state.solid && !plane) return solid_of_pick(message, run);
     if (packed && plane) return lean_->slice(grid_.points, *plane, with_all, run);
     Result<PointField> field = plane ? slice_field(grid_.points, *plane, run) : field_of(message.state.field, run);
     if (!field) return field.error();

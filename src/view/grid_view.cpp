@@ -252,7 +252,7 @@ Result<void> GridView::need_cells(const Run& run) {
 }
 
 void GridView::rest() {
-    if (is_packed_.load(std::memory_order_acquire) && lean_ && has_cells_) {
+    if (is_packed_.load(std::memory_order_acquire) && lean_ && has_cells_ && !solids_) {
         if (!sample_) {
             sample_ = sample_of_cells(grid_);
             cells_sum_ = sum_of(grid_.cells);

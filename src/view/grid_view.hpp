@@ -15,6 +15,7 @@
 #include <isotet/contour_spectrum.hpp>
 #include <isotet/isosurface_scene.hpp>
 #include <isotet/refine.hpp>
+#include <isotet/solid.hpp>
 
 #include "view/messages.hpp"
 #include "view/packed_source.hpp"
@@ -133,6 +134,9 @@ private:
     Result<ExtractOptions> carried_fields(const std::string& color_by, const Run& run);
     Result<std::shared_ptr<const Mesh>> packed_mesh_at(const ViewState& state, double isovalue, const std::string& key,
                                                        FrameParts& making, const Run& run);
+    Result<std::shared_ptr<const Mesh>> solid_mesh_at(const ViewState& state, double isovalue, const std::string& key,
+                                                      FrameParts& making, const Run& run);
+    Result<Surface> solid_of_pick(const PickMessage& message, const Run& run);
     Result<Picked> pick_along(const PickMessage& message, const Run& run);
     Result<Surface> surface_of_pick(const PickMessage& message, const Run& run);
     Result<PointField> field_of(const std::string& name, const Run& run);
@@ -174,6 +178,8 @@ private:
     std::uint64_t grid_number_ = 0; ///< another one when cells or points are others
     bool has_cells_ = true;
     std::uint64_t cell_count_ = 0;
+    std::optional<Solids> solids_;     ///< of solids_key_, while solids are shown
+    std::string solids_key_;
     std::optional<PackedSource> lean_; ///< instead of packed_, where cells may be released
     std::optional<CellSample> sample_; ///< of the cells that were released
     std::uint64_t cells_sum_ = 0;      ///< of these, to know them again

@@ -61,6 +61,33 @@ Result<std::shared_ptr<const Mesh>> GridView::packed_mesh_at(const ViewState& st
     return keep(key, *surface, making.facts.scale, making.facts, run);
 }
 
+/// The boundary is found once for each grid, field and colours. It needs the cells.
+Result<std::shared_ptr<const Mesh>> GridView::solid_mesh_at(const ViewState& state, double isovalue,
+                                                            const std::string& key, FrameParts& making, const Run& run) {
+    if (auto kept = kept_mesh(key)) return kept;
+    const std::string wanted = fmt::format("{}|{}|{}", state.field, state.color_by, step_);
+    const auto start = std::chrono::steady_clock::now();
+    if (!solids_ || solids_key_ != wanted) {
+        solids_.reset();
+        if (Result<void> here = need_cells(run); !here) return here.error();
+        Result<ContourInput> input = input_of(state.field, state.color_by, run);
+        if (!input) return input.error();
+        ContourOptions options;
+        options.method = Method::direct;
+        Result<Solids> solids = Solids::create(*std::move(input), options, run);
+        if (!solids) return solids.error();
+        solids_ = *std::move(solids);
+        solids_key_ = wanted;
+    }
+    Result<Solid> solid = solids_->extract(
+        state.solid == SolidSide::above ? SolidRange::above(isovalue) : SolidRange::below(isovalue), run);
+    if (!solid) return solid.error();
+    making.facts.extract_seconds += seconds_of(start);
+    making.facts.method = name_of(solid->contour.method);
+    making.facts.notes.insert(making.facts.notes.end(), solid->contour.notes.begin(), solid->contour.notes.end());
+    return keep(key, drawn_solid(*solid), making.facts.scale, making.facts, run);
+}
+
 std::shared_ptr<const Mesh> GridView::kept_mesh(const std::string& key) {
     const auto kept = std::ranges::find(kept_, key, &Kept::key);
     if (kept == kept_.end()) return nullptr;
@@ -125,6 +152,12 @@ Result<GridView::Shown> GridView::surface_at(const ShowMessage& message, double 
                                              FrameParts& making, const Run& run) {
     const ViewState& state = message.state;
     const std::string key = mesh_key(state, isovalue, step_), refined_key = "refined|" + key;
+    if (state.solid) {
+        const std::string solid_key = fmt::format("{}|{}", name_of(*state.solid), key);
+        auto mesh = solid_mesh_at(state, isovalue, solid_key, making, run);
+        if (!mesh) return mesh.error();
+        return Shown{solid_key, *std::move(mesh), {}};
+    }
     if ((message.refined && refines()) || kept_mesh(refined_key)) {
         Result<Shown> refined = refined_at(state, isovalue, refined_key, making, run);
         if (refined || refined.error().code == ErrorCode::cancelled) return refined;
@@ -196,7 +229,8 @@ Result<void> GridView::add_isosurfaces(const ShowMessage& message, const std::ve
     const ViewState& state = message.state;
     const bool lean = is_packed_.load(std::memory_order_acquire) && lean_;
     if (lean) direct_.contour.reset();
-    Result<Source*> source = lean ? Result<Source*>(nullptr) : source_for(state, run);
+    if (!state.solid) solids_.reset();
+    Result<Source*> source = lean || state.solid ? Result<Source*>(nullptr) : source_for(state, run);
     if (!source) return source.error();
     std::vector<Shown> shown;
     std::vector<double> values; // each once
@@ -227,7 +261,9 @@ Result<void> GridView::add_isosurfaces(const ShowMessage& message, const std::ve
         add(std::move(surface), shown[i].mesh, known, making);
     }
     if (making.facts.method.empty())
-        making.facts.method = name_of(lean ? Method::clusters : (*source)->contour->method());
+        making.facts.method = name_of(state.solid && solids_ ? solids_->method()
+                                      : *source              ? (*source)->contour->method()
+                                                             : Method::clusters);
     return {};
 }
 

@@ -26,7 +26,8 @@ namespace isotet::view {
 
 namespace {
 
-constexpr std::array<std::string_view, 6> surface_endings{".vtp", ".vtk", ".ply", ".stl", ".obj", ".ts"};
+constexpr std::array<std::string_view, 9> surface_endings{".vtp", ".vtk",  ".ply", ".stl", ".3mf",
+                                                          ".glb", ".usda", ".obj", ".ts"};
 
 Error wrong_file(std::string sentence) { return {ErrorCode::invalid_argument, std::move(sentence)}; }
 
@@ -191,14 +192,14 @@ Result<std::vector<std::string>> save_words(const SaveRequest& request, const st
     const bool surface = is_surface(request.kind);
     ViewState state = request.state;
     if (request.kind == SaveKind::sweep && state.volume) state.volume->opacity = "peaks"; // one, from value to value
+    if (request.kind == SaveKind::above) state.solid = SolidSide::above;
+    if (request.kind == SaveKind::below) state.solid = SolidSide::below;
     std::vector<std::string> words = surface ? extract_words(state, file, reading) : render_words(state, file, reading);
     words.resize(words.size() - 2); // -o, and what it names
     if (!surface) {
         words.push_back("--size");
         words.push_back(fmt::format("{}x{}", request.width, request.height));
     }
-    if (request.kind == SaveKind::above) words.insert(words.end(), {"--solid", "above"});
-    if (request.kind == SaveKind::below) words.insert(words.end(), {"--solid", "below"});
     if (request.kind == SaveKind::sweep) {
         drop_option(words, "--isovalue");
         words.push_back(fmt::format("--sweep={},{},{}", request.from, request.to, request.pictures));

@@ -97,6 +97,14 @@ bool same_planes(const std::vector<Plane>& a, const std::vector<Plane>& b) {
 
 } // namespace
 
+std::string_view name_of(SolidSide side) { return side == SolidSide::above ? "above" : "below"; }
+
+std::optional<SolidSide> parse_solid_side(std::string_view name) {
+    for (const SolidSide side : {SolidSide::above, SolidSide::below})
+        if (name == name_of(side)) return side;
+    return std::nullopt;
+}
+
 bool operator==(const ViewState& a, const ViewState& b) {
     const auto range = [](const ViewState& s) {
         return s.range ? std::vector<double>{s.range->lower, s.range->upper} : std::vector<double>();
@@ -104,8 +112,9 @@ bool operator==(const ViewState& a, const ViewState& b) {
     const auto camera = [](const ViewState& s) { return s.camera ? to_text(*s.camera) : std::string(); };
     return a.field == b.field && a.isovalues == b.isovalues && a.color_by == b.color_by && a.map == b.map &&
            range(a) == range(b) && a.logarithmic == b.logarithmic && a.opacity == b.opacity && a.outline == b.outline &&
-           camera(a) == camera(b) && a.boundary == b.boundary && a.edges == b.edges && same_planes(a.clips, b.clips) &&
-           same_planes(a.slices, b.slices) && a.step == b.step && a.volume == b.volume;
+           camera(a) == camera(b) && a.boundary == b.boundary && a.edges == b.edges && a.solid == b.solid &&
+           same_planes(a.clips, b.clips) && same_planes(a.slices, b.slices) && a.step == b.step &&
+           a.volume == b.volume;
 }
 
 Json to_json(const ViewState& state) {
@@ -119,6 +128,7 @@ Json to_json(const ViewState& state) {
                  {"boundary", state.boundary},
                  {"clips", planes_json(state.clips)},
                  {"slices", planes_json(state.slices)}};
+    if (state.solid) json["solid"] = name_of(*state.solid);
     if (state.step) json["step"] = *state.step;
     if (state.range) json["range"] = {state.range->lower, state.range->upper};
     if (state.opacity) json["opacity"] = *state.opacity;
@@ -147,6 +157,11 @@ Result<ViewState> state_of(const Json& json) {
     for (auto& [key, planes] : {std::pair("clips", &state.clips), std::pair("slices", &state.slices)})
         reader.read(key, fmt::format("at most {} planes of 4 numbers, the first three not all 0", max_planes),
                     [&](const Json& value) { return take_planes(value, *planes); });
+    reader.read("solid", "above or below", [&](const Json& value) {
+        const std::string* name = text(value);
+        if (name) state.solid = parse_solid_side(*name);
+        return state.solid.has_value();
+    });
     reader.read("step", "a whole number", [&](const Json& value) {
         state.step = whole_number(value);
         return state.step.has_value();

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <isotet/camera.hpp>
@@ -43,10 +44,15 @@ struct ViewState {
     std::optional<Camera> camera;
     double boundary = default_boundary_opacity; ///< opacity of the grid's boundary, 0 to 1; 0: it is not shown
     bool edges = false;                         ///< as SceneLook::edges
+    std::optional<SolidSide> solid;             ///< in place of isosurfaces: solids on this side of them
     std::vector<Plane> clips, slices;           ///< as SceneLook; at most `max_planes` each
     std::optional<std::uint64_t> step;          ///< nothing: the one that is read
     std::optional<VolumeState> volume;          ///< coloured by `field`, as then nothing is by another one
 };
+
+/// "above" and "below", and back.
+std::string_view name_of(SolidSide side);
+std::optional<SolidSide> parse_solid_side(std::string_view name);
 
 bool operator==(const ViewState& a, const ViewState& b);
 

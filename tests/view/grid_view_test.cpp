@@ -475,6 +475,34 @@ TEST_F(GridViewTest, APickHasTheIsovalueAllFieldsAndTheCell) {
     ASSERT_LT(*picked->cell, static_cast<std::int64_t>(grid.cells.count()));
 }
 
+TEST_F(GridViewTest, ASolidIsClosedByTheBoundaryOnItsSide) {
+    const Grid grid = made_grid(12);
+    Solids solids = Solids::create({grid, find_field(grid, "sphere").value(), {}, {}}).value();
+    ShowMessage message = show(1, {0.7});
+    const Json isosurface = frame(message)["surfaces"][0];
+    for (const SolidSide side : {SolidSide::above, SolidSide::below}) {
+        message.state.solid = side;
+        const Json solid = frame(message)["surfaces"][0];
+        const SolidRange range = side == SolidSide::above ? SolidRange::above(0.7) : SolidRange::below(0.7);
+        EXPECT_EQ(solid["triangles"], solids.extract(range).value().surface.triangle_count());
+        EXPECT_NE(solid["key"], isosurface["key"]);
+    }
+    message.state.solid.reset();
+    EXPECT_EQ(frame(message)["surfaces"][0]["key"], isosurface["key"]);
+}
+
+TEST_F(GridViewTest, APickOnASolidIsOnItsBoundaryToo) {
+    PickMessage message;
+    message.state = show(1, {0.7}).state;
+    message.state.solid = SolidSide::above;
+    message.point = {1, 0.9, 0.8};
+    const auto picked = view_->pick(message, {});
+    ASSERT_TRUE(picked) << picked.error().message;
+    EXPECT_NEAR(picked->point[0], 1, 1e-6);
+    EXPECT_NEAR(picked->values[0].values.at(0), std::hypot(1, 0.9, 0.8), 0.05);
+    EXPECT_EQ(picked->values.size(), 4U);
+}
+
 TEST_F(GridViewTest, APickOnASliceLiesInItsPlane) {
     PickMessage message;
     message.state = show(1, {0.7}).state;
@@ -621,6 +649,21 @@ TEST_F(LeanGridView, HasNoCellsAndReadsThemForNoSurfaceOfAPointField) {
             EXPECT_EQ(triangles(*lean_, message), triangles(*full_, message)) << field << " by " << colors;
         }
     EXPECT_EQ(reads_, 0);
+}
+
+TEST_F(LeanGridView, ReadsTheCellsOnceForSolidsAndKeepsThem) {
+    ShowMessage message = show(1, {0.7});
+    message.state.solid = SolidSide::above;
+    for (const double isovalue : {0.7, 0.8, 0.9}) {
+        message.state.isovalues = {isovalue};
+        EXPECT_EQ(triangles(*lean_, message), triangles(*full_, message));
+        lean_->rest();
+    }
+    EXPECT_EQ(reads_, 1);
+    message.state.solid.reset();
+    EXPECT_EQ(triangles(*lean_, message), triangles(*full_, message));
+    lean_->rest();
+    EXPECT_FALSE(lean_->has_cells());
 }
 
 TEST_F(LeanGridView, SlicesAndPicksAreTheSame) {

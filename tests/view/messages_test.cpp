@@ -168,6 +168,17 @@ TEST(SaveWords, StepsReplaceTheStepAndSolidsAreSurfaces) {
     EXPECT_NE(solid.find("--solid below"), std::string::npos) << solid;
     EXPECT_NE(solid.find("--step 3"), std::string::npos) << solid;
     EXPECT_EQ(solid.find("--size"), std::string::npos) << solid;
+    request.state.solid = SolidSide::above;
+    for (const char* name : {"a.stl", "a.3mf", "a.glb", "a.usda"}) {
+        request.name = name;
+        request.kind = SaveKind::below;
+        const std::string below = shell_text(save_words(request, "out", "grid.vtu", {}).value());
+        EXPECT_NE(below.find("--solid below"), std::string::npos) << below;
+        EXPECT_EQ(below.find("--solid above"), std::string::npos) << below;
+        request.kind = SaveKind::surface;
+        const std::string shown = shell_text(save_words(request, "out", "grid.vtu", {}).value());
+        EXPECT_NE(shown.find("--solid above"), std::string::npos) << shown;
+    }
 }
 
 TEST(SaveWords, PicturesHaveASize) {

@@ -435,6 +435,28 @@ def test_slices_and_clip_planes(browser, viewer):
     check(overlaps(browser) == [], f'{overlaps(browser)}')
 
 
+def test_solids(browser, viewer):
+    """The switch shows the isosurface closed by the boundary, and the address and the command have it."""
+    start(browser, viewer, '&labels=0')
+    triangles = lambda: int(browser.value('document.body.dataset.triangles'))
+    choose(browser, '#boundary', '0')
+    browser.wait('!document.body.dataset.kinds.includes("boundary")')
+    at_rest(browser)
+    isosurface = triangles()
+    choose(browser, '#solid', 'above')
+    browser.wait(f'Number(document.body.dataset.triangles) > {isosurface}')
+    browser.wait('location.hash.includes("solid=above")')
+    at_rest(browser)
+    browser.picture(pictures and f'{pictures}/solid.png')
+    above = triangles()
+    browser.click('#copy-render')
+    browser.wait('document.getElementById("copied").textContent.includes("--solid above")')
+    choose(browser, '#solid', 'below')
+    browser.wait(f'Number(document.body.dataset.triangles) < {above}')
+    choose(browser, '#solid', '')
+    browser.wait(f'Number(document.body.dataset.triangles) === {isosurface} && !location.hash.includes("solid=")')
+
+
 def test_pick(browser, viewer):
     start(browser, viewer)
     x, y, w, h = browser.box('#scene')

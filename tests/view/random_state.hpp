@@ -47,6 +47,7 @@ inline view::ViewState random_state(unsigned seed) {
     }
     if (chance(0.3)) state.boundary = std::uniform_real_distribution(0.0, 1.0)(random);
     state.edges = chance(0.3);
+    if (chance(0.3)) state.solid = chance(0.5) ? SolidSide::above : SolidSide::below;
     for (std::vector<Plane>* planes : {&state.clips, &state.slices})
         for (int i = std::uniform_int_distribution(0, 3)(random); i > 0; --i) {
             Plane plane{{number(), number(), number()}, number()};
@@ -57,6 +58,7 @@ inline view::ViewState random_state(unsigned seed) {
     if (chance(0.3)) {
         constexpr std::array texts{"ramp", "peaks", "peaks:5", "shell", "-1:0,0:0.5,0:1,1e3:0.25"};
         view::VolumeState& volume = state.volume.emplace();
+        state.solid.reset(); // does not go with it
         volume.opacity = texts[std::uniform_int_distribution<std::size_t>(0, texts.size() - 1)(random)];
         if (chance(0.5)) volume.length = std::abs(number()) + 1e-9;
         if (chance(0.5)) state.isovalues.clear(); // a command line without isovalues has no surfaces

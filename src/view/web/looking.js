@@ -47,6 +47,13 @@ id('drawn-by').addEventListener('change', () => {
   commit();
 });
 
+id('solid').addEventListener('change', () => {
+  app.state.solid = id('solid').value;
+  closePicked();
+  wishSoon();
+  commit();
+});
+
 export function showBoundary() {
   id('boundary').value = app.state.boundary;
   id('boundary-text').textContent = app.state.boundary > 0 ? app.state.boundary.toFixed(2) : 'off';

@@ -32,6 +32,7 @@ function showState() {
   id('outline').checked = app.state.outline;
   id('edges').checked = app.state.edges;
   id('labels-on').checked = app.state.labels;
+  id('solid').value = app.state.solid;
   id('parallel').checked = app.camera.projection === 'parallel';
   id('color-details').hidden = !coloredBy(app.state);
   id('drawn-by').value = app.scene ? app.state.drawn : 'server';

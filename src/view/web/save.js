@@ -4,7 +4,7 @@ import {id} from './app.js';
 import {parseNumber, short} from './format.js';
 
 const solids = ['above', 'below'];
-const surfaceRule = 'The name ends in .vtp, .vtk, .ply, .stl, .obj or .ts.';
+const surfaceRule = 'The name ends in .vtp, .vtk, .ply, .stl, .3mf, .glb, .usda, .obj or .ts.';
 const rules = {above: `Closed: the grid where the field is at least the value of the slider. ${surfaceRule}`,
   below: `Closed: the grid where the field is less than the value of the slider. ${surfaceRule}`, seen: 'The name ends in .png.', picture: 'The name ends in .png.', surface: surfaceRule,
   sweep: 'The name ends in .webp.', turn: 'The name ends in .webp.', steps: 'The name ends in .webp.'};
@@ -86,7 +86,7 @@ export class Save {
   showCommand() {
     const [kind] = this.chosen(), which = {surface: 'extract', above: 'extract', below: 'extract', picture: 'render'}[kind];
     const solid = solids.includes(kind) ? ` --solid ${kind}` : '', all = this.command?.[which] || '';
-    const text = solid ? all.replace(/(--isovalue[ =][^ ,]+),\S*/, '$1') : all;
+    const text = solid ? all.replace(/(--isovalue[ =][^ ,]+),\S*/, '$1').replace(/ --solid \S+/, '') : all;
     id('save-command').textContent = text.replace(/ -o \S+$/, () => `${solid} -o ${/ /.test(id('save-name').value) ? `'${id('save-name').value}'` : id('save-name').value}`);
   }
 

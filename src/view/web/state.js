@@ -5,7 +5,8 @@ export const firstState = () => ({
   field: '', value: null, pins: [], // [{value, color, opacity}], color null: the one that isotet render gives
   color: null, opacity: null,       // of the surface that the slider moves
   colorBy: '', map: 'viridis', range: null, logarithmic: false, outline: false, edges: false, camera: null,
-  boundary: 0.1, planes: [], step: null, drawn: '', // 'server': pictures, 'browser': never
+  boundary: 0.1, solid: '', // 'above' or 'below' in place of isosurfaces
+  planes: [], step: null, drawn: '', // 'server': pictures, 'browser': never
   volume: null, // {opacity, length, surfaces}: as isotet render --volume draws it
   labels: true, // scale, field, isovalue and time in the scene
   span: '', // of the slider: 'step', else all steps that were seen
@@ -30,6 +31,7 @@ export function toAddress(state) {
   if (state.range) parts.set('range', state.range.join(','));
   for (const flag of ['logarithmic', 'outline', 'edges']) if (state[flag]) parts.set(flag, 1);
   if (state.boundary !== 0.1) parts.set('boundary', state.boundary);
+  if (state.solid) parts.set('solid', state.solid);
   for (const {kind, normal, offset} of state.planes) parts.append(kind, [...normal, offset].join(','));
   if (state.step !== null) parts.set('step', state.step);
   if (state.drawn) parts.set('drawn', state.drawn);
@@ -64,6 +66,7 @@ export function fromAddress(text) {
   for (const flag of ['logarithmic', 'outline', 'edges']) state[flag] = parts.get(flag) === '1';
   const boundary = number(parts.get('boundary'));
   if (boundary !== null && isPart(boundary)) state.boundary = boundary;
+  if (['above', 'below'].includes(parts.get('solid'))) state.solid = parts.get('solid');
   for (const [kind, text] of parts) {
     if (!['clip', 'slice'].includes(kind) || planesOf(state, kind).length >= maxPlanes) continue;
     const numbers = text.split(',').map(Number);
@@ -92,6 +95,7 @@ export function toMessage(state) {
     map: state.map, logarithmic: state.logarithmic, outline: state.outline,
     edges: state.edges, boundary: state.boundary};
   for (const kind of ['clip', 'slice']) message[kind + 's'] = planesOf(state, kind).map(({normal, offset}) => [...normal, offset]);
+  if (state.solid) message.solid = state.solid;
   if (state.step !== null) message.step = state.step;
   if (state.value === null) message.isovalues.shift();
   if (state.range) message.range = state.range;
@@ -111,7 +115,7 @@ export function fromMessage(message) {
   const opacity = message.opacity ?? null;
   return {...state, field: message.field, value, pins: pins.map((one) => ({value: one, color: null, opacity})), opacity,
     colorBy: message.color_by, map: message.map, logarithmic: message.logarithmic, outline: message.outline,
-    edges: message.edges, boundary: message.boundary, step: message.step ?? null,
+    edges: message.edges, boundary: message.boundary, solid: message.solid ?? '', step: message.step ?? null,
     planes: ['clip', 'slice'].flatMap((kind) => message[kind + 's'].map((plane) => ({kind, normal: plane.slice(0, 3), offset: plane[3]}))),
     volume: message.volume ? {length: null, ...message.volume} : null,
     range: message.range ?? null, camera: message.camera ?? null};
