@@ -2,7 +2,9 @@
 #include "solid/clipped_arrays.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
+#include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -90,24 +92,74 @@ private:
         const BlockPieces& block = cut_.blocks[number];
         const std::size_t first = number * clip_block, last = std::min(cells_.count(), first + clip_block);
         Place at{starts_.cells[number], starts_.corners[number], starts_.faces[number]};
-        std::size_t piece = 0, corner = 0, face = 0;
-        const auto write_piece = [&] {
-            begin_cell(at, first + block.cells[piece], block.types[piece]);
-            for (std::size_t k = 0; k < block.sizes[piece]; ++k) corners_[at.corner++] = number_of(block.corners[corner++]);
-            for (const std::size_t end = face + block.face_entries[piece]; face < end;) face = write_faces(block, face, at);
-            ++piece;
-        };
+        std::size_t corner = 0, face = 0, cell = first;
+        for (std::size_t piece = 0; piece < block.cells.size(); ++piece) {
+            const std::size_t of = first + block.cells[piece];
+            if (of > cell) write_whole(cell, of, at);
+            cell = of; // which is not whole
+            begin_cell(at, of, block.types[piece]);
+            for (const std::size_t end = corner + block.sizes[piece]; corner < end; ++corner)
+                corners_[at.corner++] = number_of(block.corners[corner]);
+            for (const std::size_t end = face + block.face_entries[piece]; face < end;)
+                face = write_faces(block, face, at);
+        }
+        write_whole(cell, last, at);
+    }
+
+    /// Those of the cells [first, last) that are whole.
+    void write_whole(std::size_t first, std::size_t last, Place& at) {
+        std::array<std::uint16_t, clip_block> whole;
+        std::size_t count = 0;
+        for (std::size_t cell = first; cell < last; ++cell) {
+            whole[count] = static_cast<std::uint16_t>(cell - first);
+            count += cut_.is_whole[cell];
+        }
+        if (count == 0) return;
+        const auto cells = std::span<const std::uint16_t>(whole).first(count);
+        for (std::size_t i = 0; i < count; ++i) origin_[at.cell + i] = first + cells[i];
+        if (!face_offsets_.empty())
+            std::fill_n(face_offsets_.begin() + at.cell, count, static_cast<Index>(at.face));
         cells_.connectivity().visit([&](const auto* connectivity) {
-            for (std::size_t cell = first; cell < last; ++cell) {
-                while (piece < block.cells.size() && first + block.cells[piece] == cell) write_piece();
-                if (!cut_.is_whole[cell]) continue;
-                begin_cell(at, cell, vtk_type(cells_.type(cell)));
-                const auto* const from = connectivity + cells_.first(cell);
-                const std::size_t corners = cells_.corners(cell);
-                for (std::size_t k = 0; k < corners; ++k)
-                    corners_[at.corner++] = number_of(static_cast<std::uint32_t>(from[k]));
-            }
+            if (cells_.has_types() || cells_.has_offsets()) return write_any(connectivity, first, cells, at);
+            std::fill_n(types_.begin() + at.cell, count, vtk_type(cells_.type(first)));
+            const std::size_t corners = cells_.corners(first);
+            for (std::size_t i = 0; i < count; ++i)
+                offsets_[at.cell + i] = static_cast<Index>(at.corner + i * corners);
+            const auto* const from = connectivity + cells_.first(first);
+            if (corners == 4) write_corners<4>(from, cells, at); // known counts are unrolled
+            else if (corners == 8) write_corners<8>(from, cells, at);
+            else write_any_corners(from, corners, cells, at);
+            at.cell += count;
         });
+    }
+
+    template <std::size_t corners, class From>
+    void write_corners(const From* from, std::span<const std::uint16_t> cells, Place& at) {
+        const std::uint32_t* const numbers = numbers_.data();
+        Index* to = corners_.data() + at.corner;
+        for (const std::uint16_t cell : cells)
+            for (std::size_t k = 0; k < corners; ++k)
+                *to++ = static_cast<Index>(numbers[static_cast<std::uint32_t>(from[corners * cell + k])]);
+        at.corner += corners * cells.size();
+    }
+
+    template <class From>
+    void write_any_corners(const From* from, std::size_t corners, std::span<const std::uint16_t> cells, Place& at) {
+        for (const std::uint16_t cell : cells)
+            for (std::size_t k = 0; k < corners; ++k)
+                corners_[at.corner++] = number_of(static_cast<std::uint32_t>(from[corners * cell + k]));
+    }
+
+    /// Cells of several types, or of which each says where it begins.
+    template <class From>
+    void write_any(const From* connectivity, std::size_t first, std::span<const std::uint16_t> cells, Place& at) {
+        constexpr std::array<std::uint16_t, 1> the_first{};
+        for (const std::uint16_t i : cells) {
+            const std::size_t cell = first + i;
+            types_[at.cell] = vtk_type(cells_.type(cell));
+            offsets_[at.cell++] = static_cast<Index>(at.corner);
+            write_any_corners(connectivity + cells_.first(cell), cells_.corners(cell), the_first, at);
+        }
     }
 
     /// All faces of a piece from an entry on. Returns the entry behind them.
@@ -137,15 +189,23 @@ private:
 template <class Each>
 void for_new_points(const CutInput& input, const NewPoints& points, const Each& each) {
     const Places& places = input.places;
-    core::parallel_each(points.places.size(), places_at_once, [&](std::size_t i) {
-        const std::uint32_t place = points.places[i];
-        if (place < places.first_lower()) each.point(i, place);
-        else if (place < places.first_upper())
-            each.vertex(i, false, input.lower.vertices.in_surface(place - static_cast<std::uint32_t>(places.first_lower())));
-        else if (place < places.first_apex())
-            each.vertex(i, true, input.upper.vertices.in_surface(place - static_cast<std::uint32_t>(places.first_upper())));
-        else each.apex(i, place - places.first_apex());
+    std::size_t begin = 0; // new points ascend with their places
+    const auto for_places = [&](std::uint64_t first, std::uint64_t last, const auto& f) {
+        const auto end = static_cast<std::size_t>(std::lower_bound(points.places.begin(), points.places.end(), last) -
+                                                  points.places.begin());
+        core::parallel_each(end - begin, places_at_once, [&f, &points, begin, first](std::size_t i) {
+            f(begin + i, points.places[begin + i] - static_cast<std::uint32_t>(first));
+        });
+        begin = end;
+    };
+    for_places(0, places.first_lower(), [&](std::size_t i, std::uint32_t point) { each.point(i, point); });
+    for_places(places.first_lower(), places.first_upper(), [&](std::size_t i, std::uint32_t vertex) {
+        each.vertex(i, false, input.lower.vertices.in_surface(vertex));
     });
+    for_places(places.first_upper(), places.first_apex(), [&](std::size_t i, std::uint32_t vertex) {
+        each.vertex(i, true, input.upper.vertices.in_surface(vertex));
+    });
+    for_places(places.first_apex(), places.count(), [&](std::size_t i, std::uint32_t apex) { each.apex(i, apex); });
 }
 
 /// Values at places of any kind, as To.

@@ -38,6 +38,19 @@ std::array<std::uint8_t, 8> same_corners(const core::WholeCell& cell) {
     return same;
 }
 
+/// Of a cell with repeated corners, beside the flags of its points.
+constexpr std::uint8_t irregular_flag = 0x20;
+
+constexpr bool is_all_outside(std::uint8_t flags) {
+    constexpr std::uint8_t both = point_flag::below | point_flag::above;
+    return (flags & point_flag::no_data) || (!(flags & point_flag::inside) && (flags & both) != both);
+}
+
+constexpr bool is_all_inside(std::uint8_t flags) {
+    constexpr std::uint8_t other = point_flag::below | point_flag::above | point_flag::no_data;
+    return !(flags & other);
+}
+
 /// Cuts the cells of one block.
 class BlockCutter {
 public:
@@ -46,23 +59,18 @@ public:
 
     void cut(std::size_t begin, std::size_t end) {
         first_cell_ = begin;
-        const auto& irregular = input_.facts.irregular;
-        auto next = std::ranges::lower_bound(irregular, begin);
         start_warped(begin);
-        cells_.connectivity().visit([&](const auto* connectivity) {
-            for (std::size_t cell = begin; cell < end; ++cell) {
-                out_.is_whole[cell] = 0;
-                const bool is_irregular = next != irregular.end() && *next == cell;
-                next += is_irregular;
-                if (!core::is_contoured(cells_.type(cell))) continue;
-                const std::size_t corners = cells_.corners(cell);
-                const auto* const numbers = connectivity + cells_.first(cell);
-                std::uint8_t flags = 0;
-                for (std::size_t k = 0; k < corners; ++k) flags |= input_.flags[core::widened(numbers[k])];
-                if (is_irregular) add_irregular(cell, flags);
-                else add(cell, flags);
-            }
-        });
+        const std::size_t count = end - begin;
+        std::array<std::uint8_t, clip_block> flags;
+        combine_flags(begin, end, flags.data());
+        std::array<std::uint16_t, clip_block> looked_at; // all others are outside, or whole without ties
+        const std::size_t looks = classify(count, flags.data(), out_.is_whole.data() + begin, looked_at.data());
+        reserve(looks);
+        for (const std::uint16_t i : std::span(looked_at).first(looks)) {
+            const auto of_corners = static_cast<std::uint8_t>(flags[i] & ~irregular_flag);
+            if (flags[i] & irregular_flag) add_irregular(begin + i, of_corners);
+            else add(begin + i, of_corners);
+        }
     }
 
     bool saw_warped() const { return saw_warped_; }
@@ -70,18 +78,72 @@ public:
 private:
     using Ids = std::array<std::uint32_t, 192>; ///< places, by code of a vertex
 
-    static bool is_outside(std::uint8_t flags) {
-        constexpr std::uint8_t both = point_flag::below | point_flag::above;
-        return (flags & point_flag::no_data) || (!(flags & point_flag::inside) && (flags & both) != both);
+    /// Those of the corners of each cell, and of irregular ones; what is not contoured has no data.
+    void combine_flags(std::size_t begin, std::size_t end, std::uint8_t* flags) const {
+        const std::uint8_t* const of_points = input_.flags.data();
+        cells_.connectivity().visit([&](const auto* connectivity) {
+            const auto combined = [&](const auto* numbers, std::size_t corners) {
+                std::uint8_t all = 0;
+                for (std::size_t k = 0; k < corners; ++k) all |= of_points[core::widened(numbers[k])];
+                return all;
+            };
+            const bool is_uniform =
+                !cells_.has_types() && !cells_.has_offsets() && core::is_contoured(cells_.type(begin));
+            const std::size_t each = is_uniform ? cells_.corners(begin) : 0;
+            const auto* const first = connectivity + cells_.first(begin);
+            if (each == 4) // known counts are unrolled
+                for (std::size_t i = 0; i < end - begin; ++i) flags[i] = combined(first + 4 * i, 4);
+            else if (each == 8)
+                for (std::size_t i = 0; i < end - begin; ++i) flags[i] = combined(first + 8 * i, 8);
+            else
+                for (std::size_t cell = begin; cell < end; ++cell)
+                    flags[cell - begin] = core::is_contoured(cells_.type(cell))
+                                              ? combined(connectivity + cells_.first(cell), cells_.corners(cell))
+                                              : point_flag::no_data;
+        });
+        const auto& irregular = input_.facts.irregular;
+        for (auto next = std::ranges::lower_bound(irregular, begin); next != irregular.end() && *next < end; ++next)
+            flags[*next - begin] |= irregular_flag;
     }
-    static bool is_inside(std::uint8_t flags) {
-        constexpr std::uint8_t other = point_flag::below | point_flag::above | point_flag::no_data;
-        return !(flags & other);
+
+    /// Sets and counts the whole cells that nothing more is to be known of; writes the numbers in the block of all that
+    /// need a look. Returns how many these are.
+    std::size_t classify(std::size_t count, const std::uint8_t* flags, std::uint8_t* is_whole,
+                         std::uint16_t* looked_at) {
+        static constexpr std::array<std::uint8_t, 64> needs_look = [] {
+            std::array<std::uint8_t, 64> out{};
+            for (std::uint8_t all = 0; all < 64; ++all)
+                out[all] = (all & irregular_flag) || (!is_all_outside(all) && all != point_flag::inside);
+            return out;
+        }();
+        std::size_t looks = 0, whole = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            const bool is_plain = flags[i] == point_flag::inside;
+            is_whole[i] = is_plain;
+            whole += is_plain;
+            looked_at[looks] = static_cast<std::uint16_t>(i);
+            looks += needs_look[flags[i]];
+        }
+        pieces_.whole_cells += whole;
+        if (!cells_.has_offsets()) pieces_.whole_corners += whole * cells_.corners(first_cell_);
+        else
+            for (std::size_t i = 0; i < count; ++i)
+                if (is_whole[i]) pieces_.whole_corners += cells_.corners(first_cell_ + i);
+        return looks;
+    }
+
+    /// Room for what most cells that are cut become: one piece, of polyhedra its faces, too.
+    void reserve(std::size_t cells) {
+        pieces_.cells.reserve(cells);
+        pieces_.types.reserve(cells);
+        pieces_.sizes.reserve(cells);
+        pieces_.face_entries.reserve(cells);
+        pieces_.corners.reserve(6 * cells);
     }
 
     void add(std::size_t cell, std::uint8_t flags) {
-        if (is_outside(flags)) return;
-        if (is_inside(flags)) return keep(cell, flags);
+        if (is_all_outside(flags)) return;
+        if (is_all_inside(flags)) return keep(cell, flags);
         ++pieces_.cut_cells;
         core::WholeCell part = cells_.whole(cell);
         turn_upright(cell, part);
@@ -106,7 +168,7 @@ private:
     void add_irregular(std::size_t cell, std::uint8_t flags) {
         const core::NativeParts parts = core::native_parts(cells_.whole(cell));
         if (parts.count == 0) return;
-        if (is_inside(flags)) {
+        if (is_all_inside(flags)) {
             keep(cell, flags);
             for (std::uint64_t k = 0; k < cells_.corners(cell); ++k)
                 mark(out_.used, place_of_point(cells_.corner(cells_.first(cell) + k)));
@@ -116,7 +178,7 @@ private:
         for (core::WholeCell part : parts) {
             std::uint8_t of_part = 0;
             for (std::size_t k = 0; k < core::corner_count(part.kind); ++k) of_part |= input_.flags[part.corners[k]];
-            if (is_outside(of_part)) continue;
+            if (is_all_outside(of_part)) continue;
             turn_upright(cell, part);
             cut_part(cell, part);
         }

@@ -9,15 +9,13 @@
 #include <utility>
 #include <vector>
 
-#include <tbb/parallel_sort.h>
-
 #include "base/parallel.hpp"
 
 namespace isotet::solid {
 
 namespace {
 
-constexpr std::size_t vertices_at_once = 1 << 14;
+constexpr std::size_t vertices_at_once = 1 << 14, lows_at_once = 1 << 15;
 
 struct EndsOfVertex {
     std::uint64_t low, high;
@@ -30,22 +28,47 @@ EndsOfVertex ends_of(std::span<const std::int64_t> ends, std::size_t vertex) {
     return {std::min(a, b), std::max(a, b)};
 }
 
-/// Empty where they are sorted already.
-core::Buffer<std::uint32_t> sorted_order(std::span<const std::int64_t> ends, std::size_t vertices) {
+/// Whether each vertex comes behind the one before it.
+bool are_sorted(std::span<const std::int64_t> ends, std::size_t vertices) {
     std::atomic<bool> sorted{true};
     core::parallel_ranges(vertices, vertices_at_once, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = std::max<std::size_t>(begin, 1); i < end; ++i)
             if (!(ends_of(ends, i - 1) < ends_of(ends, i))) return sorted.store(false, std::memory_order_relaxed);
     });
-    if (sorted) return {};
-    core::Buffer<std::uint32_t> order(vertices);
-    std::iota(order.begin(), order.end(), std::uint32_t{0});
-    tbb::parallel_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        const EndsOfVertex of_a = ends_of(ends, a), of_b = ends_of(ends, b);
-        return of_a == of_b ? a < b : of_a < of_b;
-    });
-    return order;
+    return sorted;
 }
+
+/// How many vertices have each point as their lower end.
+core::Buffer<std::uint32_t> count_by_low(std::span<const std::int64_t> ends, std::size_t vertices,
+                                         std::uint64_t points) {
+    core::Buffer<std::uint32_t> counts(points + 1);
+    core::parallel_ranges(counts.size(), lows_at_once, [&](std::size_t begin, std::size_t end) {
+        std::fill(counts.begin() + begin, counts.begin() + end, 0u);
+    });
+    core::parallel_each(vertices, vertices_at_once, [&](std::size_t i) {
+        std::atomic_ref(counts[ends_of(ends, i).low]).fetch_add(1, std::memory_order_relaxed);
+    });
+    return counts;
+}
+
+/// Of counts the sums up to each, with it.
+void add_up(core::Buffer<std::uint32_t>& counts) {
+    const std::size_t ranges = (counts.size() + lows_at_once - 1) / lows_at_once;
+    const auto end_of = [&](std::size_t range) { return std::min(counts.size(), (range + 1) * lows_at_once); };
+    std::vector<std::uint32_t> before(ranges + 1);
+    core::parallel_each(ranges, 1, [&](std::size_t range) {
+        const std::uint32_t* const data = counts.data();
+        before[range + 1] = std::accumulate(data + range * lows_at_once, data + end_of(range), 0u);
+    });
+    std::partial_sum(before.begin(), before.end(), before.begin());
+    core::parallel_each(ranges, 1, [&](std::size_t range) {
+        std::uint32_t sum = before[range];
+        for (std::size_t i = range * lows_at_once; i < end_of(range); ++i) counts[i] = sum += counts[i];
+    });
+}
+
+/// The higher end, then the number in the surface: what sorts vertices of one lower end.
+std::uint64_t sort_key(std::uint64_t high, std::size_t vertex) { return high << 32 | vertex; }
 
 } // namespace
 
@@ -53,29 +76,34 @@ EdgeVertices::EdgeVertices(const Surface& surface, std::uint64_t points) {
     const std::size_t vertices = surface.vertex_count();
     if (vertices == 0) return;
     const auto ends = surface.edge_ends.as<std::int64_t>();
-    order_ = sorted_order(ends, vertices);
-    high_ = core::Buffer<std::uint32_t>(vertices);
-    first_ = core::Buffer<std::uint32_t>(points + 1);
-    const auto low_of = [&](std::size_t i) {
-        return ends_of(ends, in_surface(static_cast<std::uint32_t>(i))).low;
-    };
-    std::vector<std::uint32_t> tied;
-    std::mutex mutex;
-    core::parallel_ranges(vertices, vertices_at_once, [&](std::size_t begin, std::size_t end) {
-        std::uint64_t next = begin == 0 ? 0 : low_of(begin - 1) + 1;
-        for (std::size_t i = begin; i < end; ++i) {
-            const EndsOfVertex of_vertex = ends_of(ends, in_surface(static_cast<std::uint32_t>(i)));
-            high_[i] = static_cast<std::uint32_t>(of_vertex.high);
-            for (; next <= of_vertex.low; ++next) first_[next] = static_cast<std::uint32_t>(i);
-            if (of_vertex.low != of_vertex.high) continue;
-            const std::lock_guard lock(mutex);
-            tied.push_back(static_cast<std::uint32_t>(i));
-        }
-        if (end == vertices)
-            for (; next <= points; ++next) first_[next] = static_cast<std::uint32_t>(end);
+    // Sums count down to where each point's vertices begin, while these take their places.
+    first_ = count_by_low(ends, vertices, points);
+    add_up(first_);
+    core::Buffer<std::uint64_t> keys(vertices);
+    core::parallel_each(vertices, vertices_at_once, [&](std::size_t i) {
+        const auto [low, high] = ends_of(ends, i);
+        keys[std::atomic_ref(first_[low]).fetch_sub(1, std::memory_order_relaxed) - 1] = sort_key(high, i);
     });
-    std::ranges::sort(tied);
-    tied_ = std::move(tied);
+    high_ = core::Buffer<std::uint32_t>(vertices);
+    if (!are_sorted(ends, vertices)) order_ = core::Buffer<std::uint32_t>(vertices);
+    std::mutex mutex;
+    core::parallel_ranges(points, lows_at_once, [&](std::size_t begin, std::size_t end) {
+        std::vector<std::uint32_t> tied;
+        for (std::size_t point = begin; point < end; ++point) {
+            const std::uint32_t first = first_[point], last = first_[point + 1];
+            if (first == last) continue;
+            std::sort(keys.begin() + first, keys.begin() + last);
+            for (std::uint32_t i = first; i < last; ++i) {
+                high_[i] = static_cast<std::uint32_t>(keys[i] >> 32);
+                if (!order_.empty()) order_[i] = static_cast<std::uint32_t>(keys[i]);
+                if (high_[i] == point) tied.push_back(i);
+            }
+        }
+        if (tied.empty()) return;
+        const std::lock_guard lock(mutex);
+        tied_.insert(tied_.end(), tied.begin(), tied.end());
+    });
+    std::ranges::sort(tied_);
 }
 
 } // namespace isotet::solid

@@ -20,7 +20,7 @@ public:
     EdgeVertices() = default;
     /// `surface`   with edge ends
     /// `points`    of the grid; fewer than 2^32
-    /// Cost        O(points + vertices), and sorting where they are in another order
+    /// Cost        O(points + vertices)
     EdgeVertices(const Surface& surface, std::uint64_t points);
 
     std::uint32_t count() const { return static_cast<std::uint32_t>(high_.size()); }
