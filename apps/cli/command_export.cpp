@@ -13,6 +13,7 @@
 
 #include "commands.hpp"
 #include "console.hpp"
+#include "export_grid.hpp"
 #include "json_output.hpp"
 #include "report.hpp"
 #include "stopwatch.hpp"
@@ -76,6 +77,7 @@ std::string export_table(const ExportCommand& command, const view::SavedSurfaces
 Json export_report(const ExportCommand& command, const view::SavedSurfaces& saved, std::size_t steps,
                    const ExportTimes& seconds) {
     Json report = json_report("export");
+    report["kind"] = "surfaces";
     report["grid"] = json_text(command.grid.file);
     report["isovalues"] = saved.isovalues;
     report["left_out"] = saved.left_out;
@@ -91,6 +93,7 @@ Json export_report(const ExportCommand& command, const view::SavedSurfaces& save
 } // namespace
 
 Result<ExitCode> run_export(const ExportCommand& command) {
+    if (command.grid_inside) return run_export_grid(command);
     Console console(command.common);
     GridOptions grid = command.grid;
     if (command.all_steps) grid.step = 0; // is read first

@@ -177,8 +177,8 @@ Examples:
 
 constexpr const char* export_details = R"(
 OUT is a page that shows isosurfaces with a slider, as isotet view does, and loads nothing: it can be sent by mail, opened from a
-disk, put on any web server. It holds the surfaces, not the grid: N of them between two isovalues, or those of -i, at one time
-step or all. Places are rounded to a 65536th of a surface's box. Where the file would be larger than --max-size, every second,
+disk, put on any web server. It holds N surfaces between two isovalues, or those of -i, at one time step or all; with --as grid
+the packed grid, with the field of -f, that of --color-by, or else all its point fields. Places are rounded to a 65536th of a surface's box. Where the file would be larger than --max-size, every second,
 third and so on of the N surfaces stays, which is said.
 
 Examples:
@@ -382,10 +382,13 @@ void add_export(const Command& program, ExportCommand& exported) {
     command.add_file("OUT", exported.out, "OUT_FILE", "The page: .html").required();
     add_field(command, exported.field, "The field to contour; default: the one that info says is shown first");
     const Option isovalues = add_isovalues(command, exported.isovalues);
+    command.add_choice<bool>("--as", exported.grid_inside, {{"surfaces", false}, {"grid", true}},
+                             "What is in the page: surfaces (the default), or the grid, with isotet as WebAssembly: any "
+                             "isovalue, slices, colours by all its fields");
     command
         .add_count(
             "--surfaces", {1, 10'000}, [&](std::uint64_t n) { exported.count = n; }, "N",
-            "N isosurfaces evenly inside the range: min + k (max - min) / (N + 1), k = 1..N; default: 63")
+            "N isosurfaces evenly inside the range, at short decimals; default: 63")
         .excludes(isovalues);
     command.add_numbers("--between", exported.range, "A,B", "The range of --surfaces; default: that of the field")
         .excludes(isovalues);

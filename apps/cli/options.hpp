@@ -80,6 +80,7 @@ struct ExportCommand {
     std::string color_by;
     bool all_steps = false;
     std::optional<std::uint64_t> max_size;
+    bool grid_inside = false; ///< a packed grid instead of surfaces
 };
 
 struct BenchCommand : BenchJob {

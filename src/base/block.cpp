@@ -15,11 +15,11 @@ namespace isotet::core {
 
 namespace {
 
-// The address sanitizer sees what lies beyond a block only when its own allocator made it.
+// The address sanitizer sees what lies beyond a block only when its own allocator made it; WebAssembly maps no pages.
 #if defined(__SANITIZE_ADDRESS__)
 constexpr bool own_mappings = false;
 #elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
+#if __has_feature(address_sanitizer) || defined(__wasm__)
 constexpr bool own_mappings = false;
 #else
 constexpr bool own_mappings = true;

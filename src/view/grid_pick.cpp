@@ -30,7 +30,7 @@ Result<Surface> GridView::solid_of_pick(const PickMessage& message, const Run& r
 Result<Surface> GridView::surface_of_pick(const PickMessage& message, const Run& run) {
     const bool packed = is_packed_.load(std::memory_order_acquire) && lean_;
     ExtractOptions with_all;
-    with_all.source_cells = true;
+    with_all.source_cells = !packed || lean_knows_cells_;
     with_all.point_fields = grid_.point_fields;
     with_all.cell_fields = grid_.cell_fields;
     const Plane* plane = message.slice ? &message.state.slices[*message.slice] : nullptr;

@@ -7,7 +7,9 @@
 #include <cstring>
 
 #include <fmt/format.h>
+#ifdef __GLIBC__
 #include <malloc.h>
+#endif
 
 #include <isotet/boundary.hpp>
 #include <isotet/color_field.hpp>
@@ -216,6 +218,17 @@ Result<void> GridView::pack(const std::string& field, const Run& run) {
     return {};
 }
 
+Result<void> GridView::take_packed(const PackedGrid& packed, const std::string& field, const Run& run) {
+    Result<PointField> contoured = field_of(field, run);
+    if (!contoured) return contoured.error();
+    lean_.emplace(packed, *std::move(contoured));
+    lean_knows_cells_ = packed.report().source_bytes > 0;
+    packed_.field = field;
+    packed_.step = step_;
+    is_packed_.store(true, std::memory_order_release);
+    return {};
+}
+
 Result<void> GridView::find_boundary(const Run& run) {
     std::unique_lock lock(grid_mutex_);
     const Grid grid = grid_;
@@ -263,7 +276,9 @@ void GridView::rest() {
         has_cells_ = false;
     }
     release_memory();
+#ifdef __GLIBC__
     malloc_trim(0);
+#endif
 }
 
 /// The field that colours, as surfaces carry it.

@@ -75,6 +75,10 @@ public:
     /// Errors   as Contour::prepare(); frame() then goes on directly
     Result<void> pack(const std::string& field, const Run& run);
 
+    /// Takes a packed grid of the same cells and points, as a packed file holds it, in place of pack().
+    /// Errors   as find_field()
+    Result<void> take_packed(const PackedGrid& packed, const std::string& field, const Run& run);
+
     /// The grid's boundary; frame() leaves it out until then.
     /// Errors   as boundary_of()
     Result<void> find_boundary(const Run& run);
@@ -180,6 +184,7 @@ private:
     std::uint64_t cell_count_ = 0;
     std::optional<Solids> solids_;     ///< of solids_key_, while solids are shown
     std::string solids_key_;
+    bool lean_knows_cells_ = true;     ///< lean_ has source cells
     std::optional<PackedSource> lean_; ///< instead of packed_, where cells may be released
     std::optional<CellSample> sample_; ///< of the cells that were released
     std::uint64_t cells_sum_ = 0;      ///< of these, to know them again

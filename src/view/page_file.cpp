@@ -144,21 +144,29 @@ std::string json_in_html(const Json& json) {
     return out;
 }
 
-Result<std::string> page_document(std::string_view title, const Json& saved, const std::vector<PagePart>& parts) {
+Result<std::string> page_document(std::string_view title, const Json& saved, const std::vector<PagePart>& parts,
+                                  PageSource source) {
     const std::vector<ServedFile> files = page_files();
     std::vector<PageModule> modules;
     for (const ServedFile& file : files)
         if (file.name.ends_with(".js")) modules.push_back({file.name, file.content});
-    const Result<std::string> script = bundle(modules, "main.js", {"link.js", "saved_link.js"});
+    const bool is_grid = source == PageSource::grid;
+    const Result<std::string> script =
+        bundle(modules, "main.js", {"link.js", is_grid ? "wasm_link.js" : "saved_link.js"});
     if (!script) return script.error();
     const std::string_view style = text_of_file(files, "style.css");
     const std::string policy =
-        fmt::format("default-src 'none'; script-src {}; style-src {}; img-src data: blob:; base-uri 'none'; "
+        fmt::format("default-src 'none'; script-src {}{}; style-src {}; img-src data: blob:; base-uri 'none'; "
                     "form-action 'none'",
-                    hash_source(*script), hash_source(style));
+                    hash_source(*script), is_grid ? " 'wasm-unsafe-eval'; worker-src blob:" : "",
+                    hash_source(style));
     std::string data = fmt::format("<script type=\"application/json\" id=\"saved\">{}</script>\n", json_in_html(saved));
     for (const PagePart& part : parts)
         data += fmt::format("<script type=\"text/plain\" id=\"{}\">{}</script>\n", html_text(part.name), part.base64);
+
+    if (is_grid)
+        data += fmt::format("<script type=\"text/plain\" id=\"worker\">{}</script>\n",
+                            base64_of(text_of_file(files, "engine_worker.js")));
 
     std::string html(text_of_file(files, "index.html"));
     const bool fits =

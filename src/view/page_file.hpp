@@ -2,6 +2,7 @@
 // The page as one file, with what it shows in it: nothing is loaded from anywhere.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -35,13 +36,20 @@ struct PagePart {
     std::string base64;
 };
 
+/// What answers the page in place of a server.
+enum class PageSource : std::uint8_t {
+    surfaces, ///< web/saved_link.js, out of parts for each
+    grid      ///< web/wasm_link.js, with parts "engine" and "grid"; the policy allows WebAssembly and a thread for it
+};
+
 /// The page of `isotet view` as an HTML document that says by its policy (Content-Security-Policy) that it runs one
 /// script, this one, and loads nothing.
 ///
-/// `title`   any text
-/// `saved`   what web/saved_link.js says in place of a server
-/// Errors    as bundle()
-Result<std::string> page_document(std::string_view title, const Json& saved, const std::vector<PagePart>& parts);
+/// `title`    any text
+/// `saved`    what `source` is told
+/// Errors     as bundle()
+Result<std::string> page_document(std::string_view title, const Json& saved, const std::vector<PagePart>& parts,
+                                  PageSource source = PageSource::surfaces);
 
 /// Text between tags and in attributes.
 std::string html_text(std::string_view text);

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <isotet/levels.hpp>
 #include <isotet/text.hpp>
 
 #include "view/messages.hpp"
@@ -101,9 +102,8 @@ Result<void> SurfaceSaver::choose_isovalues() {
             return Error{ErrorCode::invalid_argument,
                          fmt::format("no isovalue lies inside the range of '{}', {} to {}: name some",
                                      input_.state.field, range.lower, range.upper)};
-        const double parts = static_cast<double>(options_.count) + 1;
-        for (std::size_t k = 1; k <= options_.count; ++k)
-            isovalues_.push_back(range.lower + static_cast<double>(k) * ((range.upper - range.lower) / parts));
+        isovalues_ =
+            evenly_spaced_levels(range.lower, range.upper, options_.count, LevelRounding::short_decimals);
     }
     std::ranges::sort(isovalues_);
     isovalues_.erase(std::ranges::unique(isovalues_).begin(), isovalues_.end());

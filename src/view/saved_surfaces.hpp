@@ -19,7 +19,7 @@ struct SavedSurfacesOptions {
     std::string file;    ///< the name that the page shows
     std::string version; ///< of isotet
     std::vector<double> isovalues;   ///< these; empty: `count` of them
-    std::size_t count = 63;          ///< evenly inside the range: lower + k (upper - lower) / (count + 1), k = 1..count
+    std::size_t count = 63;          ///< evenly inside the range: lower + k (upper - lower) / (count + 1), as short decimals
     std::optional<ValueRange> range; ///< nothing: of the field, at the steps that are shown
     std::vector<std::size_t> steps;  ///< of the file, rising; at least one
     std::uint64_t max_bytes = 20'000'000;

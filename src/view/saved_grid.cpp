@@ -1,0 +1,33 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "view/saved_grid.hpp"
+
+#include <fmt/format.h>
+
+#include "view/page_file.hpp"
+#include "view/saved_mesh.hpp"
+#include "view/web_module.hpp"
+
+namespace isotet::view {
+
+Result<void> check_grid_pages() {
+    if (web_module().empty())
+        return Error{ErrorCode::invalid_argument,
+                     "a page with a grid has isotet in it as WebAssembly, which this isotet was built without: "
+                     "scripts/web.sh makes it, and docs/export.md tells how; --as surfaces needs none"};
+    return {};
+}
+
+Result<std::string> grid_page(std::string_view packed, const SavedGridOptions& options) {
+    if (Result<void> checked = check_grid_pages(); !checked) return checked.error();
+    const Result<std::string> engine = deflated(web_module()), grid = deflated(packed);
+    if (!engine) return engine.error();
+    if (!grid) return grid.error();
+    Json saved = {{"file", options.file},
+                  {"version", options.version},
+                  {"state", to_json(options.state)},
+                  {"notes", options.notes}};
+    return page_document(fmt::format("{} – isotet", options.file), saved,
+                         {{"engine", base64_of(*engine)}, {"grid", base64_of(*grid)}}, PageSource::grid);
+}
+
+} // namespace isotet::view

@@ -1,0 +1,51 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What the system does elsewhere. WebAssembly has 4 GiB, and grows until it has them (base/memory.cpp asks the system);
+// what would be thrown ends the module; pictures are drawn by the page.
+#include <cstddef>
+#include <cstdint>
+
+#include <fmt/core.h>
+
+#include "base/memory.hpp"
+#include "view/grid_view.hpp"
+
+extern "C" {
+void* __cxa_allocate_exception(std::size_t) { __builtin_trap(); }
+void __cxa_throw(void*, void*, void (*)(void*)) { __builtin_trap(); }
+int madvise(void*, std::size_t, int) { return 0; }
+}
+
+namespace isotet {
+
+struct IsosurfaceScene::Data {}; ///< none is made
+IsosurfaceScene::~IsosurfaceScene() = default;
+
+std::optional<std::uint64_t> resident_memory() {
+    return static_cast<std::uint64_t>(__builtin_wasm_memory_size(0)) << 16U;
+}
+std::optional<std::uint64_t> peak_resident_memory() { return resident_memory(); }
+bool reset_peak_memory() { return false; }
+
+namespace core {
+
+std::uint64_t free_memory() { return (std::uint64_t{1} << 32U) - *resident_memory(); }
+
+Result<void> require_memory(std::string_view what, std::uint64_t bytes) {
+    if (bytes <= free_memory()) return {};
+    return Error{ErrorCode::out_of_memory,
+                 fmt::format("{} needs {}, but {} are free", what, format_bytes(bytes), format_bytes(free_memory()))};
+}
+
+} // namespace core
+
+namespace view {
+
+Result<view::Frame> GridView::picture_frame(const ShowMessage&, double, std::vector<std::string>&, const Run&) {
+    return Error{ErrorCode::invalid_argument, "pictures are not drawn here"};
+}
+
+std::optional<SaveKind> parse_save_kind(std::string_view) { return std::nullopt; } // the page writes its files
+
+} // namespace view
+
+} // namespace isotet

@@ -1,0 +1,105 @@
+# Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+"""Pages of `isotet export --as grid` in Chromium, opened from the disk: isotet as WebAssembly answers."""
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import traceback
+
+from chromium import Browser
+
+GRID = 'make:kuhn:16:sphere,gyroid'
+
+
+def check(condition, what):
+    if not condition:
+        raise AssertionError(what)
+
+
+def isotet(*words):
+    """The JSON of a command."""
+    run = subprocess.run([os.environ['ISOTET_PROGRAM'], *words, '--json', '-', '--quiet'], capture_output=True, text=True)
+    check(run.returncode == 0, f'{words}: {run.stderr}')
+    return json.loads(run.stdout)
+
+
+def start(browser, path, extra=''):
+    browser.call('Page.navigate', url='about:blank')
+    browser.open('file://' + path + extra)
+    browser.wait('document.body.dataset.shown !== undefined && document.body.dataset.shown !== ""', 60)
+
+
+def triangles(browser):
+    return int(browser.value('document.body.dataset.triangles'))
+
+
+def type_value(browser, text):
+    browser.value('document.getElementById("value").select()')
+    browser.value('document.getElementById("value").focus()')
+    browser.type(text)
+    browser.key('Enter')
+    browser.wait(f'Number(document.body.dataset.shown) === {text} && document.body.dataset.preview === "false"')
+
+
+def test_any_isovalue(browser, path):
+    """With the triangles that the program extracts."""
+    start(browser, path)
+    for value in ('0.5', '0.8123', '1.2'):
+        type_value(browser, value)
+        counted = isotet('extract', GRID, '-f', 'sphere', '-i', value, '--method', 'clusters')['surfaces'][0]['triangles']
+        check(triangles(browser) == counted, f'{counted} triangles at {value}, {triangles(browser)} shown')
+
+
+def test_drag(browser, path):
+    start(browser, path)
+    x, y, w, h = browser.box('#slider')
+    browser.drag((x + 0.3 * w, y + h / 2), (x + 0.6 * w, y + h / 2), steps=20)
+    browser.wait('document.body.dataset.preview === "false" && Number(document.getElementById("slider")'
+                 '.getAttribute("aria-valuenow")) === Number(document.body.dataset.shown)')
+    check(abs(float(browser.value('document.body.dataset.shown')) - 0.6 * 3 ** 0.5) < 0.02, 'the value under the hand is shown')
+
+
+def test_fields_colours_slices(browser, path):
+    start(browser, path, '#&f=gyroid&i=0.1&by=sphere&slice=0,0,1,0.2')
+    browser.wait('document.body.dataset.field === "gyroid" && document.body.dataset.kinds.includes("slice")')
+    check(triangles(browser) == isotet('extract', GRID, '-f', 'gyroid', '-i', '0.1')['surfaces'][0]['triangles'], 'of another field')
+    browser.wait('document.body.dataset.spectrum === "gyroid"')
+    check('Area' in browser.value('document.getElementById("measures").textContent'), 'area and volume come')
+
+
+def test_values_at_a_point(browser, path):
+    start(browser, path, '#&f=sphere&i=0.5')
+    x, y, w, h = browser.box('#scene')
+    browser.drag((x + w / 2, y + h / 2), (x + w / 2, y + h / 2), steps=1)
+    browser.wait('document.body.dataset.picked !== undefined')
+    picked = json.loads(browser.value('document.body.dataset.picked'))
+    values = {one['name']: one['values'][0] for one in picked['values']}
+    check(abs(values['sphere'] - 0.5) < 1e-5, f'the value there is the isovalue: {values}')
+    check('gyroid' in values, 'the other field is told')
+
+
+def main():
+    failed = 0
+    with tempfile.TemporaryDirectory(prefix='isotet-export-') as folder:
+        path = os.path.join(folder, 'grid.html')
+        report = isotet('export', GRID, path, '--as', 'grid')
+        check(report['fields'] == ['sphere', 'gyroid'], 'all fields are in the page')
+        browser = Browser()
+        try:
+            for test in [f for name, f in globals().items() if name.startswith('test_')]:
+                try:
+                    browser.errors.clear()
+                    test(browser, path)
+                    check(not browser.errors, f'errors of the page: {browser.errors}')
+                    print('ok', test.__name__, flush=True)
+                except Exception:
+                    failed += 1
+                    print('FAILED', test.__name__)
+                    traceback.print_exc(file=sys.stdout)
+        finally:
+            browser.close()
+    return 1 if failed else 0
+
+
+sys.exit(main())
