@@ -70,11 +70,11 @@ TEST(PartTable, KeepsPartsOfMoreAreaOrVolume) {
 std::string two_materials(const test::TemporaryFolder& folder) {
     Grid grid = make_grid({.shape = "kuhn", .side = 20, .fields = {"gyroid"}}).value();
     std::vector<std::int32_t> material(grid.cells.count());
-    for (std::size_t cell = 0; cell < material.size(); ++cell) {
+    for (std::size_t i = 0; i < material.size(); ++i) {
         double sum = 0;
         for (std::size_t k = 0; k < 4; ++k)
-            sum += grid.points.at(static_cast<std::size_t>(grid.cells.connectivity.at(4 * cell + k)), 0);
-        material[cell] = sum > 0 ? 2 : 1;
+            sum += grid.points.at(static_cast<std::size_t>(grid.cells.connectivity.at(4 * i + k)), 0);
+        material[i] = sum > 0 ? 2 : 1;
     }
     grid.cell_fields.push_back({"material", Array::own(std::move(material))});
     const std::string file = folder.file("two.vtu");
