@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <isotet/parts.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
