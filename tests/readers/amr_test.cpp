@@ -97,7 +97,7 @@ std::vector<CellBox> random_boxes(const CellBox& inside, std::int64_t ratio, std
         CellBox box;
         for (std::size_t axis = 0; axis < 3; ++axis) {
             std::uniform_int_distribution<std::int64_t> along(inside.first[axis], inside.last[axis]);
-            const auto [low, high] = std::minmax(along(random), along(random));
+            const auto [low, high] = std::minmax({along(random), along(random)});
             box.first[axis] = low * ratio;
             box.last[axis] = (high + 1) * ratio - 1;
         }
