@@ -15,6 +15,16 @@
 namespace isotet::io::amr {
 namespace {
 
+std::optional<CellBox> common_cells(const CellBox& a, const CellBox& b) {
+    CellBox out;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        out.first[axis] = std::max(a.first[axis], b.first[axis]);
+        out.last[axis] = std::min(a.last[axis], b.last[axis]);
+        if (out.first[axis] > out.last[axis]) return std::nullopt;
+    }
+    return out;
+}
+
 /// A level's boxes with their marks, and which of them meet a range along x.
 class LevelBoxes {
 public:
@@ -40,16 +50,6 @@ public:
     }
 
 private:
-    static std::optional<CellBox> common_cells(const CellBox& a, const CellBox& b) {
-        CellBox out;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            out.first[axis] = std::max(a.first[axis], b.first[axis]);
-            out.last[axis] = std::min(a.last[axis], b.last[axis]);
-            if (out.first[axis] > out.last[axis]) return std::nullopt;
-        }
-        return out;
-    }
-
     const std::vector<CellBox>& boxes_;
     std::span<Marks> marks_;
     std::vector<std::size_t> by_x_;
@@ -157,12 +157,8 @@ private:
             Marks free = levels_[level].marks(number);
             for (std::uint8_t& mark : free) mark = mark == 0;
             levels_[coarser].each_meeting(on_level(level, box, coarser), [&](std::size_t, const CellBox& common) {
-                CellBox inside = on_level(coarser, common, level);
-                for (std::size_t axis = 0; axis < 3; ++axis) {
-                    inside.first[axis] = std::max(inside.first[axis], box.first[axis]);
-                    inside.last[axis] = std::min(inside.last[axis], box.last[axis]);
-                }
-                each_cell(inside, [&](const Place& cell) { free[box.cell_at(cell)] = 0; });
+                if (const auto inside = common_cells(on_level(coarser, common, level), box))
+                    each_cell(*inside, [&](const Place& cell) { free[box.cell_at(cell)] = 0; });
             });
             if (std::ranges::find(free, std::uint8_t{1}) != free.end())
                 return invalid_data(
