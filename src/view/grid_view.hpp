@@ -205,6 +205,7 @@ private:
     std::string range_key_;
     std::vector<double> scene_isovalues_;
     std::optional<VolumeState> scene_volume_; ///< what scene_ draws
+    OpacityCurve scene_opacity_;              ///< that scene_volume_ became
     ValueRange volume_range_;                 ///< that presets of opacity are over, of volume_field_: that of the step
     std::string volume_field_;                ///< which was shown first, so that steps can be compared
     std::mutex boundary_mutex_;

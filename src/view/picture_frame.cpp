@@ -94,7 +94,8 @@ Result<void> GridView::make_scene(const ShowMessage& message, const std::optiona
 Result<void> GridView::show_volume(const ViewState& state, const ColorScale& scale, const Run& run) {
     Result<OpacityCurve> opacity = opacity_of_volume(state, run);
     if (!opacity) return opacity.error();
-    scene_->set_volume({scale, *std::move(opacity), state.volume->length});
+    scene_opacity_ = *std::move(opacity);
+    scene_->set_volume({scale, scene_opacity_, state.volume->length});
     return {};
 }
 
@@ -144,9 +145,7 @@ Result<Frame> GridView::picture_frame(const ShowMessage& message, double wait_se
     facts.picture = *std::move(encoded);
     facts.mesh_seconds = picture_seconds(drawing);
     if (message.state.volume) {
-        Result<OpacityCurve> opacity = opacity_of_volume(message.state, run);
-        if (!opacity) return opacity.error();
-        facts.opacity = std::move(opacity->points);
+        facts.opacity = scene_opacity_.points;
         facts.opacity_length = scene_->report().opacity_length;
     }
     std::vector<FrameSurface> surfaces;
