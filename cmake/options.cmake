@@ -51,6 +51,10 @@ function(isotet_target target)
     if(ISOTET_SANITIZE)
         target_compile_options(${target} PRIVATE -fsanitize=${ISOTET_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g1)
         target_link_options(${target} PUBLIC -fsanitize=${ISOTET_SANITIZE})
+        # Checks at every access of what the address sanitizer sees as well: a fifth of the compiler's time.
+        if(ISOTET_SANITIZE MATCHES "undefined")
+            target_compile_options(${target} PRIVATE -fno-sanitize=null,object-size,pointer-overflow,vptr)
+        endif()
         # g++ 12 puts what lies on the address sanitizer's own stack at multiples of 32, and yet moves it by AVX-512
         # instructions that want 64 (GCC bug 110027): there it moves and clears 32 bytes at once.
         if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 12 AND

@@ -76,7 +76,7 @@ build_paraview() {
 build_address() {
     CC=clang-19 CXX=clang++-19 build_source=$root/tests/install/consumer \
         build address "$trees/address" -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS='-O1 -D_GLIBCXX_ASSERTIONS' \
-        -DISOTET_TREE="$root" -DISOTET_WERROR=ON -DISOTET_FUZZ=ON -DISOTET_IO=OFF \
+        -DISOTET_TREE="$root" -DISOTET_WERROR=ON -DISOTET_FUZZ=ON -DISOTET_FUZZ_SECONDS=10 -DISOTET_IO=OFF \
         -DISOTET_TESTS=ON -DISOTET_TEST_PREFIX=address. -DISOTET_TEST_KINDS="$(kinds_for_address)"
 }
 
@@ -114,6 +114,7 @@ packages=("${packages_to_build[@]}" "${packages_to_test[@]}")
 if [[ $mode == full ]]; then packages+=("${packages_to_test_fully[@]}"); fi
 install_packages "${packages[@]}" || exit
 
+use_ccache
 mkdir -p "$trees"
 : >"$trees/CTestTestfile.cmake"
 try_stage release release

@@ -69,6 +69,15 @@ in_log() {
     return "$status"
 }
 
+# use_ccache: compiles by way of ccache, where it is installed: what was compiled before, in any checkout, is taken from the
+# user's cache.
+use_ccache() {
+    if ! command -v ccache >/dev/null; then return; fi
+    export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
+    export CCACHE_BASEDIR=$root CCACHE_NOHASHDIR=1 CCACHE_COMPILERCHECK=content
+    export CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
+}
+
 # build NAME FOLDER CMAKE_OPTIONS...: configures and builds the tree in FOLDER; does next to nothing when it is up to date.
 # `build_target=isotet_program build ...` builds just that; `build_source` is another project than this one.
 build() {
