@@ -65,7 +65,7 @@ Command add_bench_command(const Command& program, BenchCommand& bench) {
             "--max-tets", {1000, 1'000'000'000}, [&](std::uint64_t n) { bench.max_tets = n; }, "N",
             "Largest grid of --paper; default: 5000000")
         .needs(paper);
-    add_field(command, bench.field, "The field to contour; default: the one that info says is shown first")
+    add_field(command, bench.field, "The field to contour, or an expression such as mag(U); default: the one that info says is shown first")
         .excludes(paper);
     add_isovalues(command, bench.isovalues).excludes(paper);
     add_list(command, "--methods", bench.methods, all_bench_methods,

@@ -58,7 +58,7 @@ void add_clip_command(const Command& program, ClipCommand& clip) {
     const Command command = program.add_command("clip", "Keep the cells between isovalues, cut there");
     command.add_file("FILE", clip.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]").required();
     command.add_file("OUT", clip.out, "OUT_FILE", "The cells: .vtu or .vtk; without it only numbers are printed");
-    add_field(command, clip.field, "The field to clip by; default: the one that info says is shown first");
+    add_field(command, clip.field, "The field to clip by, or an expression such as mag(U); default: the one that info says is shown first");
     add_range(command, clip);
     add_time(command, clip.grid);
     command.add_flag("--all-steps", clip.all_steps, "Every time step; OUT then needs {step} or {time}")

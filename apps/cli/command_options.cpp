@@ -323,7 +323,7 @@ ReduceOptions& wanted_reduction(ExtractJob& job) {
 void add_extract(const Command& program, ExtractCommand& extract) {
     const Command command = program.add_command("extract", "Extract isosurfaces and write them into files");
     add_grid_and_surface(command, extract);
-    add_field(command, extract.field, "The field to contour; default: the one that info says is shown first");
+    add_field(command, extract.field, "The field to contour, or an expression such as mag(U); default: the one that info says is shown first");
     add_centre(command, extract.field);
     add_levels(command, extract);
     add_surface_options(command, extract,
@@ -348,7 +348,7 @@ void add_view(const Command& program, ViewCommand& view) {
     const Command command = program.add_command("view", "Look at isosurfaces in the browser, with a slider");
     command.add_file("FILE", view.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]").required();
     add_more_files(command, view.grid);
-    add_field(command, view.field, "The field to begin with; default: the one that info says is shown first");
+    add_field(command, view.field, "The field to begin with, or an expression such as mag(U); default: the one that info says is shown first");
     add_isovalues(command, view.isovalues);
     command.add_text("--color-by", view.color_by, "FIELD", "Colour by this point or cell field to begin with");
     command.add_count(
@@ -380,7 +380,7 @@ void add_export(const Command& program, ExportCommand& exported) {
     const Command command = program.add_command("export", "Make a page of one file with isosurfaces and a slider");
     command.add_file("FILE", exported.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]").required();
     command.add_file("OUT", exported.out, "OUT_FILE", "The page: .html").required();
-    add_field(command, exported.field, "The field to contour; default: the one that info says is shown first");
+    add_field(command, exported.field, "The field to contour, or an expression such as mag(U); default: the one that info says is shown first");
     const Option isovalues = add_isovalues(command, exported.isovalues);
     command.add_choice<bool>("--as", exported.grid_inside, {{"surfaces", false}, {"grid", true}},
                              "What is in the page: surfaces (the default), or the grid, with isotet as WebAssembly: any "

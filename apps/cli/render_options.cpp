@@ -227,7 +227,7 @@ Command add_render_command(const Command& program, RenderCommand& render) {
         .required();
     command.add_file("-o,--output", render.out, "OUT_FILE", "The picture, .png; many: {frame} in the name, or .webp");
     add_out_and_more_files(command, render.grid, render.out, "The picture, as -o");
-    add_field(command, render.field, "The field to contour; default: the one that info says is shown first");
+    add_field(command, render.field, "The field to contour, or an expression such as mag(U); default: the one that info says is shown first");
     add_centre(command, render.field);
     const Option isovalues = add_isovalues(command, render.isovalues, render.shares);
     command

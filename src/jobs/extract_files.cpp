@@ -224,11 +224,16 @@ Result<FieldReport> ExtractRun::range_of_field() {
 
 /// Whether the grid has the arrays of the field that is contoured.
 bool has_arrays_of(const FoundField& field, const Grid& grid) {
-    const auto is_in = [](const std::vector<std::string>& names, const std::vector<Field>& fields) {
-        return !names.empty() && std::ranges::find(fields, names.front(), &Field::name) != fields.end();
+    const auto is_in = [](const std::string& name, const std::vector<Field>& fields) {
+        return std::ranges::find(fields, name, &Field::name) != fields.end();
     };
+    const auto is_read = [&](const std::string& name) {
+        return is_in(name, grid.point_fields) || is_in(name, grid.cell_fields);
+    };
+    if (field.is_expression) return std::ranges::all_of(field.point, is_read) && std::ranges::all_of(field.cell, is_read);
     const bool coordinate = field.point.empty() && field.cell.empty();
-    return coordinate || is_in(field.point, grid.point_fields) || is_in(field.cell, grid.cell_fields);
+    return coordinate || (!field.point.empty() && is_in(field.point.front(), grid.point_fields)) ||
+           (!field.cell.empty() && is_in(field.cell.front(), grid.cell_fields));
 }
 
 /// Reads one step. A field may be of points in one step and of cells in another, or be missing in it. Where it was left out

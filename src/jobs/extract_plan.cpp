@@ -76,7 +76,7 @@ constexpr std::size_t most_isovalues_of_active_cells = 8;
 
 std::optional<ReadActiveCells> plan_active_cells(const ExtractJob& job, const ExtractPlan& plan) {
     const bool has_components = plan.carried && !plan.carried->components.empty();
-    const bool needs_all = job.piece || job.solid || job.volumes || job.grid.merge_points;
+    const bool needs_all = plan.field.neighbours || job.piece || job.solid || job.volumes || job.grid.merge_points;
     if (needs_all || has_components || !plan.read.cell || !plan.read.cell->empty() ||
         plan.contour.expected_isovalues.size() > most_isovalues_of_active_cells ||
         !Contour::can_do_with_active_cells(plan.contour))
@@ -239,6 +239,10 @@ Result<ExtractPlan> plan_extract(ExtractJob& job, GridSource& source, Caller& ca
     plan.out_holds_cell_fields = format->cell_fields;
     if (auto chosen = choose_fields_of_steps(job, source, plan, caller); !chosen) return chosen.error();
 
+    if (job.piece && plan.field.neighbours)
+        return refusal("`piece` was asked for, but '{}' has derivatives, which follow from all cells around a point",
+                       plan.field.name);
+
     plan.contour.method = job.method;
     if (job.engine == EngineChoice::reference) plan.contour.engine = reference_engine();
     plan.contour.precision = job.precision;
@@ -317,7 +321,7 @@ Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid, con
     };
     for (const FoundField& component : plan.carried->components) {
         if (!std::ranges::all_of(component.point, is_read)) continue; // not in this step
-        if (component.point.size() > 1 && !component.name.ends_with(":mag")) {
+        if (component.point.size() > 1 && !component.is_expression && !component.name.ends_with(":mag")) {
             Result<Field> whole = gather_components(grid.point_fields, component.name, component.point);
             if (!whole) return whole.error();
             fields.point.push_back(*std::move(whole));

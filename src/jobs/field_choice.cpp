@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <isotet/expression.hpp>
 #include <isotet/first_view.hpp>
 #include <isotet/linear_cells.hpp>
 
@@ -34,6 +35,19 @@ std::vector<std::string> arrays_of(const std::string& name, const std::vector<st
     return match->parts.empty() ? std::vector<std::string>{match->field} : match->parts;
 }
 
+/// The fields to read for an expression.
+Result<FoundField> find_expression(const GridSource& source, const std::string& text) {
+    const auto needs = needs_of_expression(text, all_names(source));
+    if (!needs) return needs.error();
+    FoundField found{text, {}, {}, needs->neighbours, true};
+    const std::vector<std::string> point = source.names(Association::point), cell = source.names(Association::cell);
+    for (const std::string& field : needs->fields) {
+        if (has(point, field)) found.point.push_back(field);
+        if (has(cell, field)) found.cell.push_back(field);
+    }
+    return found;
+}
+
 /// Adds what one argument of --with names.
 Result<void> add_carried(const GridSource& source, const std::string& name, CarriedFields& carried) {
     const std::vector<std::string> point = source.names(Association::point), cell = source.names(Association::cell);
@@ -44,6 +58,8 @@ Result<void> add_carried(const GridSource& source, const std::string& name, Carr
     else if (is_coordinate(name)) carried.components.push_back({name, {}, {}});
     else if (match_field_name(name, cell))
         return refusal("`with` got '{}', a component of a cell field, but cell fields are carried whole", name);
+    else if (looks_like_expression(name) && needs_of_expression(name, point))
+        carried.components.push_back(*find_expression(source, name));
     else if (const std::size_t comma = name.find(','); comma != std::string::npos) {
         if (auto first = add_carried(source, name.substr(0, comma), carried); !first) return first;
         return add_carried(source, name.substr(comma + 1), carried);
@@ -71,6 +87,15 @@ Result<FoundField> choose_field(const GridSource& source, const FieldChoice& cho
             return refusal("no field was named, and the grid has {}", there);
         }
         found.name = names.front();
+    }
+    const bool is_field = is_coordinate(found.name) || !arrays_of(found.name, all_names(source)).empty();
+    if (!is_field && looks_like_expression(found.name)) {
+        auto expression = find_expression(source, found.name);
+        if (!expression) return expression;
+        found = *std::move(expression);
+        if (choice.cell_field && found.cell.empty())
+            return refusal("`cell_field` was asked for, but '{}' has no cell field", found.name);
+        return found;
     }
     found.point = arrays_of(found.name, source.names(Association::point));
     found.cell = arrays_of(found.name, source.names(Association::cell));

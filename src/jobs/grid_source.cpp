@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <isotet/contour.hpp>
+#include <isotet/expression.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/grid_counts.hpp>
 #include <isotet/hanging_points.hpp>
@@ -269,7 +270,7 @@ bool GridSource::has_field(std::size_t step, const std::string& name) const {
     if (looked == step_fields_.end() || name == "x" || name == "y" || name == "z") return true;
     std::vector<std::string> names;
     for (const FieldInfo& field : looked->second) names.push_back(field.name);
-    return match_field_name(name, names).has_value();
+    return match_field_name(name, names).has_value() || needs_of_expression(name, names);
 }
 
 Error GridSource::no_such_field(const std::string& name) const {

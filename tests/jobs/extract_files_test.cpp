@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <isotet/jobs/extract_files.hpp>
 
+#include <cstring>
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -53,6 +54,37 @@ TEST(ExtractFiles, WritesAFileForEachIsovalue) {
     ASSERT_EQ(listener.noted.size(), 2u);
     EXPECT_EQ(listener.noted[0], "the isovalue 0.5 was given more than once: it is extracted once");
     EXPECT_EQ(listener.noted[1].substr(0, 41), "isovalue 7 is outside the range of 'spher");
+}
+
+TEST(ExtractFiles, ContoursAndCarriesExpressions) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    ExtractJob job = job_of("make:mixed:6:sphere,gyroid", folder.file("named.vtp"));
+    job.field.name = "sphere";
+    job.isovalues = {0.5};
+    job.with = {{"gyroid"}};
+    ASSERT_TRUE(extract_files(job, listener));
+    job.out = folder.file("computed.vtp");
+    job.field.name = "2*sphere - sphere"; // exactly
+    job.with = {{"gyroid + 0*sphere"}};
+    ASSERT_TRUE(extract_files(job, listener));
+    const Surface named = read_surface(folder.file("named.vtp")).value().surface;
+    const Surface computed = read_surface(folder.file("computed.vtp")).value().surface;
+    ASSERT_EQ(computed.positions.bytes(), named.positions.bytes());
+    EXPECT_EQ(std::memcmp(computed.positions.data(), named.positions.data(), named.positions.bytes()), 0);
+    ASSERT_EQ(computed.point_fields.size(), 1u);
+    EXPECT_EQ(computed.point_fields[0].name, "gyroid + 0*sphere");
+    const Array &values = computed.point_fields[0].values, &same = named.point_fields[0].values;
+    EXPECT_EQ(std::memcmp(values.data(), same.data(), same.bytes()), 0);
+
+    job.field.name = "grad(sphere)";
+    job.piece = PieceOf{};
+    EXPECT_FALSE(extract_files(job, listener));
+    job.piece.reset();
+    job.field.name = "sphere + q";
+    const auto unknown = extract_files(job, listener);
+    ASSERT_FALSE(unknown);
+    EXPECT_NE(unknown.error().message.find("there is no field 'q': there is '"), std::string::npos) << unknown.error().message;
 }
 
 TEST(ExtractFiles, WritesNoFileOfTheCallerAndNoInput) {

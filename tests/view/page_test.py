@@ -312,6 +312,29 @@ def test_another_field_is_a_state_of_its_own(browser, viewer):
     check(browser.value('document.querySelectorAll("#surfaces li").length') == 2, 'with its pin')
 
 
+def type_formula(browser, text):
+    browser.value('(() => { const box = document.getElementById("formula"); box.value = %s; '
+                  'box.dispatchEvent(new KeyboardEvent("keydown", {key: "Enter"})); return 1; })()' % json.dumps(text))
+
+
+def test_formula(browser, viewer):
+    """A typed expression is a field like others; one that cannot be computed brings back what was shown."""
+    start(browser, viewer)
+    type_formula(browser, 'sphere + gyroid^2')
+    browser.wait('document.body.dataset.field === "sphere + gyroid^2"')
+    at_rest(browser)
+    formula_value = shown(browser)
+    check(browser.value('document.getElementById("field").value') == 'sphere + gyroid^2', 'the list names it')
+    type_formula(browser, 'sphere + nothing')
+    browser.wait("document.getElementById('formula').getAttribute('aria-invalid') === 'true'")
+    at_rest(browser, formula_value)
+    check(browser.value('document.getElementById("field").value') == 'sphere + gyroid^2', 'the field before is back')
+    check("there is no field 'nothing'" in browser.value('document.body.textContent'), 'the page says what is wrong')
+    browser.value('location.reload()')
+    browser.wait('document.body.dataset.field === "sphere + gyroid^2"')
+    at_rest(browser, formula_value)
+
+
 def test_colour_by_field(browser, viewer):
     start(browser, viewer)
     plain = browser.picture()

@@ -26,6 +26,8 @@ struct FieldChoice {
 struct FoundField {
     std::string name;                     ///< for find_field(); empty only for "no field"
     std::vector<std::string> point, cell; ///< to read; none for a coordinate
+    bool neighbours = false;              ///< its values follow from all cells around a point
+    bool is_expression = false;           ///< which needs all of `point` and `cell`, each from one of them
 };
 
 /// The field to contour. An empty name means the only one there is.
@@ -36,11 +38,11 @@ Result<FoundField> choose_field(const GridSource& source, const FieldChoice& cho
 struct CarriedFields {
     std::vector<std::string> point;     ///< whole point fields
     std::vector<std::string> cell;      ///< whole cell fields
-    std::vector<FoundField> components; ///< components of point fields
+    std::vector<FoundField> components; ///< components of point fields, and expressions
 };
 
 /// What --with names; each a point field, else a cell field, else a component of a point field, else a list of these
-/// separated by commas. Empty names are no field.
+/// separated by commas, else an expression of point fields. Empty names are no field.
 Result<CarriedFields> choose_carried(const GridSource& source, const std::vector<std::string>& names);
 
 /// The fields of one read: without repetition.

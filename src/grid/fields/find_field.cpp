@@ -4,17 +4,14 @@
 
 #include <fmt/core.h>
 
-#include <isotet/component_groups.hpp>
+#include <isotet/expression.hpp>
 #include <isotet/grid.hpp>
-#include <isotet/linear_cells.hpp>
 
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
-#include "base/parallel.hpp"
-#include "grid/cells.hpp"
-#include "grid/fields/average_to_points.hpp"
+#include "grid/fields/expression/find_expression.hpp"
+#include "grid/fields/one_field.hpp"
 #include "grid/fields/scalar_of.hpp"
-#include "grid/renumber.hpp"
 
 namespace isotet {
 
@@ -35,21 +32,6 @@ std::string in_quotes(const std::vector<std::string>& names) {
     return list;
 }
 
-/// A field by its name; where `parts` are given, one that is gathered from these. Nothing where it is not there.
-Result<std::optional<Field>> find_or_gather(const std::vector<Field>& fields, const FieldName& wanted) {
-    const auto is_there = [&](const std::string& name) {
-        return std::ranges::find(fields, name, &Field::name) != fields.end();
-    };
-    if (wanted.parts.empty()) {
-        const auto found = std::ranges::find(fields, wanted.field, &Field::name);
-        return found == fields.end() ? std::optional<Field>() : std::optional(*found);
-    }
-    if (!std::ranges::all_of(wanted.parts, is_there)) return std::optional<Field>();
-    Result<Field> gathered = gather_components(fields, wanted.field, wanted.parts);
-    if (!gathered) return gathered.error();
-    return std::optional(*std::move(gathered));
-}
-
 Result<core::Scalar> choose_scalar(const Field& field, const std::optional<std::string>& component) {
     const std::size_t components = field.values.components();
     if (!component && components != 1)
@@ -65,29 +47,6 @@ Result<core::Scalar> choose_scalar(const Field& field, const std::optional<std::
     return *scalar;
 }
 
-Result<void> check_length(const Field& field, std::string_view what, std::size_t expected) {
-    if (field.values.tuples() == expected && field.values.components() > 0) return {};
-    return invalid_argument(fmt::format("the {} field '{}' has {} tuples of {} components, but the grid has {} {}s",
-                                        what, field.name, field.values.tuples(), field.values.components(), expected,
-                                        what));
-}
-
-Result<Array> average(const Grid& grid, const Field& field, core::Scalar scalar, bool by_value) {
-    const Grid bare{grid.points, grid.cells, {}, {}, grid.point_numbers};
-    const auto cells = core::CellReader::open(bare);
-    if (!cells) return cells.error();
-    if (auto fits = check_length(field, "cell", cells->count()); !fits) return fits.error();
-    if (has_cells_to_linearize(grid.cells)) { // which checks the cells, too
-        const auto volumes = relative_volumes(bare, {.threads = core::threads_here()});
-        if (!volumes) return volumes.error();
-        return core::average_to_points(bare, *cells, field.values, scalar, by_value, *volumes);
-    }
-    if (auto sound = core::check_cells(bare, *cells, {}); !sound) return sound.error();
-    if (by_value && !grid.point_numbers.empty())
-        if (auto numbers = core::check_point_numbers(bare); !numbers) return numbers.error();
-    return core::average_to_points(bare, *cells, field.values, scalar, by_value);
-}
-
 Result<PointField> coordinate(const Grid& grid, std::string_view name) {
     if (!is_floating(grid.points.type()) || grid.points.components() != 3)
         return Error{ErrorCode::invalid_data,
@@ -96,7 +55,8 @@ Result<PointField> coordinate(const Grid& grid, std::string_view name) {
     return PointField{std::string(name), core::scalar_of(grid.points, *core::parse_scalar(name)), false, {}};
 }
 
-Result<PointField> find_by_name(const Grid& grid, std::string_view name, const FindFieldOptions& options) {
+Result<PointField> find_by_name(const Grid& grid, std::string_view name, const FindFieldOptions& options,
+                                const Progress& progress) {
     const std::vector<std::string> names = names_of(grid);
     if (name.empty()) {
         if (names.size() != 1)
@@ -107,14 +67,15 @@ Result<PointField> find_by_name(const Grid& grid, std::string_view name, const F
     }
     const auto match = match_field_name(name, names);
     if (!match && (name == "x" || name == "y" || name == "z")) return coordinate(grid, name);
+    if (!match && looks_like_expression(name)) return core::find_expression(grid, name, names, options, progress);
     if (!match)
         return invalid_argument(
             names.empty()
                 ? fmt::format("the field is '{}', but the grid has none, only the coordinates x, y, z", name)
                 : fmt::format("the field is '{}', but the grid has {}", name, in_quotes(nearest_first(name, names))));
-    const auto of_points = find_or_gather(grid.point_fields, *match);
+    const auto of_points = core::find_or_gather(grid.point_fields, *match);
     if (!of_points) return of_points.error();
-    const auto of_cells = find_or_gather(grid.cell_fields, *match);
+    const auto of_cells = core::find_or_gather(grid.cell_fields, *match);
     if (!of_cells) return of_cells.error();
     if (!*of_points && !*of_cells)
         return invalid_argument(fmt::format("the components of '{}' are of points and of cells", match->field));
@@ -125,12 +86,12 @@ Result<PointField> find_by_name(const Grid& grid, std::string_view name, const F
 
     PointField found{std::string(name), {}, take_cells, {}};
     if (take_cells) {
-        auto values = average(grid, field, *scalar, options.for_pieces);
+        auto values = core::average_field(grid, field, *scalar, options.for_pieces);
         if (!values) return values.error();
         found.values = std::move(*values);
         if (options.keep_cell_values) found.cell_values = core::scalar_of(field.values, *scalar);
     } else {
-        if (auto fits = check_length(field, "point", grid.points.tuples()); !fits) return fits.error();
+        if (auto fits = core::check_length(field, "point", grid.points.tuples()); !fits) return fits.error();
         found.values = core::scalar_of(field.values, *scalar);
         if (*of_cells)
             found.note =
@@ -144,7 +105,7 @@ Result<PointField> find_by_name(const Grid& grid, std::string_view name, const F
 Result<PointField> find_field(const Grid& grid, std::string_view name, const FindFieldOptions& options,
                               const Run& run) {
     return core::carry_out("finding the field", run,
-                           [&](const Progress&) { return find_by_name(grid, name, options); });
+                           [&](const Progress& progress) { return find_by_name(grid, name, options, progress); });
 }
 
 } // namespace isotet

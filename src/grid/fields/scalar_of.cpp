@@ -15,24 +15,6 @@ namespace {
 
 constexpr std::size_t tuples_per_task = 1 << 14;
 
-template <class Value>
-double magnitude(const Value* tuple, std::size_t components) {
-    double largest = 0, sum = 0;
-    for (std::size_t c = 0; c < components; ++c) {
-        const double x = static_cast<double>(tuple[c]);
-        largest = std::max(largest, std::abs(x));
-        sum += x * x;
-    }
-    if ((largest < 0x1p500 && largest > 0x1p-500) || !(largest > 0) || std::isinf(largest)) return std::sqrt(sum);
-    const int exponent = std::ilogb(largest);
-    sum = 0;
-    for (std::size_t c = 0; c < components; ++c) {
-        const double x = std::scalbn(static_cast<double>(tuple[c]), -exponent);
-        sum += x * x;
-    }
-    return std::scalbn(std::sqrt(sum), exponent);
-}
-
 template <class Result, class At>
 Array fill(std::size_t count, const At& at) {
     Buffer<Result> values(count);
@@ -54,7 +36,7 @@ std::optional<Scalar> parse_scalar(std::string_view text) {
 double scalar_at(const Array& array, Scalar scalar, std::size_t tuple) {
     const std::size_t components = array.components();
     return array.visit([&](auto values) {
-        if (scalar.magnitude) return magnitude(values.data() + tuple * components, components);
+        if (scalar.magnitude) return magnitude_of(values.data() + tuple * components, components);
         return static_cast<double>(values[tuple * components + scalar.component]);
     });
 }
@@ -69,7 +51,7 @@ Array scalar_of(const Array& array, Scalar scalar) {
                                [&](std::size_t tuple) { return values[tuple * components + scalar.component]; });
         using Magnitude = std::conditional_t<std::is_same_v<Value, float>, float, double>;
         return fill<Magnitude>(array.tuples(),
-                               [&](std::size_t tuple) { return magnitude(&values[tuple * components], components); });
+                               [&](std::size_t tuple) { return magnitude_of(&values[tuple * components], components); });
     });
 }
 

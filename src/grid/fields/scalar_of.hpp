@@ -2,8 +2,11 @@
 // One scalar of each tuple: a component, or the magnitude.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <optional>
+#include <string_view>
 
 #include <isotet/array.hpp>
 
@@ -17,6 +20,25 @@ struct Scalar {
 
 /// `x`, `y`, `z`, `mag` or a number; nothing for other text or a number beyond 64 bits.
 std::optional<Scalar> parse_scalar(std::string_view text);
+
+/// The length of a tuple. Neither overflows nor underflows.
+template <class Value>
+double magnitude_of(const Value* tuple, std::size_t components) {
+    double largest = 0, sum = 0;
+    for (std::size_t c = 0; c < components; ++c) {
+        const double x = static_cast<double>(tuple[c]);
+        largest = std::max(largest, std::abs(x));
+        sum += x * x;
+    }
+    if ((largest < 0x1p500 && largest > 0x1p-500) || !(largest > 0) || std::isinf(largest)) return std::sqrt(sum);
+    const int exponent = std::ilogb(largest);
+    sum = 0;
+    for (std::size_t c = 0; c < components; ++c) {
+        const double x = std::scalbn(static_cast<double>(tuple[c]), -exponent);
+        sum += x * x;
+    }
+    return std::scalbn(std::sqrt(sum), exponent);
+}
 
 /// The scalar of one tuple as a double. Magnitudes neither overflow nor underflow.
 double scalar_at(const Array& array, Scalar scalar, std::size_t tuple);

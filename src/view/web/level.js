@@ -173,11 +173,11 @@ id('value').addEventListener('keydown', (event) => {
 id('value').addEventListener('blur', () => showValue());
 
 /** Another field has its own value and pins: those that it had, when it was shown before. */
-id('field').addEventListener('change', () => {
+export function chooseField(name) {
   const {state} = app;
   commit(); // what was shown last is a state of its own
   level.left.set(state.field, {value: state.value, pins: state.pins});
-  Object.assign(state, {field: id('field').value, value: null, pins: []}, level.left.get(id('field').value));
+  Object.assign(state, {field: name, value: null, pins: []}, level.left.get(name));
   app.slider.chart = app.slider.spectrum = null;
   level.automatic = false;
   forgetPoints();
@@ -186,4 +186,6 @@ id('field').addEventListener('change', () => {
   showValue();
   showSurfaces();
   wishSoon();
-});
+}
+
+id('field').addEventListener('change', () => chooseField(id('field').value));

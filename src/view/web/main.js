@@ -1,10 +1,11 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Ties the parts together: state -> wishes -> frames -> picture.
-import {app, aspect, id} from './app.js';
+import {app, aspect, id, mayBeField} from './app.js';
 import {colorsChanged, showMap, showRange} from './colors.js';
 import {commands, takeCommand, takeState, wholeState} from './commands.js';
 import {Cuts} from './cuts.js';
 import {short} from './format.js';
+import {offerField, refuseFormula} from './formula.js';
 import './keys.js';
 import {askChart, followStep, forgetQuestions, forgetSpeed, forgetValues, takeChart, takeSpectrum} from './level.js';
 import {Link} from './link.js';
@@ -25,6 +26,8 @@ import {serverDraws, stopWaiting, wishSoon} from './wishes.js';
 /** The controls and the picture follow a new state. */
 function showState() {
   if (!app.state.camera || !app.camera.set(app.state.camera)) app.camera.fit(app.grid.lower, app.grid.upper, aspect());
+  offerField(app.state.field);
+  offerField(app.state.colorBy);
   id('field').value = app.state.field;
   id('color-by').value = app.state.colorBy;
   id('map').value = app.state.map;
@@ -122,7 +125,7 @@ function takeGrid(message) {
   if (!app.grid.lower) [app.grid.lower, app.grid.upper] = [[0, 0, 0], [1, 1, 1]];
   app.time.set(app.grid.times);
   const names = app.grid.fields.map(({name}) => name), start = fromMessage(app.grid.state);
-  const fresh = !app.state.field || !names.includes(app.state.field);
+  const fresh = !app.state.field || !mayBeField(app.state.field);
   if (fresh) app.state = {...start, camera: app.state.camera, labels: app.state.labels, drawn: app.state.drawn};
   if (app.grid.times.length < 2) app.state.step = null;
   else if (app.state.step === null || app.state.step >= app.grid.times.length) app.state.step = start.step;
@@ -179,7 +182,10 @@ const messages = {
   },
   saved: (message) => app.save.done(`Saved: ${message.path}`),
   download: (message) => app.save.begin(message),
-  error: (message) => (message.about === 'save' ? app.save.tell(message.sentence) : say(message.sentence)),
+  error: ({about, sentence}) => {
+    if (about === 'save') app.save.tell(sentence);
+    else if (about !== 'chart' || !refuseFormula(sentence)) say(sentence);
+  },
 };
 
 try {

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Undo: the address holds the state.
-import {app} from './app.js';
+import {app, mayBeField} from './app.js';
 import {fromAddress, toAddress} from './state.js';
 
 let commitTimer = 0;
@@ -25,7 +25,7 @@ export function onReturn(show) {
     const [sameToken, ...parts] = location.hash.slice(1).split('&');
     if (sameToken !== app.token) return location.reload();
     app.state = fromAddress(parts.join('&'));
-    if (!app.grid?.fields.some(({name}) => name === app.state.field)) app.state.field = app.grid?.state.field || app.state.field;
+    if (!app.grid || !mayBeField(app.state.field)) app.state.field = app.grid?.state.field || app.state.field;
     show();
   });
 }
