@@ -13,6 +13,7 @@
 
 #include <isotet/contour.hpp>
 #include <isotet/contour_spectrum.hpp>
+#include <isotet/expression.hpp>
 #include <isotet/first_view.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/hanging_points.hpp>
@@ -171,6 +172,7 @@ void add_grids(nb::module_& module) {
             return call(options, [&](const Run& run) { return find_field(grid, name, how, run); });
         },
         "grid"_a, "name"_a, "for_pieces"_a, "own_centres"_a, "call"_a);
+    module.def("looks_like_expression", [](const std::string& text) { return looks_like_expression(text); }, "text"_a);
 
     using Vector = std::array<double, 3>;
     const auto add_slice_field = [&module]<class Shape>(const char* name, Shape shape_of) {

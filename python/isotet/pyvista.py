@@ -70,7 +70,7 @@ def find_scalars(mesh, scalars, preference: str) -> tuple[str, bool]:
         if found in mesh.cell_data:
             raise TypeError(f"Contour filter only works on point data. '{found}' is cell data: with preference='cell' it is "
                             "averaged to the points.")  # fmt: skip
-    if ":" in name:  # of a vector that is stored as several arrays
+    if ":" in name or _isotet.looks_like_expression(name):  # the vector may be stored as several arrays
         return name, preference == "cell"
     raise MissingArrayError(f"there is no array '{name}': the mesh has {', '.join(mesh.array_names) or 'none'}")
 

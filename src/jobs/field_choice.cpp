@@ -48,6 +48,17 @@ Result<FoundField> find_expression(const GridSource& source, const std::string& 
     return found;
 }
 
+/// The first comma that is in no brackets.
+std::size_t comma_between(const std::string& names) {
+    int depth = 0;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (names[i] == '(') ++depth;
+        if (names[i] == ')') --depth;
+        if (names[i] == ',' && depth <= 0) return i;
+    }
+    return std::string::npos;
+}
+
 /// Adds what one argument of --with names.
 Result<void> add_carried(const GridSource& source, const std::string& name, CarriedFields& carried) {
     const std::vector<std::string> point = source.names(Association::point), cell = source.names(Association::cell);
@@ -60,7 +71,7 @@ Result<void> add_carried(const GridSource& source, const std::string& name, Carr
         return refusal("`with` got '{}', a component of a cell field, but cell fields are carried whole", name);
     else if (looks_like_expression(name) && needs_of_expression(name, point))
         carried.components.push_back(*find_expression(source, name));
-    else if (const std::size_t comma = name.find(','); comma != std::string::npos) {
+    else if (const std::size_t comma = comma_between(name); comma != std::string::npos) {
         if (auto first = add_carried(source, name.substr(0, comma), carried); !first) return first;
         return add_carried(source, name.substr(comma + 1), carried);
     } else if (!name.empty()) return source.no_such_field(name);

@@ -66,14 +66,15 @@ TEST(ExtractFiles, ContoursAndCarriesExpressions) {
     ASSERT_TRUE(extract_files(job, listener));
     job.out = folder.file("computed.vtp");
     job.field.name = "2*sphere - sphere"; // exactly
-    job.with = {{"gyroid + 0*sphere"}};
+    job.with = {{"gyroid + 0*sphere,max(gyroid, sphere)"}};
     ASSERT_TRUE(extract_files(job, listener));
     const Surface named = read_surface(folder.file("named.vtp")).value().surface;
     const Surface computed = read_surface(folder.file("computed.vtp")).value().surface;
     ASSERT_EQ(computed.positions.bytes(), named.positions.bytes());
     EXPECT_EQ(std::memcmp(computed.positions.data(), named.positions.data(), named.positions.bytes()), 0);
-    ASSERT_EQ(computed.point_fields.size(), 1u);
+    ASSERT_EQ(computed.point_fields.size(), 2u);
     EXPECT_EQ(computed.point_fields[0].name, "gyroid + 0*sphere");
+    EXPECT_EQ(computed.point_fields[1].name, "max(gyroid, sphere)");
     const Array &values = computed.point_fields[0].values, &same = named.point_fields[0].values;
     EXPECT_EQ(std::memcmp(values.data(), same.data(), same.bytes()), 0);
 

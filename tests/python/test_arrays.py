@@ -279,6 +279,7 @@ def test_components_are_a_vector(tet):
     points, cells, values = tet
     grid = isotet.Grid(points, cells, fields={"VelocityX": 2 * values, "VelocityY": 3 * values, "VelocityZ": 6 * values})
     assert np.array_equal(grid.contour(3.5, "Velocity:mag").points, isotet.contour(points, cells, values, 0.5).points)
+    assert np.array_equal(grid.contour(3.5, "mag(Velocity)").points, isotet.contour(points, cells, values, 0.5).points)
     with pytest.raises(ValueError, match="3 components"):
         grid.contour(1, "Velocity")
 

@@ -412,6 +412,7 @@ def test_components_and_cell_arrays_are_contoured():
     assert image.isotet.contour([500.0], "number", preference="cell").n_cells > 0
     for name, place in (("vel_x", 0), ("vel_y", 1), ("vel_z", 2)):
         grid[name] = grid["v"][:, place].copy()
+    assert grid.isotet.contour([5.0], "sqrt(dot(v, v))").area == pytest.approx(grid.isotet.contour([5.0], "v:mag").area)
     assert grid.isotet.contour([5.0], "vel:mag").area == pytest.approx(grid.isotet.contour([5.0], "v:mag").area, rel=1e-3)
 
 
