@@ -16,6 +16,7 @@
 #include "linear/hanging/covers.hpp"
 #include "linear/hanging/hanging_rows.hpp"
 #include "linear/hanging/listed_cells.hpp"
+#include "linear/hanging/near_faces.hpp"
 #include "linear/hanging/open_faces.hpp"
 
 namespace isotet {

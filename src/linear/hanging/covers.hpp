@@ -17,11 +17,19 @@ namespace isotet::linear {
 
 /// A face, and those that cover it, all by their numbers among the open faces.
 struct Cover {
+    struct Part {
+        std::uint32_t face;
+        double distance; ///< of its middle from the larger one, in extents of that
+    };
+    struct OnEdge {
+        std::uint32_t edge; ///< from this corner to the next
+        std::uint64_t point;
+    };
+
     std::size_t face = 0;
-    std::vector<std::uint32_t> by;                   ///< ascending
-    std::vector<double> distances;                   ///< of these from the face, in its extents
-    std::vector<std::vector<std::uint64_t>> between; ///< points between each corner and the next, as `by` has them
-    bool is_whole = false;                          ///< they have its outline
+    std::vector<Part> by;        ///< ascending
+    std::vector<OnEdge> between; ///< points on the edges, as `by` has them, around the face
+    bool is_whole = false;       ///< they have its outline
 };
 
 struct Covers {
@@ -40,8 +48,5 @@ struct Covers {
 /// Errors       cancelled
 Result<Covers> find_covers(const OpenFaces& faces, const core::CellReader& cells, const core::PointReader& points,
                            const Progress& progress);
-
-/// Whether some face lies on larger ones, by their places alone: for faces of some cells of a grid.
-bool has_smaller_faces(const OpenFaces& faces, const core::CellReader& cells, const core::PointReader& points);
 
 } // namespace isotet::linear

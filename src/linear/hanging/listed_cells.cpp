@@ -21,26 +21,16 @@ namespace {
 
 constexpr std::size_t cells_per_part = 1 << 13;
 
-/// The points of a polyhedron, ascending, each once.
-std::vector<std::uint64_t> points_of(const std::vector<std::uint64_t>& faces) {
-    std::vector<std::uint64_t> out;
-    for (std::size_t at = 1; at < faces.size(); at += faces[at] + 1)
-        out.insert(out.end(), faces.begin() + static_cast<std::ptrdiff_t>(at + 1),
-                   faces.begin() + static_cast<std::ptrdiff_t>(at + 1 + faces[at]));
-    std::ranges::sort(out);
-    out.erase(std::unique(out.begin(), out.end()), out.end());
-    return out;
-}
-
 class CellLister {
 public:
     CellLister(const core::CellReader& cells, const core::FaceReader& faces, const OpenFaces& open,
                const Covers& covers)
-        : cells_(cells), faces_(faces), open_(open), covers_(covers), marked_(cells.points()) {
-        std::ranges::fill(marked_, std::uint8_t{0});
-        for (const Cover& cover : covers.whole)
-            for (const std::uint64_t point : open.loop(cover.face)) marked_[point] = 1;
-        for (const PointOnEdge& at : covers.edges.all()) marked_[at.low] = marked_[at.high] = 1;
+        : cells_(cells), faces_(faces), open_(open), covers_(covers), ends_(cells.points()) {
+        std::ranges::fill(ends_, std::uint8_t{0});
+        for (std::size_t i = 0; i < covers.edges.size(); ++i) {
+            ends_[covers.edges[i].low] |= lower_end;
+            ends_[covers.edges[i].high] |= upper_end;
+        }
     }
 
     std::vector<ListedCell> list(const Progress& progress) {
@@ -49,12 +39,19 @@ public:
         core::parallel_pieces(cells_.count(), cells_per_part, progress, [&](std::size_t begin, std::size_t end) {
             CellLoops loops(cells_, faces_);
             std::vector<ListedCell> part;
+            ListedCell listed{};
+            std::vector<Edge> edges;
+            auto cover = first_cover(begin);
             for (std::size_t cell = begin; cell < end; ++cell) {
-                if (!has_marked_edge(cell)) continue;
-                ListedCell listed{cell, {}, {}};
-                if (!loops.read(cell) || !list_faces(loops, listed) || !closes(listed.faces)) continue;
-                listed.points = points_of(listed.faces);
-                part.push_back(std::move(listed));
+                const auto covers = cover;
+                while (cover != covers_.whole.end() && open_.place(cover->face).cell == cell) ++cover;
+                if (covers == cover && !may_have_split_edge(cell)) continue;
+                if (!loops.read(cell) || (covers == cover && !has_split_edge(loops))) continue;
+                listed.cell = cell;
+                list_faces(loops, covers, listed);
+                if (!closes(listed.faces, edges)) continue;
+                find_points(edges, listed.points);
+                part.push_back(listed);
             }
             const std::lock_guard lock(mutex);
             std::ranges::move(part, std::back_inserter(out));
@@ -65,20 +62,31 @@ public:
     }
 
 private:
-    /// Two of its points have to be ends of one.
-    bool has_marked_edge(std::size_t cell) const {
-        const std::uint64_t first = cells_.first(cell), corners = cells_.corners(cell);
-        int count = 0;
-        for (std::uint64_t i = 0; i < corners && count < 2; ++i)
-            if (const std::uint64_t point = cells_.corner(first + i); point < marked_.size()) count += marked_[point];
-        return count >= 2;
+    using CoverPlace = std::vector<Cover>::const_iterator;
+
+    CoverPlace first_cover(std::size_t cell) const {
+        return std::ranges::lower_bound(covers_.whole, cell, {},
+                                        [&](const Cover& cover) { return open_.place(cover.face).cell; });
     }
 
-    const Cover* cover_of(std::size_t cell, std::size_t face) const {
-        const OpenFaces::Place place{cell, static_cast<std::uint32_t>(face)};
-        const auto at = std::ranges::lower_bound(covers_.whole, place, {},
-                                                 [&](const Cover& cover) { return open_.place(cover.face); });
-        return at != covers_.whole.end() && open_.place(at->face) == place ? &*at : nullptr;
+    /// One of its points has to be the lower end of one, another the upper end.
+    bool may_have_split_edge(std::size_t cell) const {
+        const std::uint64_t first = cells_.first(cell), end = first + cells_.corners(cell);
+        std::uint8_t ends = 0;
+        for (std::uint64_t i = first; i < end; ++i)
+            if (const std::uint64_t point = cells_.corner(i); point < ends_.size()) ends |= ends_[point];
+        return ends == (lower_end | upper_end);
+    }
+
+    bool has_split_edge(const CellLoops& loops) const {
+        for (std::size_t face = 0; face < loops.count(); ++face) {
+            std::uint64_t before = loops.loop(face).back();
+            for (const std::uint64_t point : loops.loop(face)) {
+                if (covers_.edges.is_split(before, point)) return true;
+                before = point;
+            }
+        }
+        return false;
     }
 
     /// A triangle with one point on an edge becomes two triangles: as a quadrilateral it would have three corners on a
@@ -100,39 +108,62 @@ private:
         ++out.faces[0];
     }
 
-    /// False when the cell has no hanging points.
-    bool list_faces(const CellLoops& loops, ListedCell& out) const {
+    /// `cover`   the first one of the cell, or of one behind it
+    void list_faces(const CellLoops& loops, CoverPlace cover, ListedCell& out) const {
         out.faces.assign(1, 0);
         for (std::size_t face = 0; face < loops.count(); ++face) {
-            if (const Cover* cover = cover_of(out.cell, face))
-                for (const std::uint32_t other : cover->by) add_loop(open_.loop(other), out);
-            else add_loop(loops.loop(face), out);
+            const OpenFaces::Place place{out.cell, static_cast<std::uint32_t>(face)};
+            if (cover == covers_.whole.end() || open_.place(cover->face) != place) {
+                add_loop(loops.loop(face), out);
+                continue;
+            }
+            for (const Cover::Part& part : cover->by) add_loop(open_.loop(part.face), out);
+            ++cover;
         }
-        return out.faces.size() > 1 + loops.count() + loops.all().size();
     }
 
+    struct Edge {
+        std::uint64_t low, high;
+        friend auto operator<=>(const Edge&, const Edge&) = default;
+    };
+
     /// Whether each edge is in two faces.
-    static bool closes(const std::vector<std::uint64_t>& faces) {
-        std::vector<std::pair<std::uint64_t, std::uint64_t>> edges;
-        for (std::size_t at = 1; at < faces.size(); at += faces[at] + 1)
-            for (std::size_t i = 0; i < faces[at]; ++i) {
-                const auto [low, high] = std::minmax(faces[at + 1 + i], faces[at + 1 + (i + 1) % faces[at]]);
-                edges.emplace_back(low, high);
+    /// `edges`   set to all, ascending
+    static bool closes(const std::vector<std::uint64_t>& faces, std::vector<Edge>& edges) {
+        edges.clear();
+        for (std::size_t at = 1; at < faces.size(); at += faces[at] + 1) {
+            std::uint64_t before = faces[at + faces[at]];
+            for (std::size_t i = 1; i <= faces[at]; ++i) {
+                const std::uint64_t point = faces[at + i];
+                edges.push_back({std::min(before, point), std::max(before, point)});
+                before = point;
             }
-        std::ranges::sort(edges);
-        for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
-            end = begin;
-            while (end < edges.size() && edges[end] == edges[begin]) ++end;
-            if (end - begin != 2) return false;
         }
+        std::ranges::sort(edges);
+        for (std::size_t i = 0; i < edges.size(); i += 2)
+            if (i + 1 == edges.size() || edges[i] != edges[i + 1] || (i + 2 < edges.size() && edges[i] == edges[i + 2]))
+                return false;
         return true;
+    }
+
+    /// The ends of edges that are there twice.
+    static void find_points(const std::vector<Edge>& edges, std::vector<std::uint64_t>& out) {
+        out.clear();
+        for (std::size_t i = 0; i < edges.size(); i += 2) {
+            if (i == 0 || edges[i].low != edges[i - 2].low) out.push_back(edges[i].low);
+            out.push_back(edges[i].high);
+        }
+        std::ranges::sort(out);
+        out.erase(std::unique(out.begin(), out.end()), out.end());
     }
 
     const core::CellReader& cells_;
     const core::FaceReader& faces_;
     const OpenFaces& open_;
     const Covers& covers_;
-    core::Buffer<std::uint8_t> marked_; ///< corners of covered faces, ends of edges with points on them
+
+    static constexpr std::uint8_t lower_end = 1, upper_end = 2;
+    core::Buffer<std::uint8_t> ends_; ///< by point: of edges with points on them
 };
 
 /// Cells one after another, listed ones in place of the grid's.

@@ -5,16 +5,15 @@
 #include <array>
 #include <atomic>
 #include <limits>
-#include <mutex>
 #include <utility>
-
-#include <tbb/parallel_sort.h>
 
 #include "base/buffer.hpp"
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
+#include "base/radix_sort.hpp"
 #include "grid/cell/native_cells.hpp"
 #include "linear/hanging/cell_loops.hpp"
+#include "numbers/point_hash.hpp"
 
 namespace isotet::linear {
 
@@ -22,12 +21,9 @@ namespace {
 
 constexpr std::size_t cells_per_look = 1 << 13;
 
-/// The finalizer of SplitMix64 (Steele, Lea, Flood 2014).
+/// Of a point's number, and of the sum of these over a face.
 constexpr std::uint64_t scattered(std::uint64_t x) {
-    x += 0x9e3779b97f4a7c15u;
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-    return x ^ (x >> 31);
+    return core::folded_product(x ^ 0xa0761d6478bd642fu, 0x9e3779b97f4a7c15u);
 }
 
 /// A face's lowest point, and a hash of all, whatever their order.
@@ -56,10 +52,85 @@ FaceHash hash_of(const core::WholeCell& cell, const core::CellFace& face,
     return out;
 }
 
-struct HashedFace {
-    std::uint64_t hash, cell;
-    std::uint32_t face;
-    friend auto operator<=>(const HashedFace&, const HashedFace&) = default;
+struct FoundFace {
+    std::uint64_t hash;
+    OpenFaces::Place place;
+};
+
+/// The faces of cells one after another. Those of a cell with eight different corners or fewer need no list.
+class FaceWalk {
+public:
+    FaceWalk(const core::CellReader& cells, const core::FaceReader& faces) : cells_(cells), loops_(cells, faces) {}
+
+    /// Calls use(number, hash) for each face of a cell.
+    template <class Use>
+    void each_hash(std::size_t cell, const Use& use) {
+        if (!open(cell)) return;
+        if (!is_whole_) {
+            for (std::size_t face = 0; face < loops_.count(); ++face) use(face, hash_of(loops_.loop(face)));
+            return;
+        }
+        std::array<std::uint64_t, 8> hashes{};
+        for (std::size_t i = 0; i < core::corner_count(whole_.kind); ++i) hashes[i] = scattered(whole_.corners[i]);
+        std::size_t number = 0;
+        for (const core::CellFace& face : core::shape_of(whole_.kind).faces())
+            use(number++, hash_of(whole_, face, hashes));
+    }
+
+    std::span<const std::uint64_t> loop(const OpenFaces::Place& place) {
+        if (place.cell != cell_) {
+            open(place.cell);
+            cell_ = place.cell;
+        }
+        if (!is_whole_) return loops_.loop(place.face);
+        const core::CellFace& face = core::shape_of(whole_.kind).faces()[place.face];
+        for (std::size_t i = 0; i < face.count; ++i) corners_[i] = whole_.corners[face.corners[i]];
+        return {corners_.data(), face.count};
+    }
+
+private:
+    /// False: it has no volume that is contoured.
+    bool open(std::size_t cell) {
+        is_whole_ = core::is_contoured(cells_.type(cell));
+        if (is_whole_) {
+            whole_ = cells_.whole(cell);
+            is_whole_ = !core::has_repeated_corner(whole_);
+        }
+        return is_whole_ || loops_.read(cell);
+    }
+
+    const core::CellReader& cells_;
+    CellLoops loops_;
+    core::WholeCell whole_{};
+    bool is_whole_ = false;
+    std::uint64_t cell_ = std::numeric_limits<std::uint64_t>::max(); ///< of the last loop
+    std::array<std::uint64_t, 4> corners_{};
+};
+
+/// Which points faces of several cells have.
+class SharedPoints {
+public:
+    /// `memory`   a number for each point; what it holds is lost
+    explicit SharedPoints(core::Buffer<std::uint64_t> memory) : users_(std::move(memory)) {
+        std::ranges::fill(users_, none);
+    }
+
+    void add(std::uint64_t cell, std::span<const std::uint64_t> loop) {
+        for (const std::uint64_t point : loop) {
+            const std::atomic_ref user(users_[point]);
+            std::uint64_t before = user.load(std::memory_order_relaxed);
+            if (before == none && user.compare_exchange_strong(before, cell, std::memory_order_relaxed)) continue;
+            if (before != cell && before != several) user.store(several, std::memory_order_relaxed);
+        }
+    }
+    bool has_any(std::span<const std::uint64_t> loop) const {
+        return std::ranges::any_of(loop, [&](std::uint64_t point) { return users_[point] == several; });
+    }
+
+private:
+    static constexpr std::uint64_t none = std::numeric_limits<std::uint64_t>::max(), several = none - 1;
+
+    core::Buffer<std::uint64_t> users_; ///< by point: a cell, none or several
 };
 
 class OpenFaceFinder {
@@ -69,59 +140,45 @@ public:
 
     Result<OpenFaces> find() {
         add_hashes();
-        collect();
+        const std::vector<FoundFace> found = alone_of(collect());
         if (progress_.cancelled()) return Error{ErrorCode::cancelled, "looking for hanging points was cancelled"};
-        sums_.release();
-        keep_odd();
-        return shared_ones();
+        return shared_of(found);
     }
 
 private:
     void add_hashes() {
         std::ranges::fill(sums_, std::uint64_t{0});
         core::parallel_pieces(cells_.count(), cells_per_look, progress_, [&](std::size_t begin, std::size_t end) {
-            CellLoops loops(cells_, faces_);
+            FaceWalk walk(cells_, faces_);
             for (std::size_t cell = begin; cell < end; ++cell)
-                each_face(cell, loops, [&](std::size_t, const FaceHash& hash) {
+                walk.each_hash(cell, [&](std::size_t, const FaceHash& hash) {
                     std::atomic_ref(sums_[hash.lowest]).fetch_xor(hash.hash, std::memory_order_relaxed);
                 });
         });
     }
 
-    void collect() {
-        std::mutex mutex;
-        core::parallel_pieces(cells_.count(), cells_per_look, progress_, [&](std::size_t begin, std::size_t end) {
-            CellLoops loops(cells_, faces_);
-            std::vector<HashedFace> part;
-            for (std::size_t cell = begin; cell < end; ++cell) {
-                if (core::is_contoured(cells_.type(cell)) && !has_odd_corner(cell)) continue;
-                each_face(cell, loops, [&](std::size_t face, const FaceHash& hash) {
-                    if (sums_[hash.lowest] != 0) part.push_back({hash.hash, cell, static_cast<std::uint32_t>(face)});
-                });
+    /// Faces at points whose sums are not 0, by cells.
+    std::vector<FoundFace> collect() const {
+        std::vector<std::vector<FoundFace>> parts((cells_.count() + cells_per_look - 1) / cells_per_look);
+        core::parallel_pieces(parts.size(), 1, progress_, [&](std::size_t first, std::size_t last) {
+            FaceWalk walk(cells_, faces_);
+            for (std::size_t part = first; part < last; ++part) {
+                const std::size_t end = std::min((part + 1) * cells_per_look, cells_.count());
+                for (std::size_t cell = part * cells_per_look; cell < end; ++cell) {
+                    if (core::is_contoured(cells_.type(cell)) && !has_odd_corner(cell)) continue;
+                    walk.each_hash(cell, [&](std::size_t face, const FaceHash& hash) {
+                        if (sums_[hash.lowest] != 0)
+                            parts[part].push_back({hash.hash, {cell, static_cast<std::uint32_t>(face)}});
+                    });
+                }
             }
-            const std::lock_guard lock(mutex);
-            found_.insert(found_.end(), part.begin(), part.end());
         });
-        tbb::parallel_sort(found_.begin(), found_.end());
-    }
-
-    /// Calls use(number, hash) for each face of a cell. Those of a cell with eight corners or fewer need no list.
-    template <class Use>
-    void each_face(std::size_t cell, CellLoops& loops, const Use& use) const {
-        if (core::is_contoured(cells_.type(cell))) {
-            const core::WholeCell whole = cells_.whole(cell);
-            if (!core::has_repeated_corner(whole)) return each_whole_face(whole, use);
+        std::vector<FoundFace> out;
+        for (std::vector<FoundFace>& part : parts) {
+            out.insert(out.end(), part.begin(), part.end());
+            part = {};
         }
-        if (!loops.read(cell)) return;
-        for (std::size_t face = 0; face < loops.count(); ++face) use(face, hash_of(loops.loop(face)));
-    }
-
-    template <class Use>
-    static void each_whole_face(const core::WholeCell& cell, const Use& use) {
-        std::array<std::uint64_t, 8> hashes{};
-        for (std::size_t i = 0; i < core::corner_count(cell.kind); ++i) hashes[i] = scattered(cell.corners[i]);
-        std::size_t number = 0;
-        for (const core::CellFace& face : core::shape_of(cell.kind).faces()) use(number++, hash_of(cell, face, hashes));
+        return out;
     }
 
     /// Some face of it may have no neighbour.
@@ -132,43 +189,37 @@ private:
         return false;
     }
 
-    /// Faces of one hash are one face: a single one stays.
-    void keep_odd() {
-        std::size_t kept = 0;
-        for (std::size_t begin = 0, end = 0; begin < found_.size(); begin = end) {
+    /// Faces of one hash are one face: single ones stay, in their order.
+    static std::vector<FoundFace> alone_of(std::vector<FoundFace> found) {
+        core::Buffer<core::Keyed> items(found.size()), scratch(found.size());
+        for (std::size_t i = 0; i < found.size(); ++i) items[i] = {found[i].hash, i};
+        core::radix_sort({items.data(), items.size()}, {scratch.data(), scratch.size()});
+        std::vector<std::uint8_t> is_alone(found.size());
+        for (std::size_t begin = 0, end = 0; begin < items.size(); begin = end) {
             end = begin + 1;
-            while (end < found_.size() && found_[end].hash == found_[begin].hash) ++end;
-            if (end == begin + 1) found_[kept++] = found_[begin];
+            while (end < items.size() && items[end].key == items[begin].key) ++end;
+            is_alone[items[begin].number] = end == begin + 1;
         }
-        found_.resize(kept);
-        tbb::parallel_sort(found_.begin(), found_.end(), [](const HashedFace& a, const HashedFace& b) {
-            return std::pair(a.cell, a.face) < std::pair(b.cell, b.face);
-        });
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < found.size(); ++i)
+            if (is_alone[i] != 0) found[kept++] = found[i];
+        found.resize(kept);
+        return found;
     }
 
     /// A face that shares no point with those of other cells meets none. So grids where each cell has points of its own
     /// cost no more than to tell.
-    OpenFaces shared_ones() {
-        OpenFaces all;
-        CellLoops loops(cells_, faces_);
-        std::vector<std::pair<std::uint64_t, std::uint64_t>> users; // points and cells
-        for (std::size_t i = 0; i < found_.size(); ++i) {
-            if (i == 0 || found_[i].cell != found_[i - 1].cell) loops.read(found_[i].cell);
-            const auto loop = loops.loop(found_[i].face);
-            all.add({found_[i].cell, found_[i].face}, loop);
-            for (const std::uint64_t point : loop) users.emplace_back(point, found_[i].cell);
-        }
-        found_ = {};
-        tbb::parallel_sort(users.begin(), users.end());
-        std::vector<std::uint64_t> shared;
-        for (std::size_t i = 1; i < users.size(); ++i)
-            if (users[i].first == users[i - 1].first && users[i].second != users[i - 1].second &&
-                (shared.empty() || shared.back() != users[i].first))
-                shared.push_back(users[i].first);
-        const auto is_shared = [&](std::uint64_t point) { return std::ranges::binary_search(shared, point); };
+    OpenFaces shared_of(const std::vector<FoundFace>& found) {
+        SharedPoints shared(std::move(sums_));
+        core::parallel_pieces(found.size(), cells_per_look, progress_, [&](std::size_t begin, std::size_t end) {
+            FaceWalk walk(cells_, faces_);
+            for (std::size_t i = begin; i < end; ++i) shared.add(found[i].place.cell, walk.loop(found[i].place));
+        });
         OpenFaces out;
-        for (std::size_t i = 0; i < all.size(); ++i)
-            if (std::ranges::any_of(all.loop(i), is_shared)) out.add(all.place(i), all.loop(i));
+        out.reserve(found.size(), 4 * found.size());
+        FaceWalk walk(cells_, faces_);
+        for (const FoundFace& face : found)
+            if (const auto loop = walk.loop(face.place); shared.has_any(loop)) out.add(face.place, loop);
         return out;
     }
 
@@ -176,7 +227,6 @@ private:
     const core::FaceReader& faces_;
     const Progress& progress_;
     core::Buffer<std::uint64_t> sums_; ///< by lowest point
-    std::vector<HashedFace> found_;
 };
 
 } // namespace

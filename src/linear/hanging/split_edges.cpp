@@ -2,20 +2,14 @@
 #include "linear/hanging/split_edges.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <tuple>
-#include <utility>
 
 #include <tbb/parallel_sort.h>
 
 #include "linear/vector.hpp"
 
 namespace isotet::linear {
-
-namespace {
-
-auto ends_of(const PointOnEdge& at) { return std::pair(at.low, at.high); }
-
-} // namespace
 
 double SplitEdges::part_of(const PointOnEdge& at) const {
     const Point along = minus(points_[at.high], points_[at.low]);
@@ -29,36 +23,47 @@ bool SplitEdges::is_between(const PointOnEdge& at) const {
     return core::squared_distance(low, point) < length && core::squared_distance(point, high) < length;
 }
 
-void SplitEdges::add(std::vector<PointOnEdge> more) {
-    struct Placed {
-        PointOnEdge at;
-        double part;
-    };
-    std::erase_if(more, [&](const PointOnEdge& at) { return !is_between(at); });
-    all_.insert(all_.end(), more.begin(), more.end());
-    tbb::parallel_sort(all_.begin(), all_.end(), [](const PointOnEdge& a, const PointOnEdge& b) {
-        return std::tie(a.low, a.high, a.point) < std::tie(b.low, b.high, b.point);
-    });
-    const auto same = [](const PointOnEdge& a, const PointOnEdge& b) {
-        return std::tie(a.low, a.high, a.point) == std::tie(b.low, b.high, b.point);
-    };
-    all_.erase(std::unique(all_.begin(), all_.end(), same), all_.end());
-    if (!all_.empty()) is_low_.resize(all_.back().low + 1);
-    for (const PointOnEdge& at : all_) is_low_[at.low] = 1;
-    std::vector<Placed> placed;
-    placed.reserve(all_.size());
-    for (const PointOnEdge& at : all_) placed.push_back({at, part_of(at)});
-    tbb::parallel_sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) {
+void SplitEdges::add(const std::vector<PointOnEdge>& more) {
+    std::vector<Placed> added;
+    added.reserve(more.size());
+    for (const PointOnEdge& at : more)
+        if (is_between(at)) added.push_back({at, part_of(at)});
+    if (added.empty()) return;
+    const auto comes_before = [](const Placed& a, const Placed& b) {
         return std::tie(a.at.low, a.at.high, a.part, a.at.point) < std::tie(b.at.low, b.at.high, b.part, b.at.point);
-    });
-    for (std::size_t i = 0; i < placed.size(); ++i) all_[i] = placed[i].at;
+    };
+    tbb::parallel_sort(added.begin(), added.end(), comes_before);
+    std::vector<Placed> all;
+    all.reserve(all_.size() + added.size());
+    std::ranges::merge(all_, added, std::back_inserter(all), comes_before);
+    const auto is_same = [](const Placed& a, const Placed& b) {
+        return std::tie(a.at.low, a.at.high, a.at.point) == std::tie(b.at.low, b.at.high, b.at.point);
+    };
+    all.erase(std::unique(all.begin(), all.end(), is_same), all.end());
+    all_ = std::move(all);
+    note_first();
 }
 
-void SplitEdges::append_between(std::uint64_t from, std::uint64_t to, std::vector<std::uint64_t>& out) const {
-    const std::pair ends = std::minmax(from, to);
-    if (ends.first >= is_low_.size() || is_low_[ends.first] == 0) return;
-    const auto [begin, end] = std::ranges::equal_range(all_, std::pair(ends.first, ends.second), {}, ends_of);
-    if (begin == end) return;
+void SplitEdges::note_first() {
+    first_.assign(all_.back().at.low + 2, 0);
+    std::size_t next = 0;
+    for (std::size_t low = 0; low + 1 < first_.size(); ++low) {
+        first_[low] = next;
+        while (next < all_.size() && all_[next].at.low == low) ++next;
+    }
+    first_.back() = next;
+}
+
+std::span<const SplitEdges::Placed> SplitEdges::known(std::uint64_t from, std::uint64_t to) const {
+    const std::uint64_t low = std::min(from, to), high = std::max(from, to);
+    const auto at_low = std::span(all_).subspan(first_[low], first_[low + 1] - first_[low]);
+    const auto some = std::ranges::equal_range(at_low, high, {}, [](const Placed& placed) { return placed.at.high; });
+    return {some.begin(), some.end()};
+}
+
+void SplitEdges::append_known(std::uint64_t from, std::uint64_t to, std::vector<std::uint64_t>& out) const {
+    const std::span<const Placed> some = known(from, to);
+    if (some.empty()) return;
     std::uint64_t before = from;
     const auto append = [&](std::uint64_t point) {
         append_between(before, point, out);
@@ -66,17 +71,10 @@ void SplitEdges::append_between(std::uint64_t from, std::uint64_t to, std::vecto
         before = point;
     };
     if (from < to)
-        for (auto at = begin; at != end; ++at) append(at->point);
+        for (const Placed& placed : some) append(placed.at.point);
     else
-        for (auto at = end; at != begin;) append((--at)->point);
+        for (std::size_t i = some.size(); i > 0; --i) append(some[i - 1].at.point);
     append_between(before, to, out);
-}
-
-void SplitEdges::expand(std::span<const std::uint64_t> loop, std::vector<std::uint64_t>& out) const {
-    for (std::size_t i = 0; i < loop.size(); ++i) {
-        out.push_back(loop[i]);
-        append_between(loop[i], loop[(i + 1) % loop.size()], out);
-    }
 }
 
 } // namespace isotet::linear

@@ -1,0 +1,57 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Shapes of open faces: which may cover a larger one, by their places.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "grid/cells.hpp"
+#include "grid/orientation.hpp"
+#include "linear/hanging/open_faces.hpp"
+#include "linear/vector.hpp"
+
+namespace isotet::linear {
+
+constexpr double beside_face = 0.25;    // of a face's extent: one that curved shapes put beside its place
+constexpr double largest_share = 0.999; // of a face's area: one that covers it with others
+
+/// Twice a face's area along its normal, by its loop (Newell).
+Point normal_of(std::span<const std::uint64_t> loop, const core::PointReader& points);
+
+class FaceShapes {
+public:
+    /// All borrowed.
+    FaceShapes(const OpenFaces& faces, const core::CellReader& cells, const core::PointReader& points);
+
+    const Point& middle(std::size_t face) const { return shapes_[face].middle; }
+    /// A loop that is clockwise seen from outside of its cell.
+    bool is_turned(std::size_t face) const { return shapes_[face].is_turned; }
+
+    /// A smaller face of another cell that faces the other way, with its middle over a face.
+    bool is_over(std::size_t face, std::size_t other) const {
+        return twice_areas_[other] < largest_share * twice_areas_[face] && looks_at(face, other);
+    }
+
+    /// Of the middle of a face from one that it is over, in extents of that.
+    double distance(std::size_t face, std::size_t other) const;
+
+private:
+    struct Shape {
+        Point middle{}, normal{}; ///< the normal outward
+        double extent = 0;
+        bool is_turned = false, is_flat = false; ///< flat: all corners in one plane
+    };
+
+    Shape shape_of(std::size_t face, const core::CellReader& cells) const;
+    bool is_flat(const Shape& shape, std::span<const std::uint64_t> loop, double twice_area) const;
+    bool looks_at(std::size_t face, std::size_t other) const;
+
+    const OpenFaces& faces_;
+    const core::PointReader& points_;
+    std::vector<Shape> shapes_;
+    std::vector<double> twice_areas_; ///< looked at more than all else
+};
+
+} // namespace isotet::linear
