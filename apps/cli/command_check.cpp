@@ -43,7 +43,8 @@ std::string check_table(const CheckedFiles& checked, const CheckJob& job) {
     count("boundary edges", report.boundary_edges);
     count("inconsistent edges", report.inconsistent_edges);
     if (job.closed || !job.grid.file.empty()) count("edges not allowed", report.blamed_edges, "of both kinds above");
-    if (report.hanging_edges > 0) count("edges at hanging points", report.hanging_edges, "the grid's doing");
+    if (report.hanging_edges > 0)
+        count("edges at hanging points", report.hanging_edges, report.sound ? "the grid's doing" : "of these");
     count("equal-corner triangles", report.equal_corner_triangles);
     count("repeated triangles", report.duplicate_triangles,
           report.duplicate_triangles == report.blamed_duplicates

@@ -25,6 +25,8 @@ struct HangingReport {
     std::uint64_t levels = 0;     ///< n: an edge meets up to 2^n smaller ones
     std::uint64_t cells = 0;      ///< that list hanging points now
     std::uint64_t open_faces = 0; ///< on smaller ones that do not cover them: the surface stays open there
+    /// That hang in a grid with cells above degree 1, which cannot list them: the surface stays open there.
+    std::uint64_t curved_points = 0;
 
     /// Sentences for the user.
     ISOTET_API std::vector<std::string> notes() const;
@@ -59,7 +61,7 @@ struct ISOTET_API ClosedGrid {
 /// count. Faces may be warped, cells of any kinds, and several levels meet in one face. Points that coincide must be
 /// one (merge_points()).
 ///
-/// Grids with curved cells are returned as they are.
+/// Grids with curved cells are returned as they are; only curved_points of the report is set.
 ///
 /// Guarantees   the same bytes for any thread count; a face that has a neighbour of its own is never looked at, but for
 ///              hashes that are equal by chance: 2^-64 a face

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include <isotet/hanging_points.hpp>
 #include <isotet/jobs/output_names.hpp>
 #include <isotet/linear_cells.hpp>
 #include <isotet/read.hpp>
@@ -113,6 +114,25 @@ Result<SurfaceFile> read_surfaces(const CheckJob& job, Caller& caller) {
     return file;
 }
 
+/// Where hanging points are to be closed, what is open at them is no surface to be called sound: at faces that are not
+/// covered, and at curved cells. Where these are refined, what is open at their hanging points cannot be told from what
+/// is open at the boundary.
+/// `on_curved_cells`   there are such points
+void blame_hanging_edges(SurfaceReport& report, bool on_curved_cells) {
+    const std::uint64_t open = report.boundary_edges + report.inconsistent_edges;
+    const std::uint64_t blamed = on_curved_cells ? open : std::min(open, report.blamed_edges + report.hanging_edges);
+    if (blamed == report.blamed_edges) return;
+    report.blamed_edges = blamed;
+    report.sound = report.clean = false;
+}
+
+Result<bool> has_hanging_points_on_curved_cells(const Grid& grid, const Run& run) {
+    if (!has_curved_cells(grid.cells)) return false;
+    const Result<ClosedGrid> found = close_hanging_points(grid, run);
+    if (!found) return found.error();
+    return found->report.curved_points > 0;
+}
+
 } // namespace
 
 Result<CheckedFiles> check_files(const CheckJob& job, Caller& caller) {
@@ -124,7 +144,7 @@ Result<CheckedFiles> check_files(const CheckJob& job, Caller& caller) {
     options.closed = job.closed;
     options.weld = file->format == "stl" || !job.more.empty(); // without vertex numbers that say what is the same
     std::optional<Origin> origin;
-    bool curved = false;
+    bool curved = false, hangs = false;
     if (!job.grid.file.empty()) {
         if (file->surface.edge_ends.empty() && file->surface.vertex_count() > 0)
             return refusal("{} has no point array edge_ends, but `grid` needs it: isotet extract `edge_ends` writes it "
@@ -133,6 +153,9 @@ Result<CheckedFiles> check_files(const CheckJob& job, Caller& caller) {
         Result<Origin> read = read_origin(job, caller);
         if (!read) return read.error();
         curved = has_curved_cells(read->grid.cells);
+        const Result<bool> found = has_hanging_points_on_curved_cells(read->grid, caller.run());
+        if (!found) return found.error();
+        hangs = *found;
         read = refined_origin(*std::move(read), job, *file, caller.run());
         if (!read) return read.error();
         origin = *std::move(read);
@@ -142,6 +165,7 @@ Result<CheckedFiles> check_files(const CheckJob& job, Caller& caller) {
     }
     Result<SurfaceReport> report = check(file->surface, options, caller.run());
     if (!report) return with_advice(report.error(), job, curved);
+    if (job.grid.hanging_points != HangingChoice::leave) blame_hanging_edges(*report, hangs);
     const bool passed = report->sound && (report->clean || !job.strict);
     return CheckedFiles{*std::move(report), file->format, passed};
 }

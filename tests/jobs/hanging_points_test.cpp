@@ -10,6 +10,7 @@
 #include <isotet/write.hpp>
 
 #include "jobs/listener.hpp"
+#include "support/quadratic_grid.hpp"
 #include "support/small_grid.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -105,6 +106,28 @@ TEST(HangingPointJobs, ChecksTakeTheGridAsExtractionDid) {
         const CheckedFiles found = check_files(check, quiet).value();
         EXPECT_TRUE(found.passed);
         EXPECT_EQ(found.report.hanging_edges > 0, choice == HangingChoice::leave);
+    }
+}
+
+TEST(HangingPointJobs, NeverCallSurfacesSoundThatCurvedCellsLeaveOpen) {
+    const test::TemporaryFolder folder;
+    const std::string file = folder.file("quadratic.vtu"), out = folder.file("surface.vtp");
+    ASSERT_TRUE(write_grid(test::quadratic_hexahedra(test::made_grid("octree-random", 2, {})), file));
+    for (const HangingChoice choice : {HangingChoice::close, HangingChoice::leave}) {
+        ExtractJob job = job_for(file, out, choice);
+        job.field.name = "square";
+        job.edge_ends = true;
+        test::Listener heard;
+        ASSERT_TRUE(extract_files(job, heard));
+        EXPECT_EQ(has_note(heard, "the surface is open there"), choice == HangingChoice::close);
+        CheckJob check;
+        check.surface = out;
+        check.grid = job.grid;
+        check.field = job.field;
+        const CheckedFiles found = check_files(check, heard).value();
+        EXPECT_GT(found.report.boundary_edges, 0u);
+        EXPECT_EQ(found.report.sound, choice == HangingChoice::leave);
+        EXPECT_EQ(found.passed, choice == HangingChoice::leave);
     }
 }
 

@@ -20,6 +20,7 @@
 #include <isotet/solid.hpp>
 
 #include "linear/refined_cells.hpp"
+#include "support/quadratic_grid.hpp"
 #include "support/small_grid.hpp"
 
 namespace isotet::test {
@@ -313,6 +314,20 @@ TEST(CloseHangingPoints, ConvergesToTheSphereAtSecondOrder) {
     }
     EXPECT_GT(errors[0] / errors[1], 2.8);
     EXPECT_GT(errors[1] / errors[2], 2.8);
+}
+
+TEST(CloseHangingPoints, CountsThoseOfCurvedCellsAndLeavesThemOpen) {
+    const Grid grid = quadratic_hexahedra(boxes(coarse_beside(2)));
+    const ClosedGrid found = closed(grid);
+    EXPECT_EQ(found.report.curved_points, 5u);
+    EXPECT_EQ(found.report.points + found.report.cells, 0u);
+    EXPECT_EQ(found.grid.cells.connectivity.data(), grid.cells.connectivity.data());
+    ASSERT_EQ(found.report.notes().size(), 1u);
+    EXPECT_NE(found.report.notes()[0].find("above degree 1"), std::string::npos);
+    EXPECT_TRUE(may_have_hanging_points(grid).value());
+    const Grid even = quadratic_hexahedra(boxes({{{0, 0, 0}, 1, {2, 2, 2}}}));
+    EXPECT_EQ(closed(even).report.curved_points, 0u);
+    EXPECT_FALSE(may_have_hanging_points(even).value());
 }
 
 TEST(CloseHangingPoints, GivesTheSameBytesForAnyThreadCount) {

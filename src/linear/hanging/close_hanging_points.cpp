@@ -13,6 +13,7 @@
 #include "base/parallel.hpp"
 #include "grid/cell_faces.hpp"
 #include "linear/derived.hpp"
+#include "linear/hanging/corner_cells.hpp"
 #include "linear/hanging/covers.hpp"
 #include "linear/hanging/hanging_rows.hpp"
 #include "linear/hanging/listed_cells.hpp"
@@ -44,9 +45,32 @@ Result<OpenGrid> open_faces_of(const Grid& grid, const Progress& progress) {
     return OpenGrid{*cells, *faces, *std::move(open)};
 }
 
-Result<ClosedGrid> close_hanging(const Grid& grid, const Progress& progress) {
+/// Errors of cells that are curved are those who refine them to tell: nothing is open of a grid that has some.
+Result<OpenGrid> open_faces_of_corners(const Grid& corners, const Progress& progress) {
+    auto all = open_faces_of(corners, progress);
+    if (all || all.error().code != ErrorCode::invalid_data) return all;
+    const Grid nothing{corners.points, {}, {}, {}};
+    return open_faces_of(nothing, progress);
+}
+
+Result<ClosedGrid> find_on_curved_cells(const Grid& grid, const Progress& progress) {
     ClosedGrid out{grid, {}, {}, {}};
-    if (has_curved_cells(grid.cells)) return out;
+    const Grid corners = corner_cells(grid);
+    const auto all = open_faces_of_corners(corners, progress);
+    if (!all) return all.error();
+    const core::PointReader points(corners.points);
+    const auto covers = find_covers(all->open, all->cells, points, progress);
+    if (!covers) return covers.error();
+    ClosedGrid found{corners, {}, {}, {}};
+    if (!covers->whole.empty()) describe_hanging(all->open, *covers, points, true, found);
+    out.report.curved_points = found.report.points;
+    progress("check", 1);
+    return out;
+}
+
+Result<ClosedGrid> close_hanging(const Grid& grid, const Progress& progress) {
+    if (has_curved_cells(grid.cells)) return find_on_curved_cells(grid, progress);
+    ClosedGrid out{grid, {}, {}, {}};
     const auto all = open_faces_of(grid, progress);
     if (!all) return all.error();
     progress("check", 0.6);
@@ -126,6 +150,10 @@ std::vector<std::string> HangingReport::notes() const {
         out.push_back(fmt::format("{} points hang on faces or edges of larger cells: {} cells list them as polyhedra, "
                                   "so that the surface is closed there (docs/cells.md)",
                                   points, cells));
+    if (curved_points > 0)
+        out.push_back(fmt::format("{} points hang on faces or edges of larger cells, in a grid with cells above degree 1, "
+                                  "which cannot list them: the surface is open there (docs/cells.md)",
+                                  curved_points));
     if (near_faces > 0)
         out.push_back(fmt::format("hanging points of {} of {} faces are beside these, by up to {:.3g}: the surface "
                                   "follows the smaller cells",
@@ -138,8 +166,8 @@ std::vector<std::string> HangingReport::notes() const {
 
 Result<bool> may_have_hanging_points(const Grid& grid, const Run& run) {
     return core::carry_out("looking for hanging points", run, [&](const Progress& progress) -> Result<bool> {
-        if (has_curved_cells(grid.cells)) return false;
-        const auto all = linear::open_faces_of(grid, progress);
+        const Grid some = has_curved_cells(grid.cells) ? linear::corner_cells(grid) : grid;
+        const auto all = linear::open_faces_of(some, progress);
         if (!all) return all.error();
         return linear::has_smaller_faces(all->open, all->cells, core::PointReader(grid.points));
     });
