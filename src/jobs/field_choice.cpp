@@ -134,7 +134,7 @@ Result<PointField> find_chosen(const Grid& grid, const std::string& name, const 
         return refusal("`centre` own takes a cell field, but '{}' is one of points", name);
     if (choice.own_centres && !has_cells_to_linearize(grid.cells))
         caller.note("`centre` own changes nothing: no cell is a polyhedron");
-    caller.note(field->note);
+    if (!field->note.empty()) caller.note(field->note + "; `cell_field` takes the other");
     return field;
 }
 
