@@ -92,7 +92,10 @@ TEST(GoldenFiles, AreAllThatDataHolds) {
                                        "xdmf/tet4_vertex.h5",
                                        "pvtu/monodomain/monodomain3d_0.vtu",
                                        "pvtu/monodomain/monodomain3d_1.vtu",
+                                       "vtk/mfem_levels_tet.vtk",
                                        "vtu/dealii_refined_ball.vtu",
+                                       "vtu/mfem_levels_hex.vtu",
+                                       "vtu/mfem_levels_wedge.vtu",
                                        "vtu/quadratic_tets_96.vtu"};
     std::set<std::string> listed;
     for (const GoldenFile& file : golden_files) listed.insert(file.path);
