@@ -111,7 +111,7 @@ std::string grid_table(const GridSummary& found, const std::string& path) {
                                       "surface may be open there; --split-cells"},
           {found.hanging_points, "hanging points, in a face or edge of a larger cell"},
           {found.hanging.cells, "cells that list them for extraction"},
-          {found.hanging.curved_points, "of these in a grid with cells above degree 1: the surface is open there"},
+          {found.hanging.curved_points, "of these where cells are above degree 1: the surface is open there"},
           {found.hanging.open_faces, "faces on smaller ones that do not cover them: the surface may be open there"}}) {
         if (count > 0) table.row({"", fmt::format("{} {}", grouped(count), what)});
     }

@@ -113,9 +113,9 @@ point array edge_ends, which isotet extract --edge-ends writes into .vtp and .vt
 a face with two tets on one side. A tet is valid when the field has a value (not NaN) at its four points. Where
 quadratic cells were refined for the surface, their points are derived again: the file says how they were refined
 (field data isotet:refinement), unless -i and the tolerances do, as for isotet extract: all isovalues of that call.
-Edges at hanging points, where the face of a larger cell meets smaller ones, fail; where curved cells
-have hanging points, which are not closed there, every open edge does. With --hanging-points leave they are excused, and the
-verdict counts them. The grid is closed as for isotet extract: give the same --hanging-points.
+Edges at hanging points, where the face of a larger cell meets smaller ones, fail; where curved cells have hanging
+points, which are not closed there, every open edge does. With --hanging-points leave they are excused, and the verdict
+counts them. The grid is closed as for isotet extract: give the same --hanging-points.
 
 With --strict it also fails for: triangles of zero area, edges with more than two triangles, double sheets (two
 triangles on the same corners in opposite directions), touching vertices (triangles that are not one fan), coincident

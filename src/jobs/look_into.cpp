@@ -96,8 +96,8 @@ Result<GridSummary> look_into(const InfoJob& job, Caller& caller) {
         const Result<ClosedGrid> closed = close_hanging_points(*grid, caller.run());
         if (!closed) return closed.error();
         summary.hanging = closed->report;
-        // Of strongly warped faces, and of curved cells, more are found where they are to be closed.
-        summary.hanging_points = std::max({*hanging, closed->report.points, closed->report.curved_points});
+        const HangingReport& found = closed->report; // has more of warped faces, of curved cells the corners
+        summary.hanging_points = found.curved_points > 0 ? found.curved_points : std::max(*hanging, found.points);
     }
     Result<std::vector<FieldSummary>> fields = summarize(*grid, caller.run());
     if (!fields) return fields.error();
