@@ -20,7 +20,7 @@ link() {
         -Wl,--whole-archive "$lib/lib$name.a" -Wl,--no-whole-archive -L"$lib" "$@"
     local foreign
     foreign=$(nm -DC --defined-only "$lib/lib$name.so" | cut -d' ' -f3- |
-        grep -vE 'isotet::|(^|[ <])(std|__gnu_cxx)::' || true)
+        grep -vE 'isotet::|^isotet_[a-z_]*$|(^|[ <])(std|__gnu_cxx)::' || true)
     if [[ -n $foreign ]]; then
         echo "lib$name.so shows what is not isotet's:"
         head <<<"$foreign"
@@ -38,4 +38,11 @@ for component in isotet vulkan render io; do
     "$cxx" "$consumer/$component.cpp" "${flags[@]}" -Wl,-rpath,"$lib" -o "$folder/$component"
     "$folder/$component"
 done
+
+# The C functions: from C, and from Python's ctypes without a header.
+cc -std=c99 -Wall -Wextra -Wpedantic -Werror "$(dirname "$0")/c_face/main.c" "${flags[@]}" -lm -Wl,-rpath,"$lib" \
+    -o "$folder/c_face"
+(cd "$folder" && ./c_face)
+(cd "$folder" && python3 -B "$(realpath "$(dirname "$0")")/c_face/face.py" "$lib/libisotet_io.so")
+
 echo "$(nm -DC --defined-only "$lib/libisotet.so" | wc -l) names of libisotet.so"
