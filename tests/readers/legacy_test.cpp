@@ -4,6 +4,7 @@
 #include <initializer_list>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -237,6 +238,31 @@ TEST_P(ReadLegacyForm, KnowsTheTypesOfVtkOfAnyAge) {
                       .type,
                   ScalarType::uint64)
             << type;
+}
+
+/// NGSolve writes names as they are.
+TEST_P(ReadLegacyForm, TakesBlanksInNames) {
+    LegacyText file(GetParam());
+    file.start("3.0").tet().text("POINT_DATA 9\nSCALARS u float 1\nLOOKUP_TABLE default\n").nine(1);
+    file.text("SCALARS grad  u float 3\nLOOKUP_TABLE default\n")
+        .nine(2, 3)
+        .text("VECTORS two words float\n")
+        .nine(3, 3);
+    file.text("FIELD a 2\n").text("T in K 1 9 float\n").nine(10).sound_array("last");
+    file.text("CELL_DATA 1\nSCALARS of a cell double\nLOOKUP_TABLE default\n").numbers<double>({5});
+    const io::Loaded loaded = load(file.str());
+    const Grid& grid = grid_of(loaded);
+    ASSERT_EQ(grid.point_fields.size(), 5U);
+    const std::pair<const char*, std::size_t> expected[] = {
+        {"u", 1}, {"grad u", 3}, {"two words", 3}, {"T in K", 1}, {"last", 1}};
+    for (std::size_t i = 0; i < 5; ++i) {
+        EXPECT_EQ(grid.point_fields[i].name, expected[i].first);
+        EXPECT_EQ(grid.point_fields[i].values.components(), expected[i].second);
+    }
+    EXPECT_EQ(grid.point_fields[1].values.at(0), 2);
+    ASSERT_EQ(grid.cell_fields.size(), 1U);
+    EXPECT_EQ(grid.cell_fields[0].name, "of a cell");
+    EXPECT_TRUE(loaded.info.left_out.empty());
 }
 
 TEST_P(ReadLegacyForm, LeavesOutAnArrayOfUnknownTypeAlone) {

@@ -35,6 +35,7 @@ constexpr std::array<std::string_view, 14> data_sections{"point_data",
 constexpr std::array<std::string_view, 15> other_sections{
     "tensors6", "points",        "cells",         "cell_types", "vertices",     "lines",   "polygons",     "dimensions",
     "origin",   "x_coordinates", "y_coordinates", "spacing",    "aspect_ratio", "dataset", "z_coordinates"};
+constexpr std::size_t most_words = 32;  ///< of a line that names an array
 constexpr std::size_t max_faults = 100; ///< each may take a search through the rest of the file
 
 /// %20 and so on, as VTK's writer makes them, back to bytes; of a broken one VTK takes the first digit.
@@ -67,6 +68,13 @@ bool is_identifier(std::string_view word) {
 }
 
 bool is_type(const std::string& word) { return legacy_type(lower(word)).has_value(); }
+
+/// Of a FIELD: the name, components, tuples and the type. A name of several words must be followed by a type that is known.
+bool is_line_of_array(std::span<const std::string> words) {
+    const std::size_t count = words.size();
+    return count >= 3 && is_count(words[count - 3]) && is_count(words[count - 2]) &&
+           (count == 4 ? is_identifier(words[count - 1]) : is_type(words[count - 1]));
+}
 
 std::string kind_of(Association association) {
     return association == Association::point ? "point field" : "cell field";
@@ -145,22 +153,34 @@ std::vector<std::string> LegacyData::words_of_line(std::size_t most) {
     return words;
 }
 
-/// VTK writes an empty name as nothing: then the line goes on with the type.
-std::string LegacyData::read_name() {
-    const auto words = words_of_line(3);
-    const bool unnamed = (words.size() == 1 && is_type(words[0])) ||
-                         (words.size() == 2 && is_type(words[0]) && !is_type(words[1]) && is_count(words[1]));
-    return unnamed ? std::string() : scanner_.word();
+/// The words of this line before the last ones, which are `behind` the name. VTK writes an empty name as nothing, and a blank
+/// in a name as %20, but others leave it as it is.
+std::string LegacyData::read_name(std::size_t behind) {
+    const auto words = words_of_line(most_words);
+    if (behind > words.size()) return scanner_.word();
+    std::string name;
+    for (std::size_t i = 0; i + behind < words.size(); ++i) name += (i > 0 ? " " : "") + scanner_.word();
+    return name;
+}
+
+/// How many words of this line are behind a name: a type, and of SCALARS perhaps a number of components. Without either the
+/// name is one word.
+std::size_t LegacyData::words_behind_name() {
+    const auto words = words_of_line(most_words);
+    const std::size_t count = words.size();
+    if (count > 0 && is_type(words[count - 1])) return 1;
+    if (count > 1 && is_count(words[count - 1]) && is_type(words[count - 2])) return 2;
+    return count > 0 ? count - 1 : 1;
 }
 
 Result<void> LegacyData::read_named(std::uint64_t components, bool normals) {
-    Header header{read_name(), {}, components, tuples_, normals};
+    Header header{read_name(words_behind_name()), {}, components, tuples_, normals};
     header.type = lower(scanner_.word());
     return read_array(header);
 }
 
 Result<void> LegacyData::read_scalars() {
-    Header header{read_name(), {}, 1, tuples_};
+    Header header{read_name(words_behind_name()), {}, 1, tuples_};
     scalars_.emplace_back(data_ == Data::points ? Association::point : Association::cell, header.name);
     header.type = lower(scanner_.word());
     if (!scanner_.at_line_end() && !scanner_.number_of_line(header.components))
@@ -234,11 +254,10 @@ Result<void> LegacyData::read_field() {
 /// False where something else stood, which was stepped over.
 Result<bool> LegacyData::read_array_of_field(std::uint64_t left) {
     const std::size_t start = scanner_.position();
-    const auto words = words_of_line(3);
-    const bool unnamed = words.size() == 3 && is_count(words[0]) && is_count(words[1]) && is_type(words[2]);
     Header header;
     header.left_in_field = left;
-    if (!unnamed) header.name = scanner_.word();
+    const auto words = words_of_line(most_words);
+    header.name = read_name(is_line_of_array(words) ? 3 : words.empty() ? 1 : words.size() - 1);
     if (header.name == "NULL_ARRAY") return true;
     auto counts = [&]() -> Result<void> {
         const auto components = values_.read_count("the number of components");
@@ -385,8 +404,8 @@ bool LegacyData::begins_section() {
 
 /// True where this line is what stands before the values of an array of a FIELD.
 bool LegacyData::begins_array() {
-    const auto words = words_of_line(4);
-    return words.size() == 4 && is_count(words[1]) && is_count(words[2]) && is_identifier(words[3]);
+    const auto words = words_of_line(most_words);
+    return words.size() > 3 && is_line_of_array(words);
 }
 
 /// True where the file ends here, or goes on with a section, or an array where one is still to come.
@@ -471,8 +490,7 @@ void LegacyData::finish() {
         const std::pair one(found.association, name);
         const bool marked = std::ranges::find(scalars_, one) != scalars_.end() && // VTK writes one so, others as FIELD
                             std::ranges::count(scalars_, one.first, &std::pair<Association, std::string>::first) == 1;
-        announce(file_.info,
-                 {name, found.association, found.type, static_cast<std::size_t>(found.components), marked});
+        announce(file_.info, {name, found.association, found.type, static_cast<std::size_t>(found.components), marked});
         if (found.wanted) attributes.push_back(std::move(found.attribute));
     }
     found_.clear();

@@ -74,7 +74,8 @@ private:
     void skip_information();
 
     std::vector<std::string> words_of_line(std::size_t most);
-    std::string read_name();
+    std::string read_name(std::size_t behind);
+    std::size_t words_behind_name();
     bool begins_section();
     bool begins_array();
     bool goes_on(std::size_t position, std::uint64_t left_in_field);
