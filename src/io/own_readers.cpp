@@ -25,6 +25,7 @@
 #include "io/packed/read_isotet.hpp"
 #include "io/reader.hpp"
 #include "io/tetgen/read_tetgen.hpp"
+#include "io/ucd/read_ucd.hpp"
 #include "io/vtk_legacy/read_legacy_vtk.hpp"
 #include "io/vtk_xml/read_vtk_xml.hpp"
 
@@ -235,6 +236,21 @@ Result<ReadResult> read_frd_file(const std::string& path, const ReadOptions& opt
                                  [&](std::string_view text) { return parse_frd(text, options, progress); });
 }
 
+/// Abaqus uses the first ending, too.
+int recognizes_ucd(std::string_view head, std::string_view extension) {
+    return (extension == ".inp" || extension == ".avs") && looks_like_ucd(head) ? 2 : 0;
+}
+
+Result<FileInfo> inspect_ucd_file(const std::string& path, const ReadOptions&, const Progress& progress) {
+    return with_file<FileInfo>(path, progress, WholeFile::all,
+                               [&](std::string_view text) { return inspect_ucd(text, progress); });
+}
+
+Result<ReadResult> read_ucd_file(const std::string& path, const ReadOptions& options, const Progress& progress) {
+    return with_file<ReadResult>(path, progress, WholeFile::all,
+                                 [&](std::string_view text) { return parse_ucd(text, options, progress); });
+}
+
 Format grid_format(const char* name, const char* title, std::vector<std::string> extensions) {
     Format format{name, title, std::move(extensions)};
     format.reads_grid = true;
@@ -262,6 +278,8 @@ std::span<const GridReader> own_readers() {
                                              inspect_gocad_file, read_gocad_file},
                                   GridReader{grid_format("frd", "CalculiX results", {".frd"}), recognizes_frd,
                                              inspect_frd_file, read_frd_file},
+                                  GridReader{grid_format("ucd", "AVS UCD", {".inp", ".avs"}), recognizes_ucd,
+                                             inspect_ucd_file, read_ucd_file},
                               });
         return all;
     }();

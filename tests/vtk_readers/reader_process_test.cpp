@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // What happens to the reader process must never happen to its parent.
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <fstream>
@@ -12,6 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <isotet/read.hpp>
@@ -24,10 +26,22 @@ namespace {
 
 class ReaderProcess : public testing::Test {
 protected:
-    /// Two tetrahedra, in a format that VTK reads.
-    ReaderProcess() {
-        folder_.write("sample.inp", "5 2 0 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n"
-                                    "1 1 tet 1 2 3 4\n2 1 tet 2 3 4 5\n");
+    /// Two tetrahedra, in a format that the reader program reads.
+    ReaderProcess() { folder_.write("sample.xdmf", xdmf(5, "0 0 0 1 0 0 0 1 0 0 0 1 1 1 1", "0 1 2 3 1 2 3 4")); }
+
+    static std::string xdmf(int points, std::string_view coordinates, std::string_view corners) {
+        const auto tets = std::ranges::count(corners, ' ') / 4 + 1;
+        return fmt::format(R"(<Xdmf Version="3.0"><Domain><Grid Name="tets">
+<Topology TopologyType="Tetrahedron" NumberOfElements="{0}"><DataItem Dimensions="{0} 4" NumberType="Int">{1}</DataItem>
+</Topology><Geometry GeometryType="XYZ"><DataItem Dimensions="{2} 3">{3}</DataItem></Geometry>
+</Grid></Domain></Xdmf>)",
+                           tets, corners, points, coordinates);
+    }
+    /// Points in a row, and one tetrahedron.
+    static std::string many_points(int points) {
+        std::string coordinates;
+        for (int i = 1; i <= points; ++i) coordinates += "0 0 " + std::to_string(i) + "\n";
+        return xdmf(points, coordinates, "0 1 2 3");
     }
 
     /// Reads the sample through a script in place of the reader program.
@@ -35,7 +49,7 @@ protected:
         ReadOptions options;
         options.reader_program = folder_.write_script("reader", commands);
         options.time_limit = time_limit_;
-        const auto result = read(folder_.file("sample.inp"), options, {.progress = progress});
+        const auto result = read(folder_.file("sample.xdmf"), options, {.progress = progress});
         return result ? Error{ErrorCode::internal, "no error"} : result.error();
     }
     static void expect_words(const Error& error, std::initializer_list<std::string_view> words) {
@@ -53,13 +67,13 @@ protected:
 TEST_F(ReaderProcess, KilledBySignalIsAnErrorThatNamesReaderAndSignal) {
     const Error error = error_with("echo 'last words' >&2; kill -SEGV $$");
     EXPECT_EQ(error.code, ErrorCode::invalid_data);
-    expect_words(error, {"sample.inp", "reader of ucd", "signal 11", "Segmentation fault", "last words"});
+    expect_words(error, {"sample.xdmf", "reader of xdmf", "signal 11", "Segmentation fault", "last words"});
 }
 
 TEST_F(ReaderProcess, EndingByItselfIsAnErrorThatNamesTheStatus) {
     const Error error = error_with("echo 'bad zone'; exit 255");
     EXPECT_EQ(error.code, ErrorCode::invalid_data);
-    expect_words(error, {"reader of ucd", "status 255", "bad zone"});
+    expect_words(error, {"reader of xdmf", "status 255", "bad zone"});
 }
 
 TEST_F(ReaderProcess, EndingWithoutAReplyIsAnError) { EXPECT_EQ(error_with("exit 0").code, ErrorCode::internal); }
@@ -89,7 +103,7 @@ protected:
         std::istringstream lines(content_of(folder_.file("starts")));
         return {std::istream_iterator<int>(lines), {}};
     }
-    std::string sample() const { return folder_.file("sample.inp"); }
+    std::string sample() const { return folder_.file("sample.xdmf"); }
     ReadOptions options_;
 };
 
@@ -102,16 +116,16 @@ TEST_F(ReaderSeries, IsAnsweredByOneProcess) {
 }
 
 TEST_F(ReaderSeries, OfAnotherFolderTakesAnotherProcess) {
-    folder_.write("other/sample.inp", content_of(sample()));
+    folder_.write("other/sample.xdmf", content_of(sample()));
     expect_two_cells(read(sample(), options_));
-    expect_two_cells(read(folder_.file("other/sample.inp"), options_));
+    expect_two_cells(read(folder_.file("other/sample.xdmf"), options_));
     expect_two_cells(read(sample(), options_));
     EXPECT_EQ(starts().size(), 2U);
 }
 
 TEST_F(ReaderSeries, GoesOnWithANewProcessAfterABrokenFile) {
     expect_two_cells(read(sample(), options_));
-    EXPECT_FALSE(read(folder_.write("broken.inp", content_of(sample()).substr(0, 40)), options_));
+    EXPECT_FALSE(read(folder_.write("broken.xdmf", content_of(sample()).substr(0, 40)), options_));
     expect_two_cells(read(sample(), options_));
     EXPECT_EQ(starts().size(), 2U);
 }
@@ -156,15 +170,13 @@ TEST_F(ReaderSeries, EndsWithItsParent) {
 
 TEST_F(ReaderProcess, AGridLargerThanTheLimitOnFilesIsNotTheFilesFault) {
     GTEST_FLAG_SET(death_test_style, "threadsafe");
-    std::string content = "20000 1 0 0 0\n";
-    for (int i = 1; i <= 20000; ++i) content += std::to_string(i) + " 0 0 " + std::to_string(i) + "\n";
-    folder_.write("large.inp", content + "1 1 tet 1 2 3 4\n");
+    folder_.write("large.xdmf", many_points(20000));
     ASSERT_EXIT(
         {
             rlimit limit{};
             limit.rlim_cur = limit.rlim_max = 100000;
             ::setrlimit(RLIMIT_FSIZE, &limit);
-            const auto result = read(folder_.file("large.inp"));
+            const auto result = read(folder_.file("large.xdmf"));
             const bool said = !result && result.error().code == ErrorCode::system &&
                               result.error().message.find("ulimit -f") != std::string::npos;
             ::_exit(said ? 0 : 1);
@@ -212,12 +224,10 @@ TEST_F(ReaderProcess, FindsNoOtherOpenFiles) {
 }
 
 TEST_F(ReaderProcess, HittingItsMemoryLimitIsAnErrorThatNamesTheLimit) {
-    std::string content = "200000 1 0 0 0\n";
-    for (int i = 1; i <= 200000; ++i) content += std::to_string(i) + " 0 0 " + std::to_string(i) + "\n";
-    content += "1 1 tet 1 2 3 4\n";
+    const std::string content = many_points(200000);
     ReadOptions options;
     options.memory_limit = content.size() + 1000000; // to look at the file, not for its arrays
-    const auto result = read(folder_.write("large.inp", content), options);
+    const auto result = read(folder_.write("large.xdmf", content), options);
     ASSERT_FALSE(result);
     EXPECT_EQ(result.error().code, ErrorCode::out_of_memory);
     expect_words(result.error(), {std::to_string(options.memory_limit) + " bytes"});
@@ -226,7 +236,7 @@ TEST_F(ReaderProcess, HittingItsMemoryLimitIsAnErrorThatNamesTheLimit) {
 TEST_F(ReaderProcess, ThatCannotBeStartedIsAnErrorThatNamesTheProgram) {
     ReadOptions options;
     options.reader_program = folder_.file("not-there");
-    const auto result = read(folder_.file("sample.inp"), options);
+    const auto result = read(folder_.file("sample.xdmf"), options);
     ASSERT_FALSE(result);
     EXPECT_EQ(result.error().code, ErrorCode::system);
     expect_words(result.error(), {"not-there", "No such file"});
@@ -234,7 +244,7 @@ TEST_F(ReaderProcess, ThatCannotBeStartedIsAnErrorThatNamesTheProgram) {
 
 TEST_F(ReaderProcess, WorksForAParentThatIgnoresItsChildren) {
     std::signal(SIGCHLD, SIG_IGN);
-    expect_two_cells(read(folder_.file("sample.inp")));
+    expect_two_cells(read(folder_.file("sample.xdmf")));
     std::signal(SIGCHLD, SIG_DFL);
 }
 
@@ -253,7 +263,7 @@ public:
 
 TEST_F(ReaderProcess, WorksForAParentThatWaitsForAllItsChildren) {
     const WaitingForAllChildren host;
-    for (int i = 0; i < 5; ++i) expect_two_cells(read(folder_.file("sample.inp")));
+    for (int i = 0; i < 5; ++i) expect_two_cells(read(folder_.file("sample.xdmf")));
 }
 
 // Either of the two may be first at the status.
@@ -261,7 +271,7 @@ TEST_F(ReaderProcess, ThatCrashesIsAnErrorForAParentThatWaitsForAllItsChildren) 
     const WaitingForAllChildren host;
     const Error error = error_with("echo 'last words' >&2; kill -SEGV $$");
     EXPECT_EQ(error.code, ErrorCode::invalid_data);
-    expect_words(error, {"sample.inp", "last words"});
+    expect_words(error, {"sample.xdmf", "last words"});
 }
 
 TEST_F(ReaderProcess, ThatCrashesIsAnErrorForAParentThatIgnoresItsChildren) {
@@ -269,7 +279,7 @@ TEST_F(ReaderProcess, ThatCrashesIsAnErrorForAParentThatIgnoresItsChildren) {
     const Error error = error_with("echo 'last words' >&2; kill -SEGV $$");
     std::signal(SIGCHLD, SIG_DFL);
     EXPECT_EQ(error.code, ErrorCode::invalid_data);
-    expect_words(error, {"sample.inp", "without a complete reply", "SIGCHLD", "last words"});
+    expect_words(error, {"sample.xdmf", "without a complete reply", "SIGCHLD", "last words"});
 }
 
 TEST_F(ReaderProcess, IsStoppedOnCancelForAParentThatWaitsForAllItsChildren) {
@@ -290,7 +300,7 @@ TEST_F(ReaderProcess, WorksForAParentWithItsStandardStreamsClosed) {
     ASSERT_EXIT(
         {
             for (int descriptor = 0; descriptor < 3; ++descriptor) ::close(descriptor);
-            const auto result = read(folder_.file("sample.inp"));
+            const auto result = read(folder_.file("sample.xdmf"));
             ::_exit(result && result->grid.cells.count() == 2 ? 0 : 1);
         },
         testing::ExitedWithCode(0), "");
@@ -299,7 +309,7 @@ TEST_F(ReaderProcess, WorksForAParentWithItsStandardStreamsClosed) {
 TEST_F(ReaderProcess, ArraysOutliveEverythingElse) {
     Array points;
     {
-        auto result = read(folder_.file("sample.inp"));
+        auto result = read(folder_.file("sample.xdmf"));
         ASSERT_TRUE(result) << result.error().message;
         points = result->grid.points;
     }
@@ -311,7 +321,7 @@ TEST_F(ReaderProcess, ServesManyThreadsAtOnce) {
     std::vector<std::thread> threads;
     for (int i = 0; i < 4; ++i)
         threads.emplace_back([&] {
-            if (const auto result = read(folder_.file("sample.inp")); result && result->grid.cells.count() == 2)
+            if (const auto result = read(folder_.file("sample.xdmf")); result && result->grid.cells.count() == 2)
                 ++read_well;
         });
     for (std::thread& thread : threads) thread.join();

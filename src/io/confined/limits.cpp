@@ -53,7 +53,7 @@ std::optional<std::uint64_t> size_below(const fs::path& folder) {
 
 /// Bytes that reading may look at.
 std::optional<std::uint64_t> size_to_read(const Request& request) {
-    for (const std::string_view format : {"cgns", "vtkhdf", "ucd"})
+    for (const std::string_view format : {"cgns", "vtkhdf"})
         if (request.format == format) return size_of_file(request.path);
     if (request.format == "exodus") {
         std::uint64_t bytes = 0;

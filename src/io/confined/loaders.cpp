@@ -9,8 +9,8 @@ Load loader_of(std::string_view format) {
         Load load;
     };
     static constexpr Named loaders[] = {
-        {"exodus", load_exodus}, {"cgns", load_cgns}, {"vtkhdf", load_vtkhdf}, {"med", load_med},
-        {"xdmf", load_xdmf},     {"ensight", load_ensight}, {"ucd", load_ucd},
+        {"exodus", load_exodus}, {"cgns", load_cgns}, {"vtkhdf", load_vtkhdf},
+        {"med", load_med},       {"xdmf", load_xdmf}, {"ensight", load_ensight},
     };
     for (const Named& named : loaders) {
         if (named.format == format) return named.load;

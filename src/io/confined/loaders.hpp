@@ -17,7 +17,6 @@ Result<Loaded> load_cgns(const std::string& path, const ReadOptions& options, De
 Result<Loaded> load_med(const std::string& path, const ReadOptions& options, Depth depth);
 Result<Loaded> load_vtkhdf(const std::string& path, const ReadOptions& options, Depth depth);
 Result<Loaded> load_ensight(const std::string& path, const ReadOptions& options, Depth depth);
-Result<Loaded> load_ucd(const std::string& path, const ReadOptions& options, Depth depth);
 Result<Loaded> load_xdmf(const std::string& path, const ReadOptions& options, Depth depth);
 
 } // namespace isotet::io::confined

@@ -21,25 +21,6 @@ bool is_netcdf(Head head) {
     return head.size() > 3 && head.starts_with("CDF") && (head[3] == 1 || head[3] == 2 || head[3] == 5);
 }
 
-/// A line of `count` whole numbers first, as UCD has it, behind empty lines and comments, which start with '#'.
-bool starts_with_numbers(Head head, int count) {
-    for (;;) {
-        head.remove_prefix(std::min(head.find_first_not_of(" \t\r\n"), head.size()));
-        if (!head.starts_with("#")) break;
-        head.remove_prefix(std::min(head.find('\n'), head.size()));
-    }
-    const Head line = head.substr(0, head.find('\n'));
-    int numbers = 0;
-    bool inside = false;
-    for (const char c : line) {
-        const bool digit = c >= '0' && c <= '9';
-        if (!digit && c != ' ' && c != '\t' && c != '\r') return false;
-        if (digit && !inside) ++numbers;
-        inside = digit;
-    }
-    return numbers == count;
-}
-
 int recognizes_xdmf(Head head, std::string_view) { return has(head, "<Xdmf") ? 2 : 0; }
 int recognizes_exodus(Head head, std::string_view extension) {
     if (!is_netcdf(head) && !is_hdf5(head)) return 0;
@@ -67,11 +48,6 @@ int recognizes_ensight(Head head, std::string_view extension) {
     if (has(head, "FORMAT") && has(head, "type:") && has(head, "ensight")) return 2;
     return extension == ".case" || extension == ".encas" ? 1 : 0;
 }
-int recognizes_ucd(Head head, std::string_view extension) {
-    if (extension != ".inp" && extension != ".avs") return 0; // Abaqus uses the first name, too
-    return starts_with_numbers(head, 5) || head.starts_with("\x07") ? 2 : 0;
-}
-
 Format grid_format(std::string name, std::string title, std::vector<std::string> extensions) {
     Format format{std::move(name), std::move(title), std::move(extensions)};
     format.reads_grid = true;
@@ -96,14 +72,13 @@ struct Named {
 };
 
 const auto& table() {
-    static const std::array<Named, 7> formats = {{
+    static const std::array<Named, 6> formats = {{
         {"exodus", recognizes_exodus, "Exodus II", {".e", ".ex2", ".exo", ".exii", ".g", ".gen"}},
         {"cgns", recognizes_cgns, "CGNS", {".cgns"}},
         {"med", recognizes_med, "MED (Salome, code_aster)", {".med", ".rmed", ".mmed"}},
         {"vtkhdf", recognizes_vtkhdf, "VTKHDF", {".hdf", ".vtkhdf"}},
         {"xdmf", recognizes_xdmf, "XDMF 2 and 3", {".xdmf", ".xmf"}},
         {"ensight", recognizes_ensight, "EnSight Gold and 6", {".case", ".encas"}},
-        {"ucd", recognizes_ucd, "AVS UCD", {".inp", ".avs"}},
     }};
     return formats;
 }

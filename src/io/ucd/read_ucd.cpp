@@ -1,26 +1,30 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// AVS UCD, ascii. Not through VTK's reader, which gives half a grid without a word when the file is cut short.
-//
 //   points cells point_values cell_values model_values
 //   number x y z                              for each point
 //   number material type point...             for each cell
 //   arrays components...                      then "name, unit" for each array, then number value... for each point
 //   the same for cells
+#include "io/ucd/read_ucd.hpp"
+
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <optional>
-#include <string_view>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 
-#include "io/pieces/number_map.hpp"
-#include "io/files/text_scanner.hpp"
-#include "io/reader.hpp"
+#include "base/errors.hpp"
 #include "io/files/escape.hpp"
-#include "io/confined/loaders.hpp"
-#include "io/confined/mapped_file.hpp"
+#include "io/files/pace.hpp"
+#include "io/files/text_scanner.hpp"
+#include "io/pieces/loaded.hpp"
+#include "io/pieces/number_map.hpp"
+#include "io/reader.hpp"
 
-namespace isotet::io::confined {
+namespace isotet::io {
 namespace {
 
 struct Element {
@@ -46,22 +50,27 @@ struct Counts {
 
 class UcdReader {
 public:
-    UcdReader(const std::string& path, std::string_view text, const ReadOptions& options, Depth depth)
-        : path_(path), scanner_(text, '#'), options_(options), depth_(depth) {}
+    UcdReader(std::string_view text, const ReadOptions& options, const Progress& progress, Depth depth)
+        : scanner_(text, '#'), options_(options), pace_(progress, text.size()), depth_(depth) {}
 
-    Result<Loaded> run() {
-        loaded_.pieces.emplace_back().name = path_;
+    Result<ReadResult> run() {
+        result_.info.format = "ucd";
         if (!header() || !points() || !cells()) return *problem_;
         if (counts_.point_values > 0 && !values(Association::point, counts_.points, counts_.point_values))
             return *problem_;
         if (counts_.cell_values > 0 && !values(Association::cell, counts_.cells, counts_.cell_values)) return *problem_;
-        if (depth_ == Depth::description) loaded_.pieces.clear();
-        return std::move(loaded_);
+        if (auto step = choose_step(result_.info, options_); !step) return step.error();
+        return std::move(result_);
     }
 
 private:
     bool fail(std::string_view what) {
-        if (!problem_) problem_ = broken(path_, fmt::format("{} at {}", what, scanner_.where()));
+        if (!problem_) problem_ = invalid_data(fmt::format("{} at {}", what, scanner_.where()));
+        return false;
+    }
+    bool goes_on() {
+        if (pace_.goes_on(scanner_.position())) return true;
+        problem_ = Pace::cancelled();
         return false;
     }
     template <class Number>
@@ -69,22 +78,24 @@ private:
         return scanner_.number(value) || fail(fmt::format("{} expected", what));
     }
     /// Every item takes some bytes: a count beyond what is left is wrong, and nothing is allocated for it.
-    bool plausible(std::uint64_t count, std::string_view what) {
-        return count <= scanner_.left() || fail(fmt::format("{} {} announced, but the file is shorter", count, what));
+    bool plausible(std::uint64_t count, std::string_view what, std::size_t bytes = 1) {
+        return count <= (scanner_.left() + 1) / bytes ||
+               fail(fmt::format("{} {} announced, but the file is shorter", count, what));
     }
     bool header() {
         if (scanner_.rest().starts_with("\x07")) return fail("a binary UCD file, which is not read: write it as ascii");
         return next(counts_.points, "number of points") && next(counts_.cells, "number of cells") &&
                next(counts_.point_values, "number of point values") &&
                next(counts_.cell_values, "number of cell values") &&
-               next(counts_.model_values, "number of model values") && plausible(counts_.points, "points") &&
-               plausible(counts_.cells, "cells");
+               next(counts_.model_values, "number of model values") &&
+               plausible(counts_.points, "points", sizeof "1 0 0 0") &&
+               plausible(counts_.cells, "cells", sizeof "1 1 pt 1");
     }
     bool points() {
         std::vector<double> places(3 * counts_.points);
         for (std::uint64_t i = 0; i < counts_.points; ++i) {
             std::int64_t number = 0;
-            if (!next(number, "number of a point")) return false;
+            if (!goes_on() || !next(number, "number of a point")) return false;
             numbers_.add(number);
             for (std::uint64_t axis = 0; axis < 3; ++axis)
                 if (!next(places[3 * i + axis], "a coordinate")) return false;
@@ -101,7 +112,7 @@ private:
         for (std::uint64_t i = 0; i < counts_.cells; ++i) {
             std::int64_t number = 0;
             std::int32_t material = 0;
-            if (!next(number, "number of a cell") || !next(material, "material of a cell")) return false;
+            if (!goes_on() || !next(number, "number of a cell") || !next(material, "material of a cell")) return false;
             cell_numbers_.add(number);
             const std::string_view name = scanner_.word();
             const Element* element = nullptr;
@@ -147,12 +158,12 @@ private:
     bool values(Association association, std::uint64_t tuples, std::uint64_t stated) {
         std::vector<Column> columns;
         if (!value_header(association, stated, columns)) return false;
-        if (!plausible(tuples * std::min<std::uint64_t>(stated, 1 << 20), "values")) return false;
+        if (!plausible(tuples * std::min<std::uint64_t>(stated, 1 << 20), "values", sizeof "0")) return false;
         for (Column& column : columns)
             if (column.wanted) column.values.resize(tuples * column.components);
         for (std::uint64_t i = 0; i < tuples; ++i) {
             std::int64_t number = 0;
-            if (!next(number, "number of a line of values")) return false;
+            if (!goes_on() || !next(number, "number of a line of values")) return false;
             std::uint64_t tuple = i;
             if (!place(association, number, tuple)) return false;
             for (Column& column : columns)
@@ -165,7 +176,7 @@ private:
         for (Column& column : columns) {
             if (column.name.empty()) continue;
             if (column.wanted) keep(column.name, association, Array::own(std::move(column.values), column.components));
-            else announce(loaded_.info, {column.name, association, ScalarType::float64, column.components});
+            else announce(result_.info, {column.name, association, ScalarType::float64, column.components});
         }
         return true;
     }
@@ -201,29 +212,30 @@ private:
             if (scanner_.left() == 0) return fail("name of an array expected");
             const std::string kind = association == Association::point ? "point field" : "cell field";
             const bool repeated = std::ranges::find(columns, name, &Column::name) != columns.end();
-            if (name.empty()) leave_out(loaded_.info, {kind, "", "it has no name"});
-            else if (repeated) leave_out(loaded_.info, {kind, std::string(name), "an earlier one has the same name"});
+            if (name.empty()) leave_out(result_.info, {kind, "", "it has no name"});
+            else if (repeated) leave_out(result_.info, {kind, std::string(name), "an earlier one has the same name"});
             const bool is_read = !name.empty() && !repeated;
-            columns.push_back({is_read ? std::string(name) : std::string(),
-                               count,
-                               is_read && wanted(options_, association, name),
-                               {}});
+            columns.push_back(
+                {is_read ? std::string(name) : std::string(), count, is_read && is_wanted(association, name), {}});
         }
         return true;
     }
     void keep(std::string name, Association association, Array values) {
-        announce(loaded_.info, {name, association, values.type(), values.components()});
-        if (!wanted(options_, association, name)) return;
+        announce(result_.info, {name, association, values.type(), values.components()});
+        if (!is_wanted(association, name)) return;
         auto& fields = association == Association::point ? grid().point_fields : grid().cell_fields;
         fields.push_back({std::move(name), std::move(values)});
     }
-    Grid& grid() { return loaded_.pieces.front().grid; }
+    bool is_wanted(Association association, std::string_view name) const {
+        return depth_ == Depth::arrays && wanted(options_, association, name);
+    }
+    Grid& grid() { return result_.grid; }
 
-    const std::string& path_;
     TextScanner scanner_;
     const ReadOptions& options_;
+    Pace pace_;
     Depth depth_;
-    Loaded loaded_;
+    ReadResult result_;
     Counts counts_;
     NumberMap numbers_, cell_numbers_;
     bool cells_are_numbered_ = false;
@@ -232,14 +244,24 @@ private:
 
 } // namespace
 
-Result<Loaded> load_ucd(const std::string& path, const ReadOptions& options, Depth depth) {
-    auto file = MappedFile::open(path);
-    if (!file) return file.error();
-    auto loaded = UcdReader(path, file->text(), options, depth).run();
-    if (!loaded) return loaded;
-    auto step = choose_step(loaded->info, depth == Depth::arrays ? options : ReadOptions());
-    if (!step) return step.error();
-    return loaded;
+bool looks_like_ucd(std::string_view head) {
+    if (head.starts_with("\x07")) return true; // binary, which is told
+    TextScanner scanner(head, '#');
+    std::uint64_t number = 0;
+    if (scanner.at_end()) return false;
+    int numbers = 0;
+    while (!scanner.at_line_end() && scanner.number_of_line(number)) ++numbers;
+    return numbers == 5 && scanner.at_line_end();
 }
 
-} // namespace isotet::io::confined
+Result<FileInfo> inspect_ucd(std::string_view text, const Progress& progress) {
+    auto result = UcdReader(text, {}, progress, Depth::description).run();
+    if (!result) return result.error();
+    return std::move(result->info);
+}
+
+Result<ReadResult> parse_ucd(std::string_view text, const ReadOptions& options, const Progress& progress) {
+    return UcdReader(text, options, progress, Depth::arrays).run();
+}
+
+} // namespace isotet::io
