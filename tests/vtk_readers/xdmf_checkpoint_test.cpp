@@ -80,13 +80,47 @@ TEST_F(ReadCheckpoint, DiscontinuousFunctionsHaveMeansWhereTheyJump) {
               std::vector<std::string>{"function \"f\" differs between cells at 1 points: the mean was taken"});
 }
 
-TEST_F(ReadCheckpoint, OfDegreeTwoTheValuesAtCornersAreTaken) {
-    const auto result = read_function(
-        {"CG", "2", "0 1 2 3 5 6 7 8 9 10  0 2 1 4 11 12 13 14 15 16", "1 2 3 4 5 0 0 0 0 0 0 0 0 0 0 0 0", "0 10 20"});
+/// Values of DOLFIN's nodes of a cell: the corners, then the edges, by the corners that they do not touch.
+TEST_F(ReadCheckpoint, DegreeTwoMakesTetrahedraOfTenNodes) {
+    const std::string mesh = "<Geometry>" + xdmf_item("Dimensions='4 3'", "0 0 0 2 0 0 0 2 0 0 0 2") +
+                             "</Geometry><Topology TopologyType='Tetrahedron'>" +
+                             xdmf_item("NumberType='Int'", "0 1 2 3") +
+                             "</Topology><Attribute Name='linear' Center='Node'>" +
+                             xdmf_item("NumberType='Int'", "0 2 4 7") + "</Attribute>";
+    // f = 1 + x + 10 y^2 + 100 z at corners and middles of (2,3), (1,3), (1,2), (0,3), (0,2), (0,1)
+    const Function f{"CG", "2", "0 1 2 3 4 5 6 7 8 9", "1 3 41 201 111 102 12 101 11 2", "0 10"};
+    ReadOptions options;
+    options.point_fields = {"f", "linear"};
+    const auto result = read(folder_.write("grid.xdmf", xdmf_document(xdmf_grid("g", mesh + text_of(f)))), options);
     ASSERT_TRUE(result) << result.error().message;
-    EXPECT_EQ(first(result->grid.point_fields), (Values{1, 2, 3, 4, 5}));
-    ASSERT_EQ(result->notes.size(), 1u);
-    EXPECT_NE(result->notes[0].find("degree 2"), std::string::npos);
+    EXPECT_TRUE(result->notes.empty());
+    const Grid& grid = result->grid;
+    EXPECT_EQ(grid.cells.types.at(0), 24);
+    ASSERT_EQ(grid.points.tuples(), 10u);
+    ASSERT_EQ(grid.point_fields.size(), 2u);
+    for (std::size_t node = 0; node < 10; ++node) {
+        const auto point = static_cast<std::size_t>(grid.cells.connectivity.at(node));
+        const auto at = [&](std::size_t axis) { return grid.points.at(point, axis); };
+        EXPECT_EQ(grid.point_fields[1].values.at(point), 1 + at(0) + 10 * at(1) * at(1) + 100 * at(2)) << node;
+        EXPECT_EQ(grid.point_fields[0].values.at(point), at(0) + 2 * at(1) + 3.5 * at(2)) << node;
+    }
+    options.point_fields = {"linear"};
+    const auto unwanted = read(folder_.file("grid.xdmf"), options);
+    ASSERT_TRUE(unwanted) << unwanted.error().message;
+    EXPECT_EQ(unwanted->grid.points.tuples(), 4u) << "without the function the cells stay as they are";
+}
+
+TEST_F(ReadCheckpoint, OfDegreeTwoCellsShareTheNodesOfTheirEdges) {
+    const auto result = read_function(
+        {"CG", "2", "0 1 2 3 5 6 7 8 9 10  0 2 1 4 11 12 7 13 10 9", "1 2 3 4 5 6 7 8 9 10 11 12 13 14", "0 10 20"});
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(result->grid.points.tuples(), 5u + 9u);
+    EXPECT_TRUE(result->notes.empty()) << result->notes.front();
+    const auto jumps = read_function({"DG", "2", "0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19",
+                                      "1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 3 1 1 1", "0 10 20"});
+    ASSERT_TRUE(jumps) << jumps.error().message;
+    EXPECT_EQ(jumps->notes,
+              std::vector<std::string>{"function \"f\" differs between cells at 1 points: the mean was taken"});
 }
 
 /// Corners of a hexahedron are in VTK's order, values in that of a tensor product.

@@ -65,20 +65,23 @@ private:
         std::vector<NamedPiece> pieces;
         for (std::size_t i = 0; i < blocks_.size(); ++i) {
             const bool whole = depth_ == Depth::arrays && chosen_[i];
-            auto grid = read_block(blocks_[i], whole ? Depth::arrays : Depth::description);
-            if (!grid) return grid.error();
+            auto mesh = read_block(blocks_[i], whole ? Depth::arrays : Depth::description);
+            if (!mesh) return mesh.error();
             if (whole) {
-                NamedPiece& piece = pieces.emplace_back(Piece(), blocks_[i].name, blocks_[i].points);
+                NamedPiece& piece = pieces.emplace_back(Piece(), blocks_[i].name, blocks_[i].points, mesh->edges);
                 piece.piece.name = fmt::format("{} {}", file_.path, blocks_[i].name);
-                piece.piece.grid = *std::move(grid);
+                piece.piece.grid = std::move(mesh->grid);
             }
             report_progress(static_cast<double>(i + 1) / static_cast<double>(blocks_.size()));
         }
         take_fields_of_same_cells(pieces, loaded_.notes);
-        for (NamedPiece& piece : pieces) loaded_.pieces.push_back(std::move(piece.piece));
+        for (NamedPiece& piece : pieces) {
+            if (piece.edges) make_quadratic(piece.piece.grid, *piece.edges);
+            loaded_.pieces.push_back(std::move(piece.piece));
+        }
         return {};
     }
-    Result<Grid> read_block(const XdmfBlock& block, Depth depth) {
+    Result<XdmfMesh> read_block(const XdmfBlock& block, Depth depth) {
         auto mesh = read_mesh(file_, block.geometry, block.topology, depth, loaded_.notes);
         if (!mesh) return mesh.error();
         const auto time = steps_.steps[loaded_.step].time;
@@ -87,7 +90,7 @@ private:
                 if (auto read = fields_.read(field, *mesh, depth, loaded_); !read) return read.error();
                 announced_.insert(key_of(field));
             }
-        return std::move(mesh->grid);
+        return mesh;
     }
 
     /// Fields that only other steps have.

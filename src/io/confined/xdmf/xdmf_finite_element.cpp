@@ -25,16 +25,19 @@ struct ElementOfFunction {
     std::size_t nodes; ///< values of a component in a cell
     CellType type;
     std::span<const std::uint8_t> corners; ///< for each corner its place among the nodes
+    std::span<const std::uint8_t> middles; ///< for each of VTK's edges that of the node on it
 };
 
 constexpr std::array<std::uint8_t, 4> of_tetrahedron{0, 1, 2, 3};
 constexpr std::array<std::uint8_t, 8> of_hexahedron{0, 1, 3, 2, 4, 5, 7, 6}; // as a tensor product
+/// UFC numbers edges by the corners that they do not touch.
+constexpr std::array<std::uint8_t, 6> of_tet_edges{9, 6, 8, 7, 5, 4};
 constexpr ElementOfFunction elements_of_functions[] = {
-    {"tetrahedron", 0, 1, CellType::tetrahedron, {}},
-    {"tetrahedron", 1, 4, CellType::tetrahedron, of_tetrahedron},
-    {"tetrahedron", 2, 10, CellType::tetrahedron, of_tetrahedron},
-    {"hexahedron", 0, 1, CellType::hexahedron, {}},
-    {"hexahedron", 1, 8, CellType::hexahedron, of_hexahedron},
+    {"tetrahedron", 0, 1, CellType::tetrahedron, {}, {}},
+    {"tetrahedron", 1, 4, CellType::tetrahedron, of_tetrahedron, {}},
+    {"tetrahedron", 2, 10, CellType::tetrahedron, of_tetrahedron, of_tet_edges},
+    {"hexahedron", 0, 1, CellType::hexahedron, {}, {}},
+    {"hexahedron", 1, 8, CellType::hexahedron, of_hexahedron, {}},
 };
 
 unsigned degree_of(pugi::xml_node attribute) { return attribute.attribute("ElementDegree").as_uint(99); }
@@ -51,10 +54,6 @@ const ElementOfFunction* element_of(pugi::xml_node attribute) {
 }
 
 Error wrong_function(std::string what) { return {ErrorCode::invalid_data, std::move(what)}; }
-
-std::uint64_t number_at(const Array& numbers, std::size_t at) {
-    return numbers.visit([&](auto values) { return static_cast<std::uint64_t>(values[at]); });
-}
 
 /// The values of cells, one row a cell.
 class CellRows {
@@ -122,16 +121,19 @@ Result<FunctionValues> values_of_cells(const CellRows& rows, std::size_t cells, 
     return FunctionValues{components, Array::own(std::move(values), components), {}};
 }
 
-Result<FunctionValues> values_of_points(const CellRows& rows, const ElementOfFunction& element, const XdmfMesh& mesh,
+Result<FunctionValues> values_of_points(const CellRows& rows, const ElementOfFunction& element, XdmfMesh& mesh,
                                         std::size_t components) {
     const Cells& cells = mesh.grid.cells;
     const std::size_t corners = element.corners.size();
     if (!cells.offsets.empty() || cells.uniform_type != element.type)
         return wrong_function(fmt::format("it is of {} cells, but those of the mesh are others", element.cell));
-    std::vector<double> values(mesh.points * components);
+    auto edges = mesh.edges;
+    if (!edges && !element.middles.empty()) edges = std::make_shared<const TetEdges>(cells.connectivity);
+    const std::size_t places = mesh.points + (element.middles.empty() ? 0 : edges->count());
+    std::vector<double> values(places * components);
     std::size_t jumps = 0;
     for (std::size_t component = 0; component < components; ++component) {
-        PointMeans means(mesh.points);
+        PointMeans means(places);
         for (std::size_t i = 0; i < cells.connectivity.size(); ++i) {
             const std::uint64_t point = number_at(cells.connectivity, i);
             if (point >= mesh.points)
@@ -139,13 +141,15 @@ Result<FunctionValues> values_of_points(const CellRows& rows, const ElementOfFun
                     fmt::format("cell {} of its mesh has point {} of {}", i / corners, point, mesh.points));
             means.add(point, rows.at(i / corners, component * element.nodes + element.corners[i % corners]));
         }
+        for (std::size_t cell = 0; cell < mesh.cells && !element.middles.empty(); ++cell)
+            for (std::size_t k = 0; k < element.middles.size(); ++k)
+                means.add(mesh.points + edges->number(cell, k),
+                          rows.at(cell, component * element.nodes + element.middles[k]));
         jumps += means.write(values, component, components);
     }
     FunctionValues found{components, Array::own(std::move(values), components), {}};
     if (jumps > 0) found.note = fmt::format("differs between cells at {} points: the mean was taken", jumps);
-    if (element.degree > 1)
-        found.note += fmt::format("{}is of degree {}: the values at corners were taken, not those between them",
-                                  found.note.empty() ? "" : ", and ", element.degree);
+    mesh.edges = std::move(edges);
     return found;
 }
 
@@ -159,7 +163,7 @@ Association association_of_function(pugi::xml_node attribute) {
     return degree_of(attribute) == 0 ? Association::cell : Association::point;
 }
 
-Result<FunctionValues> read_function_values(const XdmfFile& file, pugi::xml_node attribute, const XdmfMesh& mesh,
+Result<FunctionValues> read_function_values(const XdmfFile& file, pugi::xml_node attribute, XdmfMesh& mesh,
                                             Depth depth) {
     const ElementOfFunction* const element = element_of(attribute);
     if (!element)

@@ -28,12 +28,13 @@ struct FunctionValues {
 };
 
 /// Values of a function of family CG or DG on tetrahedra (degree 0 to 2) or hexahedra (degree 0 and 1): of cells, or at the
-/// points of the mesh. Where cells differ at a point it is their mean. Four DataItems: for each cell the numbers of its
+/// points of the mesh, and behind these, for degree 2, on its edges, which the mesh then has. Where cells differ at a point it
+/// is their mean. Four DataItems: for each cell the numbers of its
 /// values, all values, where the numbers of each cell begin; and the numbers of cells, which say nothing: they are in the
 /// order of the topology.
 ///
 /// Errors   invalid_data: another family, degree or cell; numbers that are not there
-Result<FunctionValues> read_function_values(const XdmfFile& file, pugi::xml_node attribute, const XdmfMesh& mesh,
+Result<FunctionValues> read_function_values(const XdmfFile& file, pugi::xml_node attribute, XdmfMesh& mesh,
                                             Depth depth);
 
 } // namespace isotet::io::confined

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,7 @@
 
 #include "io/confined/xdmf/xdmf_data.hpp"
 #include "io/confined/xdmf/xdmf_document.hpp"
+#include "io/confined/xdmf/xdmf_quadratic.hpp"
 
 namespace isotet::io::confined {
 
@@ -33,6 +35,7 @@ struct XdmfMesh {
     std::uint64_t points = 0, cells = 0;
     Grid grid = {};
     std::map<std::string, pugi::xml_node> fields = {}; ///< those that were read, by association and name
+    std::shared_ptr<const TetEdges> edges = nullptr;   ///< where fields have values on them, behind those at points
 };
 
 /// Errors   invalid_data: a type that is not read, numbers that do not fit together, as XdmfData::read()

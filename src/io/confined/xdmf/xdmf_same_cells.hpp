@@ -2,9 +2,11 @@
 // Grids whose cells are those of another one on the same points, as mesh tags of dolfinx are.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "io/confined/xdmf/xdmf_quadratic.hpp"
 #include "io/pieces/loaded.hpp"
 
 namespace isotet::io::confined {
@@ -14,6 +16,7 @@ struct NamedPiece {
     Piece piece;
     std::string name;
     std::string points; ///< equal where pieces have the same points
+    std::shared_ptr<const TetEdges> edges = nullptr; ///< those of XdmfMesh
 };
 
 /// Gives a piece the fields of a later one all of whose cells it has, too, and drops that one. A cell that the later one
