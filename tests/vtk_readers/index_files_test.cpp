@@ -62,6 +62,43 @@ TEST_F(IndexFiles, PvtuKeepsPiecesApartWhenAsked) {
     EXPECT_EQ(apart->grid.points.tuples(), 28u);
 }
 
+std::string time_value(std::string_view time) {
+    return fmt::format("<FieldData><DataArray type='Float64' Name='TimeValue' NumberOfTuples='1' format='ascii'>{}"
+                       "</DataArray></FieldData>",
+                       time);
+}
+
+std::string tet_with_time(std::string_view time) {
+    return "<VTKFile type='UnstructuredGrid'><UnstructuredGrid>" + (time.empty() ? std::string() : time_value(time)) +
+           "<Piece NumberOfPoints='4' NumberOfCells='1'><Points><DataArray type='Float64' NumberOfComponents='3' "
+           "format='ascii'>0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points><Cells>"
+           "<DataArray type='Int32' Name='connectivity' format='ascii'>0 1 2 3</DataArray>"
+           "<DataArray type='Int32' Name='offsets' format='ascii'>4</DataArray>"
+           "<DataArray type='UInt8' Name='types' format='ascii'>10</DataArray>"
+           "</Cells></Piece></UnstructuredGrid></VTKFile>";
+}
+
+TEST_F(IndexFiles, HaveTheTimeOfTheirPiecesIfItIsTheSame) {
+    const auto times = [&](std::string_view first, std::string_view second) {
+        folder_.write("case/a.vtu", tet_with_time(first));
+        folder_.write("case/b.vtu", tet_with_time(second));
+        const auto info = inspect(folder_.write("case/grid.pvtu", pvtu({"a.vtu", "b.vtu"})));
+        return info ? info->times : std::vector<double>{-1};
+    };
+    EXPECT_EQ(times("0.5", "0.5"), std::vector<double>{0.5});
+    EXPECT_EQ(times("0.5", ""), std::vector<double>{0.5});
+    EXPECT_EQ(times("0.5", "0.75"), std::vector<double>{});
+}
+
+/// As OpenFOAM and VTK write it, behind the tree.
+TEST_F(IndexFiles, BlocksHaveTheTimeThatTheIndexStates) {
+    const std::string index = "<VTKFile type=\"vtkMultiBlockDataSet\"><vtkMultiBlockDataSet>"
+                              "<DataSet name=\"a\" file=\"parts/a.vtu\"/></vtkMultiBlockDataSet>";
+    const auto info = inspect(folder_.write("case/grid.vtm", index + time_value("0.125") + "</VTKFile>"));
+    ASSERT_TRUE(info) << info.error().message;
+    EXPECT_EQ(info->times, std::vector<double>{0.125});
+}
+
 TEST_F(IndexFiles, PvdSortsItsTimes) {
     const std::string path =
         folder_.write("case/run.pvd", pvd({{"2.5", "parts/a.vtu"}, {"1", "parts/a.vtu"}, {"2.5", "parts/a.vtu"}}));

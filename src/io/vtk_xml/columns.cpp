@@ -25,7 +25,9 @@ const DataArray* find_array(const std::vector<DataArray>& arrays, std::string_vi
     return found == arrays.end() ? nullptr : &*found;
 }
 
-const char* field_of(Association association) { return association == Association::point ? "point field" : "cell field"; }
+const char* field_of(Association association) {
+    return association == Association::point ? "point field" : "cell field";
+}
 
 /// Without the name of the array, which the sentence has already.
 std::string reason_of(const Error& error, std::string_view name) {
@@ -96,8 +98,8 @@ void note_missing_parts(const std::vector<Column>& columns, Association associat
     for (std::size_t count = 1; count < filled.size(); ++count) {
         std::vector<std::string> names;
         for (const Column& column : columns) {
-            const auto there = std::ranges::count_if(
-                filled, [&](std::size_t piece) { return column.parts[piece].has_value(); });
+            const auto there =
+                std::ranges::count_if(filled, [&](std::size_t piece) { return column.parts[piece].has_value(); });
             if (static_cast<std::size_t>(there) == count) names.push_back(column.name);
         }
         if (names.empty()) continue;
@@ -234,8 +236,8 @@ struct Job {
 
 /// A broken field that is not asked for by name is left out.
 bool may_be_left_out(const Job& job, const Error& error, const ReadOptions& options) {
-    const bool named = job.association == Association::point ? options.point_fields.has_value()
-                                                             : options.cell_fields.has_value();
+    const bool named =
+        job.association == Association::point ? options.point_fields.has_value() : options.cell_fields.has_value();
     return error.code == ErrorCode::invalid_data && (job.is_field || !job.is_ghost) && !(job.is_field && named);
 }
 
@@ -243,9 +245,8 @@ void add_jobs(const Document& document, Association association, const Layout& l
               std::vector<Job>& jobs) {
     const bool of_points = association == Association::point;
     Columns columns = columns_of(document, association, layout, wanted.step);
-    const Column* const ids = !wanted.ids ? nullptr
-                                          : global_ids(columns, of_points ? std::span(point_id_names)
-                                                                          : std::span(cell_id_names));
+    const Column* const ids =
+        !wanted.ids ? nullptr : global_ids(columns, of_points ? std::span(point_id_names) : std::span(cell_id_names));
     for (Column& column : columns.columns) {
         Job job{{}, association, &layout, false, false, &column == ids, {}, {}};
         job.is_ghost = is_ghost_array(column.name);
@@ -369,21 +370,26 @@ Section describe_section(const Document& document, const pugi::xml_node& element
     return section;
 }
 
+Result<void> read_time(Document& document, const pugi::xml_node& parent, const Progress& progress, Loaded& loaded) {
+    for (const auto& element : parent.child("FieldData").children()) {
+        if (std::string_view(element.attribute("Name").value()) != "TimeValue" || !loaded.info.times.empty()) continue;
+        const auto array = describe_array(document, element);
+        if (!array || !*array) continue;
+        const auto time = load_array(document, **array, 1, progress);
+        if (time) loaded.info.times.push_back(time->at(0));
+        else if (time.error().code != ErrorCode::invalid_data) return time.error();
+        else loaded.notes.push_back("the time of the file cannot be read: " + time.error().message);
+    }
+    return {};
+}
+
 Result<void> announce_fields(Document& document, const Layouts& layouts, const ReadOptions& options,
                              const Progress& progress, Loaded& loaded) {
     FileInfo& info = loaded.info;
     // Steps are numbered; what their times are, the file does not say.
     TextScanner times(document.primary().attribute("TimeValues").value());
     while (!times.word().empty()) info.times.push_back(static_cast<double>(info.times.size()));
-    for (const auto& element : document.primary().child("FieldData").children()) {
-        if (std::string_view(element.attribute("Name").value()) != "TimeValue" || !info.times.empty()) continue;
-        const auto array = describe_array(document, element);
-        if (!array || !*array) continue;
-        const auto time = load_array(document, **array, 1, progress);
-        if (time) info.times.push_back(time->at(0));
-        else if (time.error().code != ErrorCode::invalid_data) return time.error();
-        else loaded.notes.push_back("the time of the file cannot be read: " + time.error().message);
-    }
+    if (auto read = read_time(document, document.primary(), progress, loaded); !read) return read;
     const auto step = choose_step(info, options);
     if (!step) return step.error();
     loaded.step = *step;
@@ -445,15 +451,14 @@ Result<void> load_fields(Document& document, const Layouts& layouts, const Wante
     for (Job& job : jobs) {
         if (!job.error) {
             if (const auto count = job.is_field ? count_too_large(document, job, progress) : 0; count > 0)
-                loaded.notes.push_back(fmt::format("{} value{} of {} {} beyond float32, the type of the array: infinite",
-                                                   count, count == 1 ? "" : "s", in_quotes(job.column.name),
-                                                   count == 1 ? "is" : "are"));
+                loaded.notes.push_back(
+                    fmt::format("{} value{} of {} {} beyond float32, the type of the array: infinite", count,
+                                count == 1 ? "" : "s", in_quotes(job.column.name), count == 1 ? "is" : "are"));
             give(job, piece);
             continue;
         }
         if (!may_be_left_out(job, *job.error, wanted.options)) return *job.error;
-        leave_out(loaded.info,
-                  {field_of(job.association), job.column.name, reason_of(*job.error, job.column.name)});
+        leave_out(loaded.info, {field_of(job.association), job.column.name, reason_of(*job.error, job.column.name)});
     }
     return {};
 }

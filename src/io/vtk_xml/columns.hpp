@@ -47,6 +47,9 @@ struct Layouts {
     Layout points, cells;
 };
 
+/// Takes the time that the FieldData in `parent` states, where `loaded` has none yet.
+Result<void> read_time(Document& document, const pugi::xml_node& parent, const Progress& progress, Loaded& loaded);
+
 /// Tells the fields of all pieces at a step, those that are left out, and the file's times.
 ///
 /// Errors   invalid_argument: no such step; invalid_data: a ghost array that cannot be read

@@ -69,6 +69,18 @@ std::string_view attribute_of(std::string_view tag, std::string_view name) {
     return {};
 }
 
+/// The time of all files that have one, if it is the same.
+std::vector<double> common_time(std::span<const Loaded> parts) {
+    std::vector<double> common;
+    for (const Loaded& part : parts) {
+        const std::vector<double>& times = part.info.times;
+        if (times.empty()) continue;
+        if (times.size() > 1 || (!common.empty() && common != times)) return {};
+        common = times;
+    }
+    return common;
+}
+
 } // namespace
 
 std::string_view type_of(std::string_view head) {
@@ -97,7 +109,8 @@ Result<Loaded> load_file(const std::string& path, std::string_view type, const R
     if (!source) return source.error();
     auto loaded = load(*source, type, options, depth, ids, progress, path);
     if (!loaded) return in_file(path, loaded.error());
-    for (Piece& piece : loaded->pieces) piece.name = piece.name.empty() ? path : fmt::format("{}, {}", path, piece.name);
+    for (Piece& piece : loaded->pieces)
+        piece.name = piece.name.empty() ? path : fmt::format("{}, {}", path, piece.name);
     return loaded;
 }
 
@@ -124,6 +137,7 @@ Loaded put_together(std::vector<Loaded> parts) {
         hexahedra += part.cells;
     }
     Loaded whole;
+    whole.info.times = common_time(parts);
     for (Loaded& part : parts) append(whole, std::move(part));
     if (structured < 2) return whole;
     std::erase_if(whole.notes, [&](const std::string& note) { return note.starts_with(of_one); });

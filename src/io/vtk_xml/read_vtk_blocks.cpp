@@ -1,5 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // VTM, VTPC and VTPD: an index of VTK XML files, in a tree of blocks with names.
+#include <algorithm>
+#include <iterator>
 #include <optional>
 #include <span>
 
@@ -11,6 +13,7 @@
 #include "io/files/index_file.hpp"
 #include "io/files/text_scanner.hpp"
 #include "io/pieces/block_choice.hpp"
+#include "io/vtk_xml/columns.hpp"
 #include "io/vtk_xml/document.hpp"
 #include "io/vtk_xml/load.hpp"
 #include "io/vtk_xml/read_vtk_xml.hpp"
@@ -38,7 +41,7 @@ public:
     Result<void> read(std::string_view type) {
         const auto source = ByteSource::open(path_);
         if (!source) return source.error();
-        const auto document = vtk_xml::open_document(*source, progress_);
+        auto document = vtk_xml::open_document(*source, progress_);
         if (!document) return broken(path_, document.error().message);
         if (document->type != type)
             return broken(path_, fmt::format("this is a VTK file of type {}, which is not read, not {}",
@@ -47,9 +50,13 @@ public:
         if (leaves.empty())
             return broken(path_, surfaces == 0 ? "the index names no files"
                                                : fmt::format("all {} files that it names are surfaces", surfaces));
+        // VTK writes FieldData behind the tree.
+        for (const pugi::xml_node& parent : {document->primary().parent(), document->primary()})
+            if (auto time = vtk_xml::read_time(*document, parent, progress_, said); !time) return time;
         return {};
     }
 
+    Loaded said; ///< the time that the index states
     std::vector<Leaf> leaves;
     std::vector<BlockInfo> blocks;
     std::size_t surfaces = 0;
@@ -145,6 +152,8 @@ Result<Loaded> load_blocks(const std::string& path, std::string_view type, const
         if (auto left_out = vtk_xml::leave_out_overlaps(of_grid); !left_out) return in_file(path, left_out.error());
     }
     Loaded loaded = vtk_xml::put_together(std::move(*parts));
+    if (!index.said.info.times.empty()) loaded.info.times = index.said.info.times;
+    std::ranges::move(index.said.notes, std::back_inserter(loaded.notes));
     for (vtk_xml::File& file : files) loaded.info.files.push_back(std::move(file.path));
     if (has_blocks) loaded.info.blocks = std::move(index.blocks);
     if (index.surfaces > 0)
