@@ -29,7 +29,9 @@ enum class SolidPart : std::uint8_t { isosurface = 0, boundary = 1 };
 /// A solid and what is told of it.
 ///
 /// `surface`   triangles face outwards: those of the isosurfaces first, as extract() gives them, then the boundary. Its
-///             last cell field is "boundary", uint8, a SolidPart. Vertices: those of the isosurfaces, then points of the grid
+///             last cell field is "boundary", uint8, a SolidPart. Where 2D cells of a grid of linear cells lie on its
+///             boundary, "patch_cell" is their number there, else -1, and "patch_NAME" what they have of each carried cell
+///             field NAME of whole numbers. Vertices: those of the isosurfaces, then points of the grid
 ///             (both edge ends are the point), then vertices inside faces that are not flat (both are -1)
 struct Solid {
     Surface surface;
@@ -38,6 +40,8 @@ struct Solid {
     double isosurface_area = 0;
     double boundary_area = 0;
     std::uint64_t open_edges = 0; ///< edges at the boundary not used equally often in both directions; 0: closed
+    std::uint64_t seam_edges = 0; ///< where isosurfaces end inside the grid, at faces that lie back to back as their points
+                                  ///< are doubled: the solid has walls there, and is no clean body
     ContourResult contour;        ///< of the isosurfaces; its surfaces are empty
 };
 

@@ -305,6 +305,7 @@ nb::dict solid_out(const Solid& solid, double grid_volume) {
     out["boundary_area"] = solid.boundary_area;
     out["isosurface_triangles"] = solid.isosurface_triangles;
     out["open_edges"] = solid.open_edges;
+    out["seam_edges"] = solid.seam_edges;
     return out;
 }
 

@@ -127,7 +127,7 @@ class Surface:
     @property
     def solid(self) -> dict[str, Any] | None:
         """None, or of a solid: "volume", "grid_volume", "isosurface_area", "boundary_area", "isosurface_triangles" (the first
-        ones) and "open_edges" (0: closed)."""
+        ones), "open_edges" (0: closed) and "seam_edges" (of the isosurface inside the grid, where points are doubled)."""
         return self._how.get("solid")
 
     @property

@@ -121,9 +121,16 @@ Result<void> choose_hanging_values(ClosedGrid& closed, HangingChoice choice, Cal
 
 /// Cells list their hanging points, and what was found is noted.
 Result<Grid> closed(Grid grid, HangingChoice choice, Caller& caller, const Run& run) {
-    if (choice == HangingChoice::leave) return grid;
     Result<ClosedGrid> found = close_hanging_points(grid, run);
     if (!found) return found.error();
+    if (choice == HangingChoice::leave) {
+        if (found->report.points > 0)
+            caller.note(fmt::format("{} on faces or edges of larger cells: surfaces have open edges along {} there, and solids "
+                                    "walls, as `hanging_points` leave asks; `hanging_points` close joins the cells",
+                                    counted(found->report.points, "point") + (found->report.points == 1 ? " hangs" : " hang"),
+                                    counted(found->report.faces, "face")));
+        return grid;
+    }
     caller.notes(found->report.notes());
     if (found->report.points > 0)
         if (auto chosen = choose_hanging_values(*found, choice, caller, run); !chosen) return chosen.error();

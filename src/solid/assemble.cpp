@@ -135,6 +135,27 @@ Array part_numbers(std::size_t isosurface, std::size_t boundary) {
     return Array::own(std::move(parts));
 }
 
+bool is_whole_number(const Field& field) {
+    const ScalarType type = field.values.type();
+    return field.values.components() == 1 && type != ScalarType::float32 && type != ScalarType::float64;
+}
+
+/// Of the cap's triangles, by the 2D cells on them: their numbers, and what they have of fields of whole numbers.
+void add_patches(const Cap& cap, std::size_t isosurface, const std::vector<Field>& fields, Surface& out) {
+    const auto add = [&](std::string name, const auto& value) {
+        std::vector<std::int64_t> values(isosurface + cap.patches.size(), -1);
+        for (std::size_t i = 0; i < cap.patches.size(); ++i)
+            if (cap.patches[i] >= 0) values[isosurface + i] = value(static_cast<std::size_t>(cap.patches[i]));
+        out.cell_fields.push_back({std::move(name), Array::own(std::move(values))});
+    };
+    add("patch_cell", [](std::size_t cell) { return static_cast<std::int64_t>(cell); });
+    for (const Field& field : fields)
+        if (is_whole_number(field))
+            field.values.visit([&](auto numbers) {
+                add("patch_" + field.name, [&](std::size_t cell) { return static_cast<std::int64_t>(numbers[cell]); });
+            });
+}
+
 using Vector = std::array<double, 3>;
 
 /// Calls f(a, b, c) with the corners of a triangle.
@@ -182,8 +203,9 @@ Surface assemble(std::span<const Shell> shells, const Cap& cap, const ContourInp
         const auto heads = arrays_of(shells, [&](const Surface& s) { return values_of(s.cell_fields, field.name); });
         out.cell_fields.push_back({field.name, joined_of_cells(heads, field.values, cap.cells)});
     }
-    out.cell_fields.push_back(
-        {"boundary", part_numbers(out.triangles.tuples() - cap.triangles.size(), cap.triangles.size())});
+    const std::size_t isosurface = out.triangles.tuples() - cap.triangles.size();
+    if (!cap.patches.empty()) add_patches(cap, isosurface, input.cell_fields, out);
+    out.cell_fields.push_back({"boundary", part_numbers(isosurface, cap.triangles.size())});
     if (options.edge_ends) {
         const auto ends = arrays_of(shells, [](const Surface& s) { return s.edge_ends; });
         const std::size_t more = cap.points.size() + cap.apexes.size();

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <map>
 #include <mutex>
+#include <numeric>
+#include <optional>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -11,6 +14,7 @@
 
 #include "base/buffer.hpp"
 #include "base/errors.hpp"
+#include "base/memory.hpp"
 #include "base/parallel.hpp"
 #include "grid/cell/native_cells.hpp"
 #include "grid/cells.hpp"
@@ -170,6 +174,86 @@ BoundaryFaces with_places(const std::vector<DirectedFace>& surplus) {
     return out;
 }
 
+/// Of each place the first one with the same coordinates; empty where all differ.
+std::vector<std::uint32_t> first_at_place(const BoundaryFaces& boundary, const core::PointReader& points) {
+    const auto at = [&](std::uint32_t place) { return points[boundary.points[place]]; };
+    std::vector<std::uint32_t> order(boundary.points.size());
+    std::iota(order.begin(), order.end(), 0U);
+    tbb::parallel_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        const auto p = at(a), q = at(b);
+        return p != q ? p < q : a < b;
+    });
+    std::vector<std::uint32_t> first(order.size());
+    bool doubled = false;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const bool same = i > 0 && at(order[i]) == at(order[i - 1]);
+        first[order[i]] = same ? first[order[i - 1]] : order[i];
+        doubled |= same;
+    }
+    if (!doubled) first.clear();
+    return first;
+}
+
+/// Faces that would cancel each other if points with the same coordinates were one.
+std::vector<std::uint8_t> walls_of(const BoundaryFaces& boundary, const core::PointReader& points) {
+    const std::vector<std::uint32_t> first = first_at_place(boundary, points);
+    if (first.empty()) return {};
+    std::vector<DirectedFace> faces(boundary.faces.size()); // their numbers in place of cells
+    core::parallel_each(faces.size(), 1 << 12, [&](std::size_t i) {
+        std::array<std::uint64_t, 4> corners{};
+        const auto all = boundary.faces[i].all();
+        for (std::size_t k = 0; k < all.size(); ++k) corners[k] = first[all[k]];
+        faces[i] = directed(std::span(corners).first(all.size()), i);
+    });
+    tbb::parallel_sort(faces.begin(), faces.end());
+    std::vector<std::uint8_t> walls(faces.size(), 1);
+    for (const DirectedFace& face : surplus_of(faces)) walls[face.cell] = 0;
+    if (std::ranges::find(walls, 1) == walls.end()) walls.clear();
+    return walls;
+}
+
+constexpr std::uint8_t triangle_type = 5, pixel_type = 8, quad_type = 9; // VTK's
+
+/// The place of a point of the grid; nothing where the boundary has it not.
+std::optional<std::uint64_t> place_of(const BoundaryFaces& boundary, std::uint64_t point) {
+    const auto found = std::ranges::lower_bound(boundary.points, point);
+    if (found == boundary.points.end() || *found != point) return std::nullopt;
+    return static_cast<std::uint64_t>(found - boundary.points.begin());
+}
+
+/// The corners of a 2D cell, ascending, a triangle's last no_point; nothing where it is on no face.
+std::optional<std::array<std::uint64_t, 4>> sorted_corners(const core::CellReader& cells, std::size_t cell,
+                                                           const BoundaryFaces& boundary) {
+    const std::uint8_t type = cells.type(cell);
+    if (type != triangle_type && type != pixel_type && type != quad_type) return std::nullopt;
+    std::array<std::uint64_t, 4> corners{no_point, no_point, no_point, no_point};
+    for (std::size_t k = 0; k < (type == triangle_type ? 3U : 4U); ++k) {
+        const auto place = place_of(boundary, cells.corner(cells.first(cell) + k));
+        if (!place) return std::nullopt;
+        corners[k] = *place;
+    }
+    std::ranges::sort(corners);
+    return corners;
+}
+
+/// Finds the 2D cells that lie on faces, as the boundary's elements of finite-element meshes do.
+void find_patches(const core::CellReader& cells, BoundaryFaces& boundary) {
+    if (!cells.has_types()) return;
+    std::map<std::array<std::uint64_t, 4>, std::int64_t> patches;
+    for (std::size_t cell = 0; cell < cells.count(); ++cell)
+        if (const auto corners = sorted_corners(cells, cell, boundary))
+            patches.emplace(*corners, static_cast<std::int64_t>(cell));
+    if (patches.empty()) return;
+    core::parallel_each(boundary.faces.size(), 1 << 12, [&](std::size_t i) {
+        BoundaryFace& face = boundary.faces[i];
+        std::array<std::uint64_t, 4> corners{no_point, no_point, no_point, no_point};
+        std::ranges::copy(face.all(), corners.begin());
+        std::ranges::sort(corners);
+        const auto found = patches.find(corners);
+        if (found != patches.end()) face.patch = found->second;
+    });
+}
+
 } // namespace
 
 Result<BoundaryFaces> find_boundary_faces(const Grid& grid, const Array& values, CellMode mode,
@@ -177,6 +261,7 @@ Result<BoundaryFaces> find_boundary_faces(const Grid& grid, const Array& values,
     const auto cells = core::CellReader::open(grid);
     if (!cells) return cells.error();
     if (auto sound = core::check_cells(grid, *cells, progress); !sound) return sound.error();
+    if (auto ok = core::require_memory("finding the boundary", 9 * grid.points.tuples()); !ok) return ok.error();
     const FaceSource source(grid, *cells, values, mode);
     const core::Buffer<std::uint64_t> sums = sums_of_hashes(source, cells->count(), grid.points.tuples(), progress);
     std::vector<DirectedFace> found;
@@ -195,7 +280,10 @@ Result<BoundaryFaces> find_boundary_faces(const Grid& grid, const Array& values,
     if (surplus.size() > std::numeric_limits<std::uint32_t>::max() / 4)
         return invalid_data(fmt::format("the boundary has {} faces, but must have at most {}", surplus.size(),
                                         std::numeric_limits<std::uint32_t>::max() / 4));
-    return with_places(surplus);
+    BoundaryFaces boundary = with_places(surplus);
+    find_patches(*cells, boundary);
+    boundary.walls = walls_of(boundary, core::PointReader(grid.points));
+    return boundary;
 }
 
 } // namespace isotet::solid

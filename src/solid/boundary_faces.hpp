@@ -20,6 +20,7 @@ struct BoundaryFace {
     std::array<std::uint32_t, 4> places{};
     std::uint32_t count = 0; ///< 3 or 4
     std::uint64_t cell = 0;  ///< of the grid
+    std::int64_t patch = -1; ///< the 2D cell of the grid that lies on the face, the first one; -1: none
 
     std::span<const std::uint32_t> all() const { return {places.data(), count}; }
 };
@@ -27,6 +28,8 @@ struct BoundaryFace {
 struct BoundaryFaces {
     std::vector<BoundaryFace> faces;
     std::vector<std::uint64_t> points; ///< numbers in the grid, ascending
+    std::vector<std::uint8_t> walls; ///< 1 for a face that lies back to back on another one, by its coordinates, where points
+                                     ///< are doubled; empty: none does
 };
 
 enum class CellMode : std::uint8_t {

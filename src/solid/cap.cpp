@@ -24,7 +24,7 @@ constexpr Corner point_bit = Corner{1} << 32, apex_bit = Corner{1} << 33;
 
 struct RawTriangle {
     std::array<Corner, 3> corners;
-    std::uint64_t cell;
+    std::uint32_t face; ///< of the boundary
 };
 
 struct RawApex {
@@ -37,6 +37,7 @@ struct RawApex {
 struct RawCap {
     std::vector<RawTriangle> triangles;
     std::vector<RawApex> apexes;
+    std::uint64_t seam_edges = 0;
 };
 
 template <class Real>
@@ -61,12 +62,13 @@ public:
         for (std::size_t k = 0; k < face.count; ++k) all_sides[k] = side_of(face.places[k]);
         const auto sides = std::span<const Side>(all_sides).first(face.count);
         const bool is_cut = std::ranges::any_of(sides, [&](Side side) { return side != sides[0]; });
+        if (is_cut && is_wall(face)) out.seam_edges += edges_across(sides);
         if (is_cut && is_warped(face)) return add_warped(face, sides, out);
         for_parts(sides, [&](std::span<const PartVertex> part) {
             std::array<Corner, 16> polygon;
             const std::size_t count = corners_of(face, part, polygon);
             // Any fan of a flat part will do; that of a whole face starts in its lowest point, as when cells are split.
-            add_fan(std::span(polygon).first(count), is_cut ? 0 : lowest_corner(face), face.cell, out.triangles);
+            add_fan(std::span(polygon).first(count), is_cut ? 0 : lowest_corner(face), number_of(face), out.triangles);
         });
     }
 
@@ -75,6 +77,24 @@ private:
         const Real value = stored_[place];
         if (cuts_.upper && value >= cuts_.upper->isovalue.value) return Side::above;
         return cuts_.lower && value < cuts_.lower->isovalue.value ? Side::below : Side::inside;
+    }
+
+    std::uint32_t number_of(const BoundaryFace& face) const {
+        return static_cast<std::uint32_t>(&face - boundary_.faces.data());
+    }
+
+    bool is_wall(const BoundaryFace& face) const {
+        return !boundary_.walls.empty() && boundary_.walls[number_of(face)] != 0;
+    }
+
+    /// Edges of isosurfaces across a face with corners on these sides.
+    static std::uint64_t edges_across(std::span<const Side> sides) {
+        std::uint64_t crossings = 0;
+        for (std::size_t k = 0; k < sides.size(); ++k) {
+            const Side one = sides[k], next = sides[(k + 1) % sides.size()];
+            crossings += ((one == Side::below) != (next == Side::below)) + ((one == Side::above) != (next == Side::above));
+        }
+        return crossings / 2;
     }
 
     const Cut<Real>& cut_of(const PartVertex& vertex) const { return vertex.of_upper ? *cuts_.upper : *cuts_.lower; }
@@ -120,12 +140,12 @@ private:
         return static_cast<std::size_t>(std::ranges::min_element(face.all()) - face.all().begin());
     }
 
-    static void add_fan(std::span<const Corner> polygon, std::size_t start, std::uint64_t cell,
+    static void add_fan(std::span<const Corner> polygon, std::size_t start, std::uint32_t face,
                         std::vector<RawTriangle>& out) {
         if (polygon.size() < 3) return;
         const auto n = polygon.size();
         for (std::size_t k = 1; k + 1 < n; ++k)
-            out.push_back({{polygon[start], polygon[(start + k) % n], polygon[(start + k + 1) % n]}, cell});
+            out.push_back({{polygon[start], polygon[(start + k) % n], polygon[(start + k + 1) % n]}, face});
     }
 
     Place3 place_of_point(std::uint32_t place) const { return points_[boundary_.points[place]]; }
@@ -212,10 +232,10 @@ private:
             for (std::size_t axis = 0; axis < 3; ++axis) apex[axis] += origin[axis];
             const Corner number = out.apexes.size() | apex_bit;
             for (std::size_t k = 0; k < count; ++k)
-                out.triangles.push_back({{polygon[k], polygon[(k + 1) % count], number}, face.cell});
+                out.triangles.push_back({{polygon[k], polygon[(k + 1) % count], number}, number_of(face)});
             out.apexes.push_back({apex,
                                   {polygon.begin(), polygon.begin() + static_cast<std::ptrdiff_t>(count)},
-                                  static_cast<std::uint32_t>(&face - boundary_.faces.data())});
+                                  number_of(face)});
         });
     }
 
@@ -245,6 +265,7 @@ RawCap raw_cap(const BoundaryFaces& boundary, const CapMaker<Real>& maker) {
             all.triangles.push_back(triangle);
         }
         std::ranges::move(some.apexes, std::back_inserter(all.apexes));
+        all.seam_edges += some.seam_edges;
     }
     return all;
 }
@@ -268,6 +289,7 @@ Cap make_cap(const BoundaryFaces& boundary, const Array& points, const Array& va
         for (const Corner corner : triangle.corners)
             if (corner & point_bit) numbers[static_cast<std::uint32_t>(corner)] = 0;
     Cap cap;
+    cap.seam_edges = raw.seam_edges;
     for (std::size_t place = 0; place < numbers.size(); ++place) {
         if (numbers[place] == Rim::no_vertex) continue;
         numbers[place] = cuts.vertices + static_cast<std::uint32_t>(cap.points.size());
@@ -282,8 +304,13 @@ Cap make_cap(const BoundaryFaces& boundary, const Array& points, const Array& va
     cap.cells.resize(raw.triangles.size());
     core::parallel_each(raw.triangles.size(), 1 << 14, [&](std::size_t i) {
         for (std::size_t k = 0; k < 3; ++k) cap.triangles[i][k] = vertex_of(raw.triangles[i].corners[k]);
-        cap.cells[i] = raw.triangles[i].cell;
+        cap.cells[i] = boundary.faces[raw.triangles[i].face].cell;
     });
+    if (std::ranges::any_of(boundary.faces, [](const BoundaryFace& face) { return face.patch >= 0; })) {
+        cap.patches.resize(raw.triangles.size());
+        for (std::size_t i = 0; i < cap.patches.size(); ++i)
+            cap.patches[i] = boundary.faces[raw.triangles[i].face].patch;
+    }
     cap.apexes.resize(raw.apexes.size());
     core::parallel_each(raw.apexes.size(), 1 << 12, [&](std::size_t i) {
         cap.apexes[i].position = raw.apexes[i].position;

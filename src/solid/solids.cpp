@@ -14,6 +14,7 @@
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
 #include "base/guard.hpp"
+#include "base/memory.hpp"
 #include "session/linear_input.hpp"
 #include "solid/assemble.hpp"
 #include "solid/boundary_faces.hpp"
@@ -49,6 +50,15 @@ solid::Cap cap_of(const solid::BoundaryFaces& boundary, const solid::BoundaryPoi
         cuts.vertices += static_cast<std::uint32_t>(shell.surface.vertex_count());
     }
     return solid::make_cap<Real>(boundary, input.grid.points, input.field.values, cuts);
+}
+
+/// At most: triangles of the boundary twice, and what each of `vertices` has.
+std::uint64_t bytes_to_close(const ContourInput& input, const solid::BoundaryFaces& boundary, std::uint64_t vertices) {
+    std::uint64_t a_vertex = 3 * sizeof(double), a_triangle = 3 * sizeof(std::uint32_t);
+    for (const Field& field : input.point_fields) a_vertex += sizeof(double) * field.values.components();
+    for (const Field& field : input.cell_fields) a_triangle += sizeof(double) * field.values.components();
+    constexpr std::uint64_t triangles_per_face = 4, while_working = 60;
+    return vertices * a_vertex + boundary.faces.size() * triangles_per_face * (a_triangle + while_working);
 }
 
 Result<void> add_normals(Normals kind, Surface& surface, const Run& run) {
@@ -116,6 +126,8 @@ Result<Solid> Solids::extract(const SolidRange& range, const Run& run) {
         if (vertices > std::numeric_limits<std::uint32_t>::max())
             return invalid_data(
                 fmt::format("the solid has up to {} vertices, but must have fewer than 2^32", vertices));
+        if (auto ok = core::require_memory("closing the isosurface", bytes_to_close(data.input, data.boundary, vertices)); !ok)
+            return ok.error();
         const solid::Cap cap =
             data.options.precision == Precision::float32
                 ? cap_of<float>(data.boundary, data.points, data.input, out.contour.field, range, shells)
@@ -126,6 +138,7 @@ Result<Solid> Solids::extract(const SolidRange& range, const Run& run) {
         const auto triangles = out.surface.triangles.as<std::uint32_t>();
         out.open_edges = solid::count_open_edges(cap, triangles.first(3 * out.isosurface_triangles),
                                                  static_cast<std::uint32_t>(out.surface.vertex_count()));
+        out.seam_edges = cap.seam_edges;
         out.volume = solid::enclosed_volume(out.surface);
         out.isosurface_area = solid::area_of(out.surface, 0, out.isosurface_triangles);
         out.boundary_area = solid::area_of(out.surface, out.isosurface_triangles, out.surface.triangle_count());

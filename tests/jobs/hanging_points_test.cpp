@@ -49,8 +49,10 @@ TEST(HangingPointJobs, CloseWhatIsReadWholeAndWhatIsReadInPart) {
             test::Listener heard;
             const std::string out = folder.file("surface.vtp");
             ASSERT_TRUE(extract_files(job_for(grid, out, choice), heard));
+            EXPECT_EQ(has_note(heard, "`hanging_points` close joins the cells"),
+                      choice == HangingChoice::leave && grid != file) << "a file is read in part, and not looked through";
             EXPECT_EQ(is_closed(out), choice != HangingChoice::leave) << grid;
-            EXPECT_EQ(has_note(heard, "hang on faces or edges of larger cells"), choice != HangingChoice::leave);
+            EXPECT_EQ(has_note(heard, "list them as polyhedra"), choice != HangingChoice::leave);
             EXPECT_EQ(has_note(heard, "they have those of the larger cells"), choice == HangingChoice::interpolate);
             EXPECT_EQ(has_note(heard, "they have their own"), choice == HangingChoice::close);
         }

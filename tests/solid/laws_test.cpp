@@ -16,6 +16,7 @@
 #include "support/mixed_grid.hpp"
 #include "support/random_grid.hpp"
 #include "support/seeds.hpp"
+#include "support/small_grid.hpp"
 #include "support/surface_bytes.hpp"
 
 namespace isotet::test {
@@ -147,6 +148,46 @@ TEST(Solid, EnclosesTheVolumeOfTheSpectrum) {
             const Solid below = solids.extract(SolidRange::below(isovalues[i])).value();
             EXPECT_NEAR(below.volume, spectrum.volume_below[i], 1e-6 * solids.grid_volume());
         }
+    }
+}
+
+/// Each cell gets points of its own.
+Grid taken_apart(const Grid& grid) {
+    const auto corners = grid.cells.connectivity;
+    std::vector<double> points;
+    std::vector<std::int64_t> connectivity(corners.size());
+    std::vector<float> values;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const auto point = static_cast<std::size_t>(corners.at(i));
+        for (std::size_t axis = 0; axis < 3; ++axis) points.push_back(grid.points.at(point, axis));
+        values.push_back(static_cast<float>(grid.point_fields[0].values.at(point)));
+        connectivity[i] = static_cast<std::int64_t>(i);
+    }
+    Grid out = grid;
+    out.points = Array::own(std::move(points), 3);
+    out.cells.connectivity = Array::own(std::move(connectivity));
+    out.point_fields = {{grid.point_fields[0].name, Array::own(std::move(values))}};
+    return out;
+}
+
+TEST(Solid, OfDoubledPointsCountsTheEdgesWhereItsIsosurfaceIsOpenInside) {
+    for (const char* shape : {"kuhn", "hex"}) {
+        const Grid whole = made_grid(shape, 4, {"sphere"});
+        const auto solid_of = [](const Grid& grid) {
+            return Solids::create({grid, point_field(grid), {}, {}}).value().extract(SolidRange::below(0.73)).value();
+        };
+        const auto open_edges = [](const Solid& solid) { // of the isosurface alone
+            Surface surface = solid.surface;
+            const auto triangles = surface.triangles.as<std::uint32_t>().first(3 * solid.isosurface_triangles);
+            surface.triangles = Array::own(std::vector<std::uint32_t>(triangles.begin(), triangles.end()), 3);
+            return unbalanced_edges(surface);
+        };
+        const Solid one = solid_of(whole), apart = solid_of(taken_apart(whole));
+        EXPECT_EQ(one.seam_edges, 0u);
+        EXPECT_EQ(apart.seam_edges, open_edges(apart) - open_edges(one));
+        EXPECT_GT(apart.seam_edges, 100u);
+        EXPECT_EQ(apart.open_edges, 0u);
+        EXPECT_NEAR(apart.volume, one.volume, 1e-6);
     }
 }
 
