@@ -27,26 +27,25 @@ Examples:
   isotet clip run.pvd 'liquid-{step}.vtu' -f alpha --above 0.5 --all-steps
 )";
 
-/// "0.1:0.5".
-SolidRange parse_range(const std::string& text) {
-    SolidRange out;
-    const char* const end = text.data() + text.size();
-    const auto [colon, first] = std::from_chars(text.data(), end, out.lower);
-    const bool divided = first == std::errc{} && colon != end && *colon == ':';
-    const auto [rest, second] =
-        divided ? std::from_chars(colon + 1, end, out.upper) : std::from_chars_result{end, std::errc{}};
-    if (!divided || second != std::errc{} || rest != end || !(out.lower < out.upper))
-        refuse_value("--between", text, "two isovalues A:B, A below B");
-    return out;
-}
-
 void add_range(const Command& command, ClipCommand& clip) {
-    const Option above = command.add_number(
-        "--above", [&clip](double v) { clip.range = SolidRange::above(v); }, "V", "Keep where the field is at least V");
-    const Option below = command.add_number(
-        "--below", [&clip](double v) { clip.range = SolidRange::below(v); }, "V", "Keep where the field is below V");
+    const auto share = [](const std::string& text, std::optional<IsovalueShare>& end) {
+        end = parse_share(text);
+        return end.has_value();
+    };
+    const Option above = command.add_value(
+        "--above",
+        [&clip, share](const std::string& text) {
+            clip.range = share(text, clip.shares.lower) ? SolidRange{} : SolidRange::above(parse_end("--above", text));
+        },
+        "V", "Keep where the field is at least V: a number, or a share such as 90%v or p95, as of isotet extract -i");
+    const Option below = command.add_value(
+        "--below",
+        [&clip, share](const std::string& text) {
+            clip.range = share(text, clip.shares.upper) ? SolidRange{} : SolidRange::below(parse_end("--below", text));
+        },
+        "V", "Keep where the field is below V");
     const Option between = command.add_value(
-        "--between", [&clip](const std::string& text) { clip.range = parse_range(text); }, "A:B",
+        "--between", [&clip](const std::string& text) { clip.range = parse_range("--between", text, clip.shares); }, "A:B",
         "Keep where the field is at least A and below B");
     below.excludes(above);
     between.excludes(above).excludes(below);

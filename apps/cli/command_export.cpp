@@ -44,7 +44,7 @@ view::SavedSurfacesOptions options_of(const ExportCommand& command, const view::
     view::SavedSurfacesOptions options;
     options.file = name_without_folder(command.grid.file);
     options.version = ISOTET_VERSION;
-    options.isovalues = command.isovalues;
+    options.isovalues = input.state.isovalues; // those that were named
     options.count = command.count;
     if (!command.range.empty()) options.range = ValueRange{command.range[0], command.range[1]};
     options.refine = command.refine;
@@ -104,7 +104,7 @@ Result<ExitCode> run_export(const ExportCommand& command) {
     ExportTimes seconds;
     const Stopwatch reading;
     Result<view::ViewerInput> input = read_view_input(
-        {grid, command.field, command.isovalues, command.color_by}, *source, console, console.run());
+        {grid, command.field, command.isovalues, command.shares, command.color_by}, *source, console, console.run());
     if (!input) return input.error();
     seconds.read = reading.seconds();
 

@@ -268,39 +268,8 @@ SolidChoice parse_solid(const std::string& text) {
     if (text == "above") return {SolidChoice::Kind::above, {}};
     if (text == "below") return {SolidChoice::Kind::below, {}};
     SolidChoice out{SolidChoice::Kind::between, {}};
-    const char* const end = text.data() + text.size();
-    const auto [colon, first] = std::from_chars(text.data(), end, out.range.lower);
-    const bool divided = first == std::errc{} && colon != end && *colon == ':';
-    const auto [rest, second] =
-        divided ? std::from_chars(colon + 1, end, out.range.upper) : std::from_chars_result{end, std::errc{}};
-    if (!divided || second != std::errc{} || rest != end || !(out.range.lower < out.range.upper))
-        refuse_value("--solid", text, "above, below, or two isovalues A:B, A below B");
-    return out;
-}
-
-/// "largest", "3", "area>0.5", "volume>2", "touching:material=2".
-PartChoice parse_parts(const std::string& text) {
-    constexpr std::string_view touching = "touching:";
-    if (text == "largest") return {};
-    PartChoice out;
-    if (text.starts_with(touching) && text.size() > touching.size())
-        return {PartChoice::Kind::touching, 0, text.substr(touching.size())};
-    std::string_view number = text;
-    for (const auto& [word, kind] : {std::pair<std::string_view, PartChoice::Kind>{"area>", PartChoice::Kind::area},
-                                     {"volume>", PartChoice::Kind::volume}}) {
-        if (!number.starts_with(word)) continue;
-        out.kind = kind;
-        number.remove_prefix(word.size());
-        break;
-    }
-    const bool counts = out.kind == PartChoice::Kind::largest;
-    std::uint64_t count = 0;
-    const char* const end = number.data() + number.size();
-    const std::from_chars_result read =
-        counts ? std::from_chars(number.data(), end, count) : std::from_chars(number.data(), end, out.limit);
-    if (counts) out.limit = static_cast<double>(count);
-    if (read.ec != std::errc{} || read.ptr != end || (counts && count == 0) || !(out.limit >= 0))
-        refuse_value("--keep", text, "largest, a number of parts from 1, area>A, volume>V or touching:REGION");
+    if (text.find(':') == std::string::npos) refuse_value("--solid", text, "above, below, or two isovalues A:B, A below B");
+    out.range = parse_range("--solid", text, out.shares);
     return out;
 }
 
@@ -350,7 +319,7 @@ void add_view(const Command& program, ViewCommand& view) {
     command.add_file("FILE", view.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]").required();
     add_more_files(command, view.grid);
     add_field(command, view.field, "The field to begin with, or an expression such as mag(U); default: the one that info says is shown first");
-    add_isovalues(command, view.isovalues);
+    add_isovalues(command, view.isovalues, view.shares);
     command.add_text("--color-by", view.color_by, "FIELD", "Colour by this point or cell field to begin with");
     command.add_count(
         "--port", {1, 65535}, [&](std::uint64_t n) { view.port = n; }, "N",
@@ -382,7 +351,7 @@ void add_export(const Command& program, ExportCommand& exported) {
     command.add_file("FILE", exported.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]").required();
     command.add_file("OUT", exported.out, "OUT_FILE", "The page: .html").required();
     add_field(command, exported.field, "The field to contour, or an expression such as mag(U); default: the one that info says is shown first");
-    const Option isovalues = add_isovalues(command, exported.isovalues);
+    const Option isovalues = add_isovalues(command, exported.isovalues, exported.shares);
     command.add_choice<bool>("--as", exported.grid_inside, {{"surfaces", false}, {"grid", true}},
                              "What is in the page: surfaces (the default), or the grid, with isotet as WebAssembly: any "
                              "isovalue, slices, colours by all its fields");
@@ -522,6 +491,14 @@ void add_docs(const Command& program, DocsCommand& docs) {
 }
 
 } // namespace
+
+PartChoice parse_parts(const std::string& text) {
+    std::optional<PartChoice> choice = parse_part_choice(text);
+    if (!choice)
+        refuse_value("--keep", text,
+                     "largest, a number of parts from 1, area>A, volume>V, touching:REGION, parts:I,J or not:I,J");
+    return *std::move(choice);
+}
 
 void add_time(const Command& command, GridOptions& grid) {
     const Option time =
@@ -675,7 +652,6 @@ std::optional<double> with_decimal_comma(std::string text) {
     return parse_number(text);
 }
 
-/// "90%v" and "p95"; nothing for other words.
 std::optional<IsovalueShare> parse_share(std::string_view word) {
     IsovalueShare share;
     if (word.ends_with("%v")) {
@@ -690,6 +666,27 @@ std::optional<IsovalueShare> parse_share(std::string_view word) {
     if (!percent || !(*percent >= 0 && *percent <= 100)) return {};
     share.percent = *percent;
     return share;
+}
+
+double parse_end(const std::string& option, std::string_view text) {
+    const std::optional<double> number = parse_number(text);
+    if (!number) refuse_value(option, text, "a finite number, or a share such as 90%v or p95");
+    return *number;
+}
+
+SolidRange parse_range(const std::string& option, const std::string& text, RangeShares& shares) {
+    const std::size_t colon = text.find(':');
+    SolidRange out;
+    const bool divided = colon != std::string::npos;
+    const std::string_view first = std::string_view(text).substr(0, colon);
+    const std::string_view second = divided ? std::string_view(text).substr(colon + 1) : std::string_view();
+    shares = {parse_share(first), parse_share(second)};
+    const std::optional<double> lower = parse_number(first), upper = parse_number(second);
+    if (lower) out.lower = *lower;
+    if (upper) out.upper = *upper;
+    if (!divided || (!lower && !shares.lower) || (!upper && !shares.upper) || !(out.lower < out.upper))
+        refuse_value(option, text, "two isovalues A:B, A below B: numbers, or shares such as 90%v");
+    return out;
 }
 
 Option add_isovalues(const Command& command, std::vector<double>& isovalues, std::vector<IsovalueShare>& shares,
@@ -807,10 +804,10 @@ void add_surface_options(const Command& command, ExtractJob& job, const std::str
         "--solid", [&job](const std::string& text) { job.solid = parse_solid(text); }, "above|below|A:B", solids);
     command.add_value(
         "--keep", [&job](const std::string& text) { job.keep = parse_parts(text); },
-        "largest|N|area>A|volume>V|touching:REGION",
+        "largest|N|area>A|volume>V|touching:REGION|parts:I[,J]|not:I[,J]",
         "Only these connected parts of each surface or solid: the largest by area, the N largest, those of more area or "
-        "enclosed volume, or those that touch boundary, a named region, or cells with FIELD=VALUE; cell field part: "
-        "their numbers");
+        "enclosed volume, those that touch boundary, a named region, or cells with FIELD=VALUE, or by their numbers, as "
+        "--parts and the cell field part have them");
     command.add_file("--parts", job.parts_table, "FILE.csv",
                      "Write a table of the connected parts: triangles, area, volume, place, means of the fields");
     command.add_value(

@@ -18,6 +18,14 @@ void add_grid_and_surface(const Command& command, ExtractJob& job);
 /// What surfaces are like, and how they are made. `solids` is the help of --solid.
 void add_surface_options(const Command& command, ExtractJob& job, const std::string& solids);
 void add_common(const Command& command, CommonOptions& common);
+/// "90%v" and "p95"; nothing for other words.
+std::optional<IsovalueShare> parse_share(std::string_view word);
+/// A finite number.
+double parse_end(const std::string& option, std::string_view text);
+/// "0.1:0.5"; its ends may be shares.
+SolidRange parse_range(const std::string& option, const std::string& text, RangeShares& shares);
+/// The value of --keep.
+PartChoice parse_parts(const std::string& text);
 void add_slice_command(const Command& program, SliceCommand& slice);
 void add_clip_command(const Command& program, ClipCommand& clip);
 Command add_render_command(const Command& program, RenderCommand& render);

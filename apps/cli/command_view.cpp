@@ -129,7 +129,7 @@ Result<ExitCode> run_view(const ViewCommand& command) {
     }
     options.program = "/proc/self/exe";
     options.listen = command.listen;
-    options.read = [&](const Run& run) { return read_view_input({command.grid, command.field, command.isovalues, command.color_by}, *source, console, run); };
+    options.read = [&](const Run& run) { return read_view_input({command.grid, command.field, command.isovalues, command.shares, command.color_by}, *source, console, run); };
     std::mutex reading; // steps are read by several threads
     options.read_step = [&](std::size_t step, const Run& run) {
         const std::lock_guard lock(reading);

@@ -95,6 +95,8 @@ Json grid_report(const ExportCommand& command, const PackNumbers& packed, std::s
 Result<ExitCode> run_export_grid(const ExportCommand& command) {
     Console console(command.common);
     if (ending_of(command.out) != ".html") return usage_error("OUT is '{}', but a page ends in .html", command.out);
+    if (!command.shares.empty())
+        return usage_error("--isovalue by share goes into pages of surfaces; that of a grid takes it in its own box");
     if (Result<void> checked = view::check_grid_pages(); !checked) return checked.error();
     if (Result<void> paths = check_output_paths({command.grid.file}, {command.out, command.common.json}); !paths)
         return paths.error();

@@ -76,7 +76,8 @@ Json solid_json(const SolidNumbers& solid) {
             {"grid_volume", solid.grid_volume},
             {"isosurface_area", solid.isosurface_area},
             {"boundary_area", solid.boundary_area},
-            {"open_edges", solid.open_edges}};
+            {"open_edges", solid.open_edges},
+            {"seam_edges", solid.seam_edges}};
 }
 
 std::string time_text(const ExtractNumbers& numbers) {

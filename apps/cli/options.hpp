@@ -59,6 +59,7 @@ struct ViewCommand {
     FieldChoice field;
     RefineChoice refine = RefineOptions{};
     std::vector<double> isovalues;  ///< none: the page chooses one
+    std::vector<IsovalueShare> shares; ///< more, of the first step
     std::string color_by;           ///< a field; empty: each isovalue has its colour
     std::uint64_t port = 0;         ///< 0: a free one
     std::vector<std::string> hosts; ///< names beside localhost by which a browser reaches the page
@@ -75,6 +76,7 @@ struct ExportCommand {
     RefineChoice refine = RefineOptions{};
     std::string out;               ///< .html
     std::vector<double> isovalues; ///< these; empty: `count` of them
+    std::vector<IsovalueShare> shares; ///< more, of the first step; not with `grid_inside`
     std::uint64_t count = 63;
     std::vector<double> range; ///< none, or two: where they lie evenly
     std::string color_by;

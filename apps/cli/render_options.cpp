@@ -159,6 +159,10 @@ void add_cuts(const Command& command, RenderCommand& render) {
     command.add_choice<std::optional<SolidSide>>(
         "--solid", render.solid, {{"above", SolidSide::above}, {"below", SolidSide::below}},
         "Closed solids in place of isosurfaces: the grid where the field is at least the isovalue, or below it");
+    command.add_value(
+        "--keep", [&render](const std::string& text) { render.keep = parse_parts(text); },
+        "largest|N|area>A|volume>V|touching:boundary|parts:I[,J]|not:I[,J]",
+        "Only these connected parts of each isosurface or solid, as isotet extract");
     command.add_flag(
         "--edges", render.edges,
         "Draw the edges of the triangles of boundary and slices, or of the surfaces where neither is drawn");

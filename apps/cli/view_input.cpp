@@ -14,6 +14,16 @@ void take_first_view(const FirstView& first, bool isovalues_are_given, view::Vie
     console.note(first.field.empty() ? std::string("no field varies: this is the grid") : note_of(first));
 }
 
+Result<void> add_shares(const ViewStart& start, const Grid& grid, const Run& run, view::ViewState& state) {
+    if (start.shares.empty()) return {};
+    const Result<PointField> field = find_field(grid, state.field, {}, run);
+    if (!field) return field.error();
+    const auto found = isovalues_at(grid, *field, start.shares, run);
+    if (!found) return found.error();
+    state.isovalues.insert(state.isovalues.end(), found->begin(), found->end());
+    return {};
+}
+
 } // namespace
 
 Result<void> check_view_fields(const GridSource& source, const FieldChoice& field, const std::string& color_by) {
@@ -36,8 +46,10 @@ Result<view::ViewerInput> read_view_input(const ViewStart& start, GridSource& so
     view::ViewerInput input;
     input.state.field = start.field.name;
     if (input.state.field.empty())
-        take_first_view(first_view(*grid, fields), !start.isovalues.empty(), input.state, console);
+        take_first_view(first_view(*grid, fields), !start.isovalues.empty() || !start.shares.empty(), input.state,
+                        console);
     input.state.isovalues = start.isovalues;
+    if (Result<void> added = add_shares(start, *grid, run, input.state); !added) return added.error();
     input.state.color_by = start.color_by;
     input.times = source.info().times;
     if (input.times.size() > 1) input.state.step = step;

@@ -7,6 +7,7 @@
 
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
+#include <isotet/isovalue_shares.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
 
@@ -20,6 +21,7 @@ struct ViewStart {
     const GridOptions& grid;
     const FieldChoice& field;
     const std::vector<double>& isovalues;
+    const std::vector<IsovalueShare>& shares; ///< more, of the first step
     const std::string& color_by;
 };
 

@@ -18,6 +18,7 @@
 #include <isotet/field_statistics.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/opacity.hpp>
+#include <isotet/parts.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/refine.hpp>
 #include <isotet/render.hpp>
@@ -69,6 +70,8 @@ struct SceneLook {
     std::optional<VolumeLook> volume = {}; ///< of the field; curved cells are then split at their nodes
     std::optional<SolidSide> solid = {};   ///< in place of isosurfaces: the closed part of the grid on one side of
                                            ///< each; the CPU makes them, and no volume goes with them
+    std::optional<PartChoice> keep = {}; ///< of each isosurface or solid only these parts, as keep_parts(); the CPU
+                                         ///< extracts
 };
 
 /// Colour and opacity of one of several isosurfaces.
@@ -94,7 +97,11 @@ ISOTET_API std::vector<SurfaceLook> looks_of(std::span<const double> isovalues, 
 ISOTET_API Result<Surface> slice_of(const Grid& grid, const Plane& plane, const ColorField* field, const Run& run = {});
 
 /// A solid as IsosurfaceScene draws it: triangles of its boundary share no vertex, so that each is flat.
-ISOTET_API Surface drawn_solid(const Solid& solid);
+///
+/// `keep`   its connected parts that are drawn; nothing: all
+/// Errors   as keep_parts()
+ISOTET_API Result<Surface> drawn_solid(const Solid& solid, const std::optional<PartChoice>& keep = {},
+                                       const Run& run = {});
 
 /// Where surfaces of a grid are extracted.
 enum class ExtractOn : std::uint8_t {

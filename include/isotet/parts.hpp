@@ -4,7 +4,9 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <isotet/array.hpp>
@@ -62,5 +64,46 @@ struct Region {
 ///          another surface
 ISOTET_API Result<std::vector<std::uint64_t>> parts_touching(const Surface& surface, const SurfaceParts& parts,
                                                              const Region& region);
+
+/// Which connected parts of a surface are kept.
+struct PartChoice {
+    enum class Kind : std::uint8_t {
+        largest,  ///< the `limit` ones of largest area
+        area,     ///< those of a larger area than `limit`
+        volume,   ///< closed ones that enclose more than `limit`
+        touching, ///< those that touch `region` (parts_touching())
+        numbers,  ///< those of `numbers`
+        others    ///< all but those of `numbers`
+    };
+    Kind kind = Kind::largest;
+    double limit = 1;
+    std::string region = {}; ///< "boundary", the grid's, or what else a caller knows
+    std::vector<std::uint64_t> numbers = {}; ///< as SurfaceParts counts; those that are not there do not matter
+
+    friend bool operator==(const PartChoice&, const PartChoice&) = default;
+};
+
+/// "largest", "3", "area>0.5", "volume>2", "touching:boundary", "parts:0,2" or "not:1", and back. Nothing where it is none
+/// of these.
+ISOTET_API std::optional<PartChoice> parse_part_choice(std::string_view text);
+ISOTET_API std::string to_text(const PartChoice& choice);
+
+/// What parts are of: so it is known which of them touch the boundary of the grid.
+enum class PartsOf : std::uint8_t {
+    isosurface, ///< those that are not closed
+    solid       ///< those with a triangle where the cell field "boundary" is 1
+};
+
+/// The numbers of the parts of a choice, ascending.
+///
+/// Errors   invalid_argument where a region other than "boundary" is to be touched, which parts_touching() finds; as that
+ISOTET_API Result<std::vector<std::uint64_t>> chosen_parts(const Surface& surface, const SurfaceParts& parts,
+                                                           const PartChoice& choice, PartsOf of);
+
+/// Finds the parts of a surface, and keeps those of a choice. No field is added.
+///
+/// Errors   as find_parts(), chosen_parts() and keep_parts()
+ISOTET_API Result<Surface> keep_parts(const Surface& surface, const PartChoice& choice, PartsOf of,
+                                      const Run& run = {});
 
 } // namespace isotet

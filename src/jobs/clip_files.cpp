@@ -156,10 +156,13 @@ Result<void> ClipRun::clip_step(std::size_t step) {
     Result<ContourInput> input = load(step);
     if (!input) return input.error();
     const core::Stopwatch clipping;
+    const Result<SolidRange> range = with_shares(*job_.range, job_.shares, input->grid, input->field, caller_.run());
+    if (!range) return range.error();
+    numbers_.range = *range;
     caller_.detail("clipping");
     Result<Clipper> clipper = Clipper::create(*std::move(input), options(), caller_.run());
     if (!clipper) return clipper.error();
-    Result<ClippedGrid> clipped = clipper->clip(*job_.range, job_.clip, caller_.run());
+    Result<ClippedGrid> clipped = clipper->clip(*range, job_.clip, caller_.run());
     if (!clipped) return clipped.error();
     caller_.notes(clipped->contour.notes);
     numbers_.field = clipped->contour.field;

@@ -139,6 +139,20 @@ Result<void> check_drawn_solid(const DrawJob& job) {
     return {};
 }
 
+/// Refuses what finds no parts of surfaces.
+Result<void> check_drawn_parts(const DrawJob& job) {
+    if (!job.keep) return {};
+    if (job.keep->kind == PartChoice::Kind::touching && job.keep->region != "boundary")
+        return refusal("`keep` touching got '{}', but a picture knows only 'boundary': isotet extract keeps what touches "
+                       "other regions, and isotet render draws its file",
+                       job.keep->region);
+    if (job.method.draw)
+        return refusal("`keep` is for parts of surfaces, but `method` {} makes none", name_of(*job.method.draw));
+    if (job.engine == EngineChoice::vulkan)
+        return refusal("`keep` needs surfaces of the CPU, but `engine` vulkan was asked for");
+    return {};
+}
+
 /// Refuses what does not go with a volume, or needs one.
 Result<void> check_volume(const DrawJob& job) {
     if (!draws_volume(job)) {
@@ -163,6 +177,7 @@ Result<DrawReport> draw_files(const DrawJob& job, Caller& caller) {
     if (Result<void> fits = check_method(job); !fits) return fits.error();
     if (Result<void> fits = check_volume(job); !fits) return fits.error();
     if (Result<void> fits = check_drawn_solid(job); !fits) return fits.error();
+    if (Result<void> fits = check_drawn_parts(job); !fits) return fits.error();
     // The number of steps is known only when the file was looked into; all else is checked before.
     std::optional<PictureFiles> files;
     const auto open = [&](std::size_t steps) -> Result<void> {

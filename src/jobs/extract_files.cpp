@@ -78,6 +78,7 @@ private:
     Grid grid_;                                    ///< of the step at hand
     PointField field_;                             ///< that is contoured there
     std::vector<double> share_isovalues_;          ///< of ExtractJob::shares
+    SolidChoice solid_;                            ///< of ExtractJob::solid, with the shares of its range
     std::vector<double> isovalues_;                ///< of the step at hand: levels follow its range
     std::uint64_t first_cell_ = 0;                 ///< of the piece
     std::uint64_t coarse_tets_ = 0;                ///< of the step at hand, with direct extraction
@@ -392,6 +393,14 @@ Result<bool> ExtractRun::load_packed(std::size_t step) {
 
 /// The isovalues of the shares, of the whole grid.
 Result<void> ExtractRun::find_shares() {
+    if (job_.solid) {
+        solid_ = *job_.solid;
+        if (solid_.kind == SolidChoice::Kind::between) {
+            const auto range = with_shares(solid_.range, solid_.shares, grid_, field_, caller_.run());
+            if (!range) return range.error();
+            solid_.range = *range;
+        }
+    }
     if (job_.shares.empty()) return {};
     const core::Stopwatch looking;
     caller_.detail("looking for the isovalues of shares");
@@ -423,7 +432,7 @@ Result<void> ExtractRun::measure_volumes(std::size_t first) {
 
 Result<void> ExtractRun::choose_values(std::size_t step) {
     if (job_.solid && job_.solid->kind == SolidChoice::Kind::between) {
-        isovalues_ = {job_.solid->range.lower};
+        isovalues_ = {solid_.range.lower};
     } else {
         Result<std::vector<double>> isovalues =
             choose_isovalues(job_, share_isovalues_, field_.values, numbers_.field, caller_);
@@ -509,7 +518,7 @@ Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> is
 }
 
 Result<std::vector<Surface>> ExtractRun::extract_solid(double isovalue, std::size_t step) {
-    const SolidRange range = range_for(*job_.solid, isovalue);
+    const SolidRange range = range_for(solid_, isovalue);
     caller_.detail(fmt::format("making the solid from {} to {}", shortest(range.lower), shortest(range.upper)));
     Result<Solid> made = solids_->extract(range, caller_.run());
     if (!made) return made.error();
@@ -534,7 +543,8 @@ Result<std::vector<Surface>> ExtractRun::extract_solid(double isovalue, std::siz
                                  solids_->grid_volume(),
                                  made->isosurface_area,
                                  made->boundary_area,
-                                 made->open_edges};
+                                 made->open_edges,
+                                 made->seam_edges};
     if (numbers.triangles == 0 && job_.fail_if_empty)
         return Error{ErrorCode::invalid_data, "`fail_if_empty`: the solid is empty"};
     note_what_a_solid_is(numbers_, numbers, caller_);
@@ -555,6 +565,9 @@ Result<void> ExtractRun::find_parts_of(Surface& surface, SurfaceNumbers& numbers
     const Result<std::vector<std::uint64_t>> which = kept_parts(surface, *found, job_.keep, plan_.touched);
     if (!which) return which.error();
     const std::vector<std::uint64_t>& kept = *which;
+    if (job_.keep && !job_.keep->numbers.empty() && std::ranges::max(job_.keep->numbers) >= found->parts.size())
+        caller_.note(fmt::format("`keep` names part {}, but isovalue {} has {}, counted from 0",
+                                 std::ranges::max(job_.keep->numbers), shortest(numbers.isovalue), found->parts.size()));
     Result<Surface> some = keep_parts(surface, *found, kept, caller_.run());
     if (!some) return some.error();
     surface = *std::move(some);
@@ -567,6 +580,7 @@ Result<void> ExtractRun::find_parts_of(Surface& surface, SurfaceNumbers& numbers
     if (kept.size() < found->parts.size()) {
         numbers.area = area(surface);
         caller_.note(fmt::format("{} of {} parts are kept", grouped(kept.size()), grouped(found->parts.size())));
+        if (numbers.solid) tell_kept_of_solid(*found, kept, *numbers.solid, caller_);
     }
     found->numbers = {};
     numbers.parts = *std::move(found);

@@ -51,6 +51,10 @@ void note_what_a_solid_is(const ExtractNumbers& numbers, const SurfaceNumbers& s
         caller.note(fmt::format("no cell has values of '{}' from {} to {}: the solid is empty", numbers.field.name,
                                 shortest(std::max(range.lower, numbers.field.lower)),
                                 shortest(std::min(range.upper, numbers.field.upper))));
+    if (surface.solid->seam_edges > 0)
+        caller.note(fmt::format("the grid's boundary is open to itself: points are doubled, so the isosurface has {} open edges "
+                                "inside the grid, and walls close the solid there; `merge_points` 0 makes it one body",
+                                grouped(surface.solid->seam_edges)));
     if (surface.solid->open_edges > 0)
         caller.note(fmt::format("the solid is open at {} edges, as where cells are repeated: isotet info `survey` counts "
                                 "these",

@@ -213,7 +213,7 @@ Result<void> choose_fields(const ExtractJob& job, const GridSource& source, Extr
     plan.touched = *std::move(touched);
     plan.read = fields_to_read(plan);
     if (plan.touched && job.keep->region != "boundary") add_names(*plan.read.cell, {plan.touched->field});
-    const bool all_cell_fields = job.field.shape && !plan.carried && plan.out_holds_cell_fields;
+    const bool all_cell_fields = (job.field.shape || job.solid) && !plan.carried && plan.out_holds_cell_fields;
     if (all_cell_fields && !source.names(Association::cell).empty()) plan.read.cell.reset();
     return {};
 }

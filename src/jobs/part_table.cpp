@@ -2,6 +2,7 @@
 #include "jobs/part_table.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -11,16 +12,6 @@
 namespace isotet::jobs {
 
 namespace {
-
-bool is_kept(const SurfacePart& part, std::size_t number, const PartChoice& choice) {
-    switch (choice.kind) {
-    case PartChoice::Kind::largest: return static_cast<double>(number) < choice.limit;
-    case PartChoice::Kind::area: return part.area > choice.limit;
-    case PartChoice::Kind::touching: return !part.closed;
-    case PartChoice::Kind::volume: break;
-    }
-    return part.closed && part.volume > choice.limit;
-}
 
 /// A name as a cell of a table: quoted where it has to be (RFC 4180).
 std::string csv_text(std::string_view name) {
@@ -65,10 +56,29 @@ Result<std::vector<std::uint64_t>> kept_parts(const Surface& surface, const Surf
                                               const std::optional<PartChoice>& choice,
                                               const std::optional<Region>& touched) {
     if (touched) return parts_touching(surface, found, *touched);
-    std::vector<std::uint64_t> out;
-    for (std::size_t i = 0; i < found.parts.size(); ++i)
-        if (!choice || is_kept(found.parts[i], i, *choice)) out.push_back(i);
-    return out;
+    if (choice) return chosen_parts(surface, found, *choice, PartsOf::isosurface);
+    std::vector<std::uint64_t> all(found.parts.size());
+    std::iota(all.begin(), all.end(), std::uint64_t{0});
+    return all;
+}
+
+void tell_kept_of_solid(const SurfaceParts& found, const std::vector<std::uint64_t>& kept, SolidNumbers& solid,
+                        Caller& caller) {
+    const auto last = std::ranges::find(found.fields.rbegin(), found.fields.rend(), "boundary");
+    const auto boundary = static_cast<std::size_t>(found.fields.rend() - last - 1);
+    solid.volume = solid.boundary_area = solid.isosurface_area = 0;
+    std::uint64_t cavities = 0;
+    for (const SurfacePart& part : found.parts) cavities += part.closed && part.volume < 0;
+    for (const std::uint64_t number : kept) {
+        const SurfacePart& part = found.parts[number];
+        solid.volume += part.volume;
+        solid.boundary_area += part.area * part.means[boundary];
+        solid.isosurface_area += part.area * (1 - part.means[boundary]);
+        cavities -= part.closed && part.volume < 0;
+    }
+    if (cavities > 0)
+        caller.note(fmt::format("of the parts left out {}, of negative volume: the solid is filled there",
+                                cavities == 1 ? "1 is a cavity" : grouped(cavities) + " are cavities"));
 }
 
 std::string parts_csv(const ExtractNumbers& numbers) {

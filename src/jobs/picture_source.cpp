@@ -28,7 +28,9 @@ bool names_isovalues(const DrawJob& job) {
 }
 
 /// Whether isovalues were asked for, or a volume, which is one of a field as well.
-bool asks_for_field(const DrawJob& job) { return names_isovalues(job) || draws_volume(job) || job.solid; }
+bool asks_for_field(const DrawJob& job) {
+    return names_isovalues(job) || draws_volume(job) || job.solid || job.keep;
+}
 
 Result<std::vector<double>> choose_levels(const DrawJob& job, const PointField& field, const ValueRange& range) {
     std::vector<double> levels = evenly_spaced_levels(
@@ -172,6 +174,7 @@ SceneLook PictureSource::look_of(const Contents& contents) const {
     look.line_width = std::max(1.0, job_.picture.height / 600.0);
     look.edges = job_.edges;
     look.solid = job_.solid;
+    look.keep = job_.keep;
     look.shade_by = job_.shade_by;
     look.clips = job_.clips;
     look.slices = job_.slices;
@@ -184,9 +187,9 @@ SceneLook PictureSource::look_of(const Contents& contents) const {
 
 Result<DrawInput> PictureSource::take_surface(const std::optional<Device>& device, Caller& caller) {
     if (asks_for_field(job_) || !job_.field.name.empty() || job_.boundary || job_.method.extract ||
-        !job_.boundary_color_by.empty() || !job_.slices.empty() || job_.solid) {
+        !job_.boundary_color_by.empty() || !job_.slices.empty() || job_.solid || job_.keep) {
         return refusal("{} is a surface: it has no isovalues, no field to contour (`color_by` colours it), no "
-                       "boundary, no volume, no solids, no slices and no tets",
+                       "boundary, no volume, no solids, no parts to keep, no slices and no tets",
                        job_.grid.file);
     }
     DrawInput input;

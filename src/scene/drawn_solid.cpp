@@ -25,12 +25,17 @@ Array tuples_of(const Array& values, const std::vector<std::uint32_t>& rows) {
     });
 }
 
-} // namespace
+/// Triangles of the isosurface, which come first.
+std::size_t smooth_triangles(const Surface& solid) {
+    const auto& fields = solid.cell_fields; // the last field of that name is the solid's
+    const auto parts = std::ranges::find(fields.rbegin(), fields.rend(), "boundary", &Field::name)->values.as<std::uint8_t>();
+    return static_cast<std::size_t>(std::ranges::find(parts, std::uint8_t{1}) - parts.begin());
+}
 
-Surface drawn_solid(const Solid& solid) {
-    Surface out = solid.surface;
+/// Triangles behind the first ones share no vertex.
+Surface with_flat_boundary(Surface out, std::size_t smooth_count) {
     const auto corners = out.triangles.as<std::uint32_t>();
-    const auto smooth = corners.first(3 * solid.isosurface_triangles);
+    const auto smooth = corners.first(3 * smooth_count);
     const std::uint32_t shared = smooth.empty() ? 0 : *std::ranges::max_element(smooth) + 1; // those of isosurfaces
     std::vector<std::uint32_t> rows(shared), triangles(smooth.begin(), smooth.end());
     for (std::uint32_t vertex = 0; vertex < shared; ++vertex) rows[vertex] = vertex;
@@ -46,6 +51,16 @@ Surface drawn_solid(const Solid& solid) {
     return out;
 }
 
+} // namespace
+
+Result<Surface> drawn_solid(const Solid& solid, const std::optional<PartChoice>& keep, const Run& run) {
+    if (!keep) return with_flat_boundary(solid.surface, solid.isosurface_triangles);
+    Result<Surface> kept = keep_parts(solid.surface, *keep, PartsOf::solid, run);
+    if (!kept || kept->triangle_count() == 0) return kept;
+    const std::size_t smooth = smooth_triangles(*kept);
+    return with_flat_boundary(*std::move(kept), smooth);
+}
+
 /// Of each isovalue, on the side that is looked at.
 Result<void> IsosurfaceScene::Data::show_solids(std::span<const double> isovalues, const Run& run) {
     for (const double isovalue : isovalues) {
@@ -55,7 +70,9 @@ Result<void> IsosurfaceScene::Data::show_solids(std::span<const double> isovalue
         std::ranges::move(solid->contour.notes, std::back_inserter(notes));
         report.method = solid->contour.method;
         report.field = solid->contour.field;
-        if (Result<void> added = add_surface(drawn_solid(*solid)); !added) return added;
+        Result<Surface> drawn = drawn_solid(*solid, look.keep, run);
+        if (!drawn) return drawn.error();
+        if (Result<void> added = add_surface(*std::move(drawn)); !added) return added;
     }
     return {};
 }

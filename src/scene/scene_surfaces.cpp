@@ -42,7 +42,7 @@ Result<void> IsosurfaceScene::Data::start(IsosurfaceOptions wanted, const Run& r
         return invalid_argument("a scene without a device, but it is to extract, or to draw tets, on one");
     options.split_cells = wanted.split_cells || wanted.draw;
     const bool in_memory = // surfaces are worked on
-        !look.clips.empty() || look.shade_by == ShadeBy::vertices || draws_surface_edges();
+        !look.clips.empty() || look.shade_by == ShadeBy::vertices || draws_surface_edges() || look.keep;
     const bool card = device && device->info().kind != DeviceKind::software &&
                       options.method.value_or(method_for(options.surfaces, true)) == Method::clusters;
     const bool use_device =
@@ -63,6 +63,8 @@ Result<void> IsosurfaceScene::Data::start(IsosurfaceOptions wanted, const Run& r
         solids = *std::move(created);
         return {};
     }
+    if (look.keep && (use_device || wanted.draw))
+        return invalid_argument("parts of surfaces on a device, but the CPU finds them");
     const core::Stopwatch packing;
     Result<Contour> created = Contour::create(use_device ? std::move(plain) : std::move(carrying), options, run);
     if (!created) return created.error();
@@ -132,8 +134,14 @@ Result<void> IsosurfaceScene::Data::show_extracted(std::span<const double> isova
     report.method = result->method;
     report.field = result->field;
     if (!std::exchange(pack_is_told, false)) report.pack_seconds += result->pack_seconds;
-    for (Extraction& extraction : result->surfaces)
+    for (Extraction& extraction : result->surfaces) {
+        if (look.keep) {
+            Result<Surface> kept = keep_parts(extraction.surface, *look.keep, PartsOf::isosurface, run);
+            if (!kept) return kept.error();
+            extraction.surface = *std::move(kept);
+        }
         if (Result<void> added = add_surface(std::move(extraction.surface)); !added) return added;
+    }
     return {};
 }
 

@@ -37,6 +37,7 @@ double boundary_by_itself(const ViewState& state) { return state.volume ? 0 : de
 void add_isovalues(std::vector<std::string>& words, const ViewState& state) {
     if (!state.isovalues.empty()) add_option(words, "--isovalue", fmt::format("{}", fmt::join(state.isovalues, ",")));
     if (state.solid && !state.volume) add_option(words, "--solid", std::string(name_of(*state.solid)));
+    if (state.keep) add_option(words, "--keep", to_text(*state.keep));
 }
 
 std::vector<std::string> first_words(const char* command, const std::string& file,
@@ -197,6 +198,11 @@ constexpr PageOption more_page_options[] = {
      [](ViewState& state, const std::string& value) {
          state.solid = parse_solid_side(value);
          return state.solid.has_value();
+     }},
+    {"--keep", "", shown_parts_rule,
+     [](ViewState& state, const std::string& value) {
+         state.keep = parse_shown_parts(value);
+         return state.keep.has_value();
      }},
     {"--step", "", "a whole number",
      [](ViewState& state, const std::string& value) {

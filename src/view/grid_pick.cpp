@@ -1,8 +1,10 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // The point of a surface that a page asks about.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 
 #include "view/grid_view.hpp"
 
@@ -23,7 +25,6 @@ Result<Surface> GridView::solid_of_pick(const PickMessage& message, const Run& r
     Result<Solid> solid = solids->extract(
         message.state.solid == SolidSide::above ? SolidRange::above(isovalue) : SolidRange::below(isovalue), run);
     if (!solid) return solid.error();
-    solid->surface.cell_fields.pop_back(); // which part of the solid a triangle is of
     return std::move(solid->surface);
 }
 
@@ -53,11 +54,33 @@ Result<Surface> GridView::surface_of_pick(const PickMessage& message, const Run&
     return std::move(extracted->surfaces.front().surface);
 }
 
+/// Without the parts that are left out; with their numbers where the page asks for these.
+Result<Surface> GridView::shown_surface(const PickMessage& message, const Run& run) {
+    Result<Surface> surface = surface_of_pick(message, run);
+    if (!surface || message.slice) return surface;
+    const bool is_solid = message.state.solid.has_value();
+    if (message.parts || message.state.keep) {
+        const Result<SurfaceParts> parts = find_parts(*surface, run);
+        if (!parts) return parts.error();
+        const auto kept =
+            chosen_parts(*surface, *parts, message.state.keep.value_or(PartChoice{PartChoice::Kind::others}),
+                         is_solid ? PartsOf::solid : PartsOf::isosurface);
+        if (!kept) return kept.error();
+        surface = keep_parts(*surface, *parts, *kept, run);
+        if (!surface) return surface;
+    }
+    if (is_solid) { // which part of the solid a triangle is of: the last field of that name
+        const auto last = std::ranges::find(surface->cell_fields.rbegin(), surface->cell_fields.rend(), "boundary", &Field::name);
+        surface->cell_fields.erase(std::next(last).base());
+    }
+    return surface;
+}
+
 Result<Picked> GridView::pick_along(const PickMessage& message, const Run& run) {
     std::optional<Picked> first;
     double nearest = INFINITY;
     const auto look = [&](const PickMessage& one, std::span<const Plane> clips) -> Result<void> {
-        const Result<Surface> surface = surface_of_pick(one, run);
+        const Result<Surface> surface = shown_surface(one, run);
         if (!surface) return surface.error();
         const auto along = first_on_ray(*surface, message.point, *message.ray, clips);
         if (!along || *along >= nearest) return {};
@@ -83,7 +106,7 @@ Result<Picked> GridView::pick_along(const PickMessage& message, const Run& run) 
 
 Result<Picked> GridView::pick(const PickMessage& message, const Run& run) {
     if (message.ray) return pick_along(message, run);
-    const Result<Surface> surface = surface_of_pick(message, run);
+    const Result<Surface> surface = shown_surface(message, run);
     if (!surface) return surface.error();
     std::optional<Picked> picked = nearest_on(*surface, message.point);
     if (!picked) return Error{ErrorCode::invalid_data, "the surface has no triangle here"};

@@ -58,6 +58,12 @@ struct FrameParts {
     std::uint64_t most = 0; ///< triangles of a surface above which it is a preview
 };
 
+/// The parts of a surface, largest area first, and which of them are shown.
+struct ShownParts {
+    std::vector<SurfacePart> parts;
+    std::vector<std::uint64_t> kept; ///< their numbers, ascending
+};
+
 /// Threads   pack() and find_boundary() by one thread beside one other call; all else one call at a time
 class GridView {
 public:
@@ -111,6 +117,13 @@ public:
     /// Errors   as Contour::extract(); invalid_data where there is no triangle
     Result<Picked> pick(const PickMessage& message, const Run& run);
 
+    /// The connected parts of the first isosurface or solid of a state.
+    /// Errors   as Contour::extract(), Solids and find_parts()
+    Result<ShownParts> parts(const PartsMessage& message, const Run& run);
+
+    /// Errors   as isovalues_at()
+    Result<double> isovalue_at(const ShareMessage& message, const Run& run);
+
 private:
     /// A mesh of a surface, in full.
     struct Kept {
@@ -140,6 +153,9 @@ private:
                                                        FrameParts& making, const Run& run);
     Result<std::shared_ptr<const Mesh>> solid_mesh_at(const ViewState& state, double isovalue, const std::string& key,
                                                       FrameParts& making, const Run& run);
+    Result<Solid> solid_at(const ViewState& state, double isovalue, const Run& run);
+    Result<Surface> whole_isosurface(const PartsMessage& message, double isovalue, const Run& run);
+    Result<Surface> shown_surface(const PickMessage& message, const Run& run);
     Result<Surface> solid_of_pick(const PickMessage& message, const Run& run);
     Result<Picked> pick_along(const PickMessage& message, const Run& run);
     Result<Surface> surface_of_pick(const PickMessage& message, const Run& run);
@@ -163,9 +179,10 @@ private:
     std::shared_ptr<const Mesh> kept_mesh(const std::string& key);
     Result<std::shared_ptr<const Mesh>> keep(const std::string& key, const Surface& surface,
                                              const std::optional<ColorScale>& scale, FrameFacts& facts, const Run& run);
-    Result<std::shared_ptr<const Mesh>> mesh_at(Source& source, double isovalue, const std::string& key,
-                                                const std::optional<ColorScale>& scale, FrameFacts& facts,
-                                                const Run& run);
+    Result<std::shared_ptr<const Mesh>> keep(const std::string& key, const ViewState& state, const Surface& surface,
+                                             FrameFacts& facts, const Run& run);
+    Result<std::shared_ptr<const Mesh>> mesh_at(Source& source, const ViewState& state, double isovalue,
+                                                const std::string& key, FrameFacts& facts, const Run& run);
     Result<std::shared_ptr<const Mesh>> slice_at(const ViewState& state, const Plane& plane, const std::string& key,
                                                  const std::optional<ColorScale>& scale, FrameFacts& facts,
                                                  const Run& run);

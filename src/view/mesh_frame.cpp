@@ -25,7 +25,9 @@ std::string color_key(const ViewState& state) {
 }
 
 std::string mesh_key(const ViewState& state, double isovalue, std::size_t step) {
-    return fmt::format("{}|{}|{}", isovalue, state.field, step) + color_key(state);
+    std::string key = fmt::format("{}|{}|{}", isovalue, state.field, step);
+    if (state.keep) key += "|" + to_text(*state.keep);
+    return key + color_key(state);
 }
 
 std::string slice_key(const ViewState& state, const Plane& plane, std::size_t step) {
@@ -58,15 +60,12 @@ Result<std::shared_ptr<const Mesh>> GridView::packed_mesh_at(const ViewState& st
     const Result<Surface> surface = lean_->isosurface(*field, isovalue, *options, run);
     if (!surface) return surface.error();
     making.facts.extract_seconds += seconds_of(start);
-    return keep(key, *surface, making.facts.scale, making.facts, run);
+    return keep(key, state, *surface, making.facts, run);
 }
 
 /// The boundary is found once for each grid, field and colours. It needs the cells.
-Result<std::shared_ptr<const Mesh>> GridView::solid_mesh_at(const ViewState& state, double isovalue,
-                                                            const std::string& key, FrameParts& making, const Run& run) {
-    if (auto kept = kept_mesh(key)) return kept;
+Result<Solid> GridView::solid_at(const ViewState& state, double isovalue, const Run& run) {
     const std::string wanted = fmt::format("{}|{}|{}", state.field, state.color_by, step_);
-    const auto start = std::chrono::steady_clock::now();
     if (!solids_ || solids_key_ != wanted) {
         solids_.reset();
         if (Result<void> here = need_cells(run); !here) return here.error();
@@ -79,13 +78,22 @@ Result<std::shared_ptr<const Mesh>> GridView::solid_mesh_at(const ViewState& sta
         solids_ = *std::move(solids);
         solids_key_ = wanted;
     }
-    Result<Solid> solid = solids_->extract(
+    return solids_->extract(
         state.solid == SolidSide::above ? SolidRange::above(isovalue) : SolidRange::below(isovalue), run);
+}
+
+Result<std::shared_ptr<const Mesh>> GridView::solid_mesh_at(const ViewState& state, double isovalue,
+                                                            const std::string& key, FrameParts& making, const Run& run) {
+    if (auto kept = kept_mesh(key)) return kept;
+    const auto start = std::chrono::steady_clock::now();
+    const Result<Solid> solid = solid_at(state, isovalue, run);
     if (!solid) return solid.error();
+    const Result<Surface> drawn = drawn_solid(*solid, state.keep, run);
+    if (!drawn) return drawn.error();
     making.facts.extract_seconds += seconds_of(start);
     making.facts.method = name_of(solid->contour.method);
     making.facts.notes.insert(making.facts.notes.end(), solid->contour.notes.begin(), solid->contour.notes.end());
-    return keep(key, drawn_solid(*solid), making.facts.scale, making.facts, run);
+    return keep(key, *drawn, making.facts.scale, making.facts, run);
 }
 
 std::shared_ptr<const Mesh> GridView::kept_mesh(const std::string& key) {
@@ -93,6 +101,17 @@ std::shared_ptr<const Mesh> GridView::kept_mesh(const std::string& key) {
     if (kept == kept_.end()) return nullptr;
     kept->used = true;
     return kept->mesh;
+}
+
+/// Of an isosurface, the parts that the state keeps.
+Result<std::shared_ptr<const Mesh>> GridView::keep(const std::string& key, const ViewState& state,
+                                                   const Surface& surface, FrameFacts& facts, const Run& run) {
+    if (!state.keep) return keep(key, surface, facts.scale, facts, run);
+    const auto start = std::chrono::steady_clock::now();
+    const Result<Surface> some = keep_parts(surface, *state.keep, PartsOf::isosurface, run);
+    if (!some) return some.error();
+    facts.extract_seconds += seconds_of(start);
+    return keep(key, *some, facts.scale, facts, run);
 }
 
 Result<std::shared_ptr<const Mesh>> GridView::keep(const std::string& key, const Surface& surface,
@@ -111,9 +130,8 @@ Result<std::shared_ptr<const Mesh>> GridView::keep(const std::string& key, const
     return kept_.back().mesh;
 }
 
-Result<std::shared_ptr<const Mesh>> GridView::mesh_at(Source& source, double isovalue, const std::string& key,
-                                                      const std::optional<ColorScale>& scale, FrameFacts& facts,
-                                                      const Run& run) {
+Result<std::shared_ptr<const Mesh>> GridView::mesh_at(Source& source, const ViewState& state, double isovalue,
+                                                      const std::string& key, FrameFacts& facts, const Run& run) {
     if (auto kept = kept_mesh(key)) return kept;
     const auto start = std::chrono::steady_clock::now();
     Result<ContourResult> extracted = source.contour->extract(isovalue, run);
@@ -121,7 +139,7 @@ Result<std::shared_ptr<const Mesh>> GridView::mesh_at(Source& source, double iso
     facts.extract_seconds += seconds_of(start);
     facts.method = name_of(extracted->method);
     facts.notes.insert(facts.notes.end(), extracted->notes.begin(), extracted->notes.end());
-    return keep(key, extracted->surfaces.front().surface, scale, facts, run);
+    return keep(key, state, extracted->surfaces.front().surface, facts, run);
 }
 
 /// The refined grid is for one isovalue, and takes memory: it is made for the mesh, which is kept.
@@ -139,7 +157,7 @@ Result<GridView::Shown> GridView::refined_at(const ViewState& state, double isov
         const Result<ContourResult> extracted = contour->extract(isovalue, run);
         if (!extracted) return extracted.error();
         making.facts.extract_seconds += seconds_of(start);
-        const auto made = keep(key, extracted->surfaces.front().surface, making.facts.scale, making.facts, run);
+        const auto made = keep(key, state, extracted->surfaces.front().surface, making.facts, run);
         if (!made) return made.error();
         kept_.back().field_bound = extracted->refinement.field_bound;
     }
@@ -163,7 +181,7 @@ Result<GridView::Shown> GridView::surface_at(const ShowMessage& message, double 
         if (refined || refined.error().code == ErrorCode::cancelled) return refined;
         making.facts.notes.push_back("The surface is not refined: " + refined.error().message);
     }
-    auto mesh = source ? mesh_at(*source, isovalue, key, making.facts.scale, making.facts, run)
+    auto mesh = source ? mesh_at(*source, state, isovalue, key, making.facts, run)
                        : packed_mesh_at(state, isovalue, key, making, run);
     if (!mesh) return mesh.error();
     return Shown{key, *std::move(mesh), {}};

@@ -35,6 +35,21 @@ std::optional<std::uint64_t> message_number(const Json& json) {
     return number ? whole_number(*number) : std::nullopt;
 }
 
+bool message_flag(const Json& json, std::string_view key) {
+    const Json* flag = find(json, key);
+    return flag && flag->is_boolean() && flag->get<bool>();
+}
+
+/// The field and the step that a question is about.
+Result<std::pair<std::string, std::optional<std::uint64_t>>> field_of_step(const Json& json) {
+    auto field = message_text(json, "field", max_name_bytes);
+    if (!field) return wrong_message("\"field\" takes a name");
+    const Json* number = find(json, "step");
+    const auto step = number ? whole_number(*number) : std::nullopt;
+    if (number && !step) return wrong_message("\"step\" takes a whole number");
+    return std::pair(*std::move(field), step);
+}
+
 Result<PageMessage> parse_show(const Json& json, bool refined) {
     const auto number = message_number(json);
     if (!number) return wrong_message("\"number\" takes a whole number");
@@ -44,8 +59,7 @@ Result<PageMessage> parse_show(const Json& json, bool refined) {
     message.number = *number;
     message.state = *std::move(state);
     message.refined = refined;
-    const Json* moving = find(json, "moving");
-    message.moving = moving && moving->is_boolean() && moving->get<bool>();
+    message.moving = message_flag(json, "moving");
     if (const Json* most = find(json, "most")) message.most = whole_number(*most);
     if (const Json* next = find(json, "next")) message.next = whole_number(*next);
     if (const Json* picture = find(json, "picture")) {
@@ -88,7 +102,28 @@ Result<PageMessage> parse_pick(const Json& json) {
         message.ray = three_numbers(ray);
         if (!message.ray) return wrong_message("\"ray\" takes three numbers");
     }
+    message.parts = message_flag(json, "parts");
     return PageMessage(std::move(message));
+}
+
+Result<PageMessage> parse_parts_question(const Json& json) {
+    Result<ViewState> state = message_state(json);
+    if (!state) return state.error();
+    if (state->isovalues.empty()) return wrong_message("parts are those of an isovalue");
+    return PageMessage(PartsMessage{*std::move(state), message_flag(json, "refined")});
+}
+
+Result<PageMessage> parse_share(const Json& json) {
+    const auto of = message_text(json, "of", 32);
+    const Json* number = find(json, "percent");
+    const auto percent = number ? finite_number(*number) : std::nullopt;
+    if (!percent || (of != "volume" && of != "points"))
+        return wrong_message("a share is \"of\" volume or points, and \"percent\" takes a number");
+    auto question = field_of_step(json);
+    if (!question) return question.error();
+    auto& [field, step] = *question;
+    return PageMessage(ShareMessage{
+        std::move(field), step, {of == "volume" ? IsovalueShare::Of::volume : IsovalueShare::Of::points, *percent}});
 }
 
 Result<PageMessage> parse_save(const Json& json) {
@@ -99,8 +134,7 @@ Result<PageMessage> parse_save(const Json& json) {
     if (!name || !kind) return wrong_message("a file has a \"name\", and a \"kind\": picture, surface, sweep, "
                                                "turn, steps, above or below");
     SaveMessage message;
-    const Json* download = find(json, "download");
-    message.download = download && download->is_boolean() && download->get<bool>();
+    message.download = message_flag(json, "download");
     SaveRequest& request = message.request;
     request.kind = *kind;
     request.name = *name;
@@ -134,13 +168,11 @@ Result<PageMessage> parse_known(const std::string& action, const Json& json) {
         return wrong_message("\"number\" takes a whole number");
     }
     if (action == "chart" || action == "spectrum") {
-        auto field = message_text(json, "field", max_name_bytes);
-        if (!field) return wrong_message("\"field\" takes a name");
-        const Json* number = find(json, "step");
-        const auto step = number ? whole_number(*number) : std::nullopt;
-        if (number && !step) return wrong_message("\"step\" takes a whole number");
-        if (action == "chart") return PageMessage(ChartMessage{*std::move(field), step});
-        return PageMessage(SpectrumMessage{*std::move(field), step});
+        auto question = field_of_step(json);
+        if (!question) return question.error();
+        auto& [field, step] = *question;
+        if (action == "chart") return PageMessage(ChartMessage{std::move(field), step});
+        return PageMessage(SpectrumMessage{std::move(field), step});
     }
     if (action == "command") {
         Result<ViewState> state = message_state(json);
@@ -154,9 +186,11 @@ Result<PageMessage> parse_known(const std::string& action, const Json& json) {
     }
     if (action == "pick") return parse_pick(json);
     if (action == "save") return parse_save(json);
+    if (action == "parts") return parse_parts_question(json);
+    if (action == "share") return parse_share(json);
     if (action == "part") return PageMessage(PartMessage{});
     return wrong_message("\"do\" is none of hello, show, refine, shown, chart, spectrum, command, paste, pick, "
-                         "save, part");
+                         "parts, share, save, part");
 }
 
 double milliseconds(double seconds) { return std::round(seconds * 1e5) / 100; }
@@ -280,6 +314,35 @@ std::string chart_text(const std::string& field, std::size_t step, const Chart& 
                     {"triangles", chart.triangles},
                     {"first", chart.first},
                     {"no_data", chart.no_data}});
+}
+
+std::string parts_text(const PartsMessage& message, std::size_t step, const std::vector<SurfacePart>& parts,
+                       const std::vector<std::uint64_t>& kept) {
+    constexpr std::size_t most = 500;
+    Json rows = Json::array();
+    for (std::size_t i = 0; i < std::min(most, parts.size()); ++i)
+        rows.push_back({{"triangles", parts[i].triangles},
+                        {"area", parts[i].area},
+                        {"volume", parts[i].closed ? Json(parts[i].volume) : Json()},
+                        {"kept", std::ranges::binary_search(kept, i)}});
+    return text_of({{"say", "parts"},
+                    {"field", message.state.field},
+                    {"step", step},
+                    {"isovalue", message.state.isovalues.front()},
+                    {"solid", message.state.solid ? name_of(*message.state.solid) : ""},
+                    {"keep", message.state.keep ? to_text(*message.state.keep) : ""},
+                    {"count", parts.size()},
+                    {"kept", kept.size()},
+                    {"parts", std::move(rows)}});
+}
+
+std::string share_text(const ShareMessage& message, std::size_t step, double isovalue) {
+    return text_of({{"say", "share"},
+                    {"field", message.field},
+                    {"step", step},
+                    {"of", message.share.of == IsovalueShare::Of::volume ? "volume" : "points"},
+                    {"percent", message.share.percent},
+                    {"isovalue", isovalue}});
 }
 
 std::string spectrum_text(const std::string& field, std::size_t step, const ContourSpectrum& spectrum) {

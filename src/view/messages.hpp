@@ -11,7 +11,9 @@
 #include <vector>
 
 #include <isotet/contour_spectrum.hpp>
+#include <isotet/isovalue_shares.hpp>
 #include <isotet/opacity.hpp>
+#include <isotet/parts.hpp>
 #include <isotet/result.hpp>
 
 #include "view/chart.hpp"
@@ -76,6 +78,20 @@ struct PickMessage {
     std::optional<std::size_t> slice; ///< which of the slices, instead of the isosurface
     std::array<double, 3> point{};
     std::optional<std::array<double, 3>> ray = {}; ///< from the point; of all surfaces and slices of the state
+    bool parts = false;                            ///< the number of the surface's part goes with the values
+};
+
+/// {"do": "parts", "state": ..., "refined": true}: the connected parts of the first surface, when nothing else is to be done.
+struct PartsMessage {
+    ViewState state;      ///< with an isovalue
+    bool refined = false; ///< curved cells are, as ShowMessage::refined
+};
+
+/// {"do": "share", "field": name, "step": n, "of": "volume" or "points", "percent": p}: the isovalue of a share.
+struct ShareMessage {
+    std::string field;
+    std::optional<std::uint64_t> step = {}; ///< as ChartMessage::step
+    IsovalueShare share = {};
 };
 
 /// {"do": "save", "kind": ..., "name": ..., "state": ..., "width": w, "height": h, "from": a, "to": b, "pictures": n,
@@ -89,7 +105,7 @@ struct SaveMessage {
 struct PartMessage {};
 
 using PageMessage = std::variant<HelloMessage, ShowMessage, ShownMessage, ChartMessage, CommandMessage, PasteMessage,
-                                 PickMessage, SaveMessage, SpectrumMessage, PartMessage>;
+                                 PickMessage, SaveMessage, SpectrumMessage, PartMessage, PartsMessage, ShareMessage>;
 
 /// Any bytes from a page. Errors   invalid_argument
 Result<PageMessage> parse_page_message(std::string_view text);
@@ -134,6 +150,10 @@ std::string refusal_text(std::uint64_t number, std::string_view sentence);
 std::string error_text(std::string_view about, std::string_view sentence);
 std::string picked_text(const Picked& picked);
 std::string chart_text(const std::string& field, std::size_t step, const Chart& chart);
+/// The largest ones one by one, at most 500.
+std::string parts_text(const PartsMessage& message, std::size_t step, const std::vector<SurfacePart>& parts,
+                       const std::vector<std::uint64_t>& kept);
+std::string share_text(const ShareMessage& message, std::size_t step, double isovalue);
 std::string spectrum_text(const std::string& field, std::size_t step, const ContourSpectrum& spectrum);
 
 /// "#rrggbb"

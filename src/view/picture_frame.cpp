@@ -43,6 +43,7 @@ SceneLook look_of(const ShowMessage& message, std::optional<ColorField> colors,
     look.outline = state.outline;
     look.edges = state.edges;
     if (!state.volume) look.solid = state.solid;
+    look.keep = state.keep;
     look.clips = state.clips;
     look.slices = state.slices;
     look.line_width = std::max(1.0, (*message.picture)[1] / 600.0);

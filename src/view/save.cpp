@@ -168,6 +168,14 @@ std::string replaced(std::string text, const std::string& what, const std::strin
     return text;
 }
 
+/// Numbers of parts are of what is shown: not of another solid.
+void show_solid(SolidSide side, ViewState& state) {
+    const bool by_number = state.keep && (state.keep->kind == PartChoice::Kind::numbers ||
+                                          state.keep->kind == PartChoice::Kind::others);
+    if (by_number && state.solid != side) state.keep.reset();
+    state.solid = side;
+}
+
 } // namespace
 
 std::optional<SaveKind> parse_save_kind(std::string_view name) {
@@ -192,8 +200,8 @@ Result<std::vector<std::string>> save_words(const SaveRequest& request, const st
     const bool surface = is_surface(request.kind);
     ViewState state = request.state;
     if (request.kind == SaveKind::sweep && state.volume) state.volume->opacity = "peaks"; // one, from value to value
-    if (request.kind == SaveKind::above) state.solid = SolidSide::above;
-    if (request.kind == SaveKind::below) state.solid = SolidSide::below;
+    if (request.kind == SaveKind::above) show_solid(SolidSide::above, state);
+    if (request.kind == SaveKind::below) show_solid(SolidSide::below, state);
     std::vector<std::string> words = surface ? extract_words(state, file, reading) : render_words(state, file, reading);
     words.resize(words.size() - 2); // -o, and what it names
     if (!surface) {

@@ -105,6 +105,13 @@ std::optional<SolidSide> parse_solid_side(std::string_view name) {
     return std::nullopt;
 }
 
+std::optional<PartChoice> parse_shown_parts(std::string_view text) {
+    if (text.size() > max_name_bytes) return std::nullopt;
+    std::optional<PartChoice> choice = parse_part_choice(text);
+    if (choice && choice->kind == PartChoice::Kind::touching && choice->region != "boundary") return std::nullopt;
+    return choice;
+}
+
 bool operator==(const ViewState& a, const ViewState& b) {
     const auto range = [](const ViewState& s) {
         return s.range ? std::vector<double>{s.range->lower, s.range->upper} : std::vector<double>();
@@ -113,6 +120,7 @@ bool operator==(const ViewState& a, const ViewState& b) {
     return a.field == b.field && a.isovalues == b.isovalues && a.color_by == b.color_by && a.map == b.map &&
            range(a) == range(b) && a.logarithmic == b.logarithmic && a.opacity == b.opacity && a.outline == b.outline &&
            camera(a) == camera(b) && a.boundary == b.boundary && a.edges == b.edges && a.solid == b.solid &&
+           a.keep == b.keep &&
            same_planes(a.clips, b.clips) && same_planes(a.slices, b.slices) && a.step == b.step &&
            a.volume == b.volume;
 }
@@ -129,6 +137,7 @@ Json to_json(const ViewState& state) {
                  {"clips", planes_json(state.clips)},
                  {"slices", planes_json(state.slices)}};
     if (state.solid) json["solid"] = name_of(*state.solid);
+    if (state.keep) json["keep"] = to_text(*state.keep);
     if (state.step) json["step"] = *state.step;
     if (state.range) json["range"] = {state.range->lower, state.range->upper};
     if (state.opacity) json["opacity"] = *state.opacity;
@@ -161,6 +170,11 @@ Result<ViewState> state_of(const Json& json) {
         const std::string* name = text(value);
         if (name) state.solid = parse_solid_side(*name);
         return state.solid.has_value();
+    });
+    reader.read("keep", shown_parts_rule, [&](const Json& value) {
+        const std::string* choice = text(value);
+        if (choice) state.keep = parse_shown_parts(*choice);
+        return state.keep.has_value();
     });
     reader.read("step", "a whole number", [&](const Json& value) {
         state.step = whole_number(value);

@@ -11,6 +11,7 @@
 #include <isotet/camera.hpp>
 #include <isotet/field_statistics.hpp>
 #include <isotet/isosurface_scene.hpp>
+#include <isotet/parts.hpp>
 #include <isotet/result.hpp>
 #include <isotet/scene.hpp>
 
@@ -45,6 +46,8 @@ struct ViewState {
     double boundary = default_boundary_opacity; ///< opacity of the grid's boundary, 0 to 1; 0: it is not shown
     bool edges = false;                         ///< as SceneLook::edges
     std::optional<SolidSide> solid;             ///< in place of isosurfaces: solids on this side of them
+    std::optional<PartChoice> keep;             ///< of each surface or solid only these connected parts; touching the
+                                                ///< boundary only
     std::vector<Plane> clips, slices;           ///< as SceneLook; at most `max_planes` each
     std::optional<std::uint64_t> step;          ///< nothing: the one that is read
     std::optional<VolumeState> volume;          ///< coloured by `field`, as then nothing is by another one
@@ -53,6 +56,12 @@ struct ViewState {
 /// "above" and "below", and back.
 std::string_view name_of(SolidSide side);
 std::optional<SolidSide> parse_solid_side(std::string_view name);
+
+inline constexpr std::string_view shown_parts_rule =
+    "largest, a number of parts from 1, area>A, volume>V, touching:boundary, parts:I,J or not:I,J";
+
+/// A choice that can be shown: nothing where it is none, or names a region of the file.
+std::optional<PartChoice> parse_shown_parts(std::string_view text);
 
 bool operator==(const ViewState& a, const ViewState& b);
 

@@ -77,6 +77,18 @@ public:
         return picked_text(*picked);
     }
 
+    Result<std::string> parts(const PartsMessage& message, const Run& run) override {
+        const Result<ShownParts> found = view_.parts(message, {threads_, run.progress});
+        if (!found) return found.error();
+        return parts_text(message, view_.step(), found->parts, found->kept);
+    }
+
+    Result<std::string> share(const ShareMessage& message, const Run& run) override {
+        const Result<double> isovalue = view_.isovalue_at(message, {threads_, run.progress});
+        if (!isovalue) return isovalue.error();
+        return share_text(message, view_.step(), *isovalue);
+    }
+
 private:
     GridView& view_;
     int threads_;
@@ -267,6 +279,8 @@ void Viewer::Data::answer(ConnectionNumber from, PageMessage message) {
     else if (auto* spectrum = std::get_if<SpectrumMessage>(&message))
         worker->ask_spectrum(from, std::move(*spectrum));
     else if (auto* pick = std::get_if<PickMessage>(&message)) worker->ask_pick(from, std::move(*pick));
+    else if (auto* parts = std::get_if<PartsMessage>(&message)) worker->ask_parts(from, std::move(*parts));
+    else if (auto* share = std::get_if<ShareMessage>(&message)) worker->ask_share(from, std::move(*share));
     else if (const auto* wanted = std::get_if<SaveMessage>(&message)) {
         if (wanted->download) download(from, wanted->request);
         else save(from, wanted->request);

@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "view/worker.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -29,7 +30,7 @@ void Worker::start(std::shared_ptr<FrameMaker> maker) {
 
 void Worker::add_page(PageNumber page) {
     const std::lock_guard lock(mutex_);
-    pages_.emplace(page, Page{Slot<Wish>(rules_), {}, {}, {}, {}, {}});
+    pages_.emplace(page, Page{Slot<Wish>(rules_), {}, {}, {}, {}});
 }
 
 void Worker::remove_page(PageNumber page) {
@@ -52,37 +53,47 @@ void Worker::wish(PageNumber page, ShowMessage message) {
     changed_.notify_all();
 }
 
-void Worker::ask_chart(PageNumber page, ChartMessage message) {
+void Worker::ask(PageNumber page, When when, Question question) {
     {
         const std::lock_guard lock(mutex_);
         const auto found = pages_.find(page);
         if (found == pages_.end()) return;
-        found->second.chart = std::move(message);
+        std::vector<Question>& asked = when == When::now ? found->second.now : found->second.later;
+        std::erase_if(asked, [&](const Question& one) { return one.about == question.about; });
+        asked.push_back(std::move(question));
         interrupt_background();
     }
     changed_.notify_all();
+}
+
+void Worker::ask_chart(PageNumber page, ChartMessage message) {
+    ask(page, When::now, {"chart", [message = std::move(message)](FrameMaker& maker, const Run& run) {
+                              return maker.chart(message, run);
+                          }});
 }
 
 void Worker::ask_pick(PageNumber page, PickMessage message) {
-    {
-        const std::lock_guard lock(mutex_);
-        const auto found = pages_.find(page);
-        if (found == pages_.end()) return;
-        found->second.pick = std::move(message);
-        interrupt_background();
-    }
-    changed_.notify_all();
+    ask(page, When::now, {"pick", [message = std::move(message)](FrameMaker& maker, const Run& run) {
+                              return maker.pick(message, run);
+                          }});
+}
+
+void Worker::ask_share(PageNumber page, ShareMessage message) {
+    ask(page, When::now, {"share", [message = std::move(message)](FrameMaker& maker, const Run& run) {
+                              return maker.share(message, run);
+                          }});
 }
 
 void Worker::ask_spectrum(PageNumber page, SpectrumMessage message) {
-    {
-        const std::lock_guard lock(mutex_);
-        const auto found = pages_.find(page);
-        if (found == pages_.end()) return;
-        found->second.spectrum = std::move(message);
-        interrupt_background();
-    }
-    changed_.notify_all();
+    ask(page, When::later, {"spectrum", [message = std::move(message)](FrameMaker& maker, const Run& run) {
+                                return maker.spectrum(message, run);
+                            }});
+}
+
+void Worker::ask_parts(PageNumber page, PartsMessage message) {
+    ask(page, When::later, {"parts", [message = std::move(message)](FrameMaker& maker, const Run& run) {
+                                return maker.parts(message, run);
+                            }});
 }
 
 void Worker::ask_refined(PageNumber page, ShowMessage message) {
@@ -134,7 +145,7 @@ void Worker::cancel_if_stale() {
 /// The next page behind the one that was served last that wants something.
 std::optional<PageNumber> Worker::next_page() const {
     if (!maker_) return std::nullopt;
-    const auto wants = [](const Page& page) { return page.chart || page.pick || page.slot.ready(); };
+    const auto wants = [](const Page& page) { return !page.now.empty() || page.slot.ready(); };
     for (auto at = pages_.upper_bound(last_); at != pages_.end(); ++at)
         if (wants(at->second)) return at->first;
     for (const auto& [number, page] : pages_)
@@ -151,15 +162,14 @@ void Worker::work() {
             const double idle = clock_() - busy_;
             const bool restless = maker_ && has_background_ && !rested_;
             if (later && idle >= pause && pages_.at(*later).refined) make_refined(lock, *later);
-            else if (later && idle >= pause) make_spectrum(lock, *later);
+            else if (later && idle >= pause) answer_later(lock, *later);
             else if (!later && restless && idle >= rest_pause) rest(lock);
             else if (later || restless) changed_.wait_for(lock, std::chrono::milliseconds(20));
             else changed_.wait(lock);
             continue;
         }
         last_ = *number;
-        if (pages_.at(*number).chart) make_chart(lock, *number);
-        else if (pages_.at(*number).pick) make_pick(lock, *number);
+        if (!pages_.at(*number).now.empty()) answer_now(lock, *number);
         else make_frame(lock, *number);
         busy_ = clock_();
         rested_ = false;
@@ -177,7 +187,7 @@ void Worker::rest(std::unique_lock<std::mutex>& lock) {
 std::optional<PageNumber> Worker::next_in_background() const {
     if (!maker_ || !has_background_) return std::nullopt;
     for (const auto& [number, page] : pages_)
-        if (page.spectrum || page.refined) return number;
+        if (!page.later.empty() || page.refined) return number;
     return std::nullopt;
 }
 
@@ -210,38 +220,36 @@ void Worker::send_frame(PageNumber number, std::uint64_t wish, Result<std::strin
         output_.text(number, refusal_text(wish, frame.error().message));
 }
 
-void Worker::make_spectrum(std::unique_lock<std::mutex>& lock, PageNumber number) {
-    const SpectrumMessage message = *std::exchange(pages_.at(number).spectrum, std::nullopt);
+void Worker::answer_later(std::unique_lock<std::mutex>& lock, PageNumber number) {
+    std::vector<Question>& asked = pages_.at(number).later;
+    Question question = std::move(asked.front());
+    asked.erase(asked.begin());
     const std::shared_ptr<FrameMaker> maker = maker_;
     is_in_background_ = true;
     cancel_ = stop_;
     lock.unlock();
-    Result<std::string> answer = maker->spectrum(message, {0, {{}, &cancel_}});
+    Result<std::string> answer = question.answer(*maker, {0, {{}, &cancel_}});
     const bool cancelled = !answer && answer.error().code == ErrorCode::cancelled;
-    if (!cancelled) tell(number, "spectrum", std::move(answer));
+    if (!cancelled) tell(number, question.about, std::move(answer));
     lock.lock();
     is_in_background_ = false;
     rested_ = false;
     busy_ = clock_();
     const auto page = pages_.find(number);
-    if (cancelled && page != pages_.end() && !page->second.spectrum) page->second.spectrum = message;
+    if (!cancelled || page == pages_.end()) return;
+    std::vector<Question>& again = page->second.later;
+    if (std::ranges::find(again, question.about, &Question::about) == again.end())
+        again.insert(again.begin(), std::move(question));
 }
 
-void Worker::make_chart(std::unique_lock<std::mutex>& lock, PageNumber number) {
-    const ChartMessage message = *std::exchange(pages_.at(number).chart, std::nullopt);
+void Worker::answer_now(std::unique_lock<std::mutex>& lock, PageNumber number) {
+    std::vector<Question>& asked = pages_.at(number).now;
+    const Question question = std::move(asked.front());
+    asked.erase(asked.begin());
     const std::shared_ptr<FrameMaker> maker = maker_;
     cancel_ = stop_;
     lock.unlock();
-    tell(number, "chart", maker->chart(message, {0, {{}, &cancel_}}));
-    lock.lock();
-}
-
-void Worker::make_pick(std::unique_lock<std::mutex>& lock, PageNumber number) {
-    const PickMessage message = *std::exchange(pages_.at(number).pick, std::nullopt);
-    const std::shared_ptr<FrameMaker> maker = maker_;
-    cancel_ = stop_;
-    lock.unlock();
-    tell(number, "pick", maker->pick(message, {0, {{}, &cancel_}}));
+    tell(number, question.about, question.answer(*maker, {0, {{}, &cancel_}}));
     lock.lock();
 }
 
@@ -253,6 +261,14 @@ void Worker::tell(PageNumber number, std::string_view about, Result<std::string>
 
 Result<std::string> FrameMaker::pick(const PickMessage&, const Run&) {
     return Error{ErrorCode::invalid_argument, "nothing can be picked here"};
+}
+
+Result<std::string> FrameMaker::parts(const PartsMessage&, const Run&) {
+    return Error{ErrorCode::invalid_argument, "there are no parts here"};
+}
+
+Result<std::string> FrameMaker::share(const ShareMessage&, const Run&) {
+    return Error{ErrorCode::invalid_argument, "there are no shares here"};
 }
 
 Result<std::string> FrameMaker::spectrum(const SpectrumMessage&, const Run&) {

@@ -31,6 +31,8 @@ public:
     /// Text of the answer.
     virtual Result<std::string> chart(const ChartMessage& message, const Run& run) = 0;
     virtual Result<std::string> pick(const PickMessage& message, const Run& run);
+    virtual Result<std::string> parts(const PartsMessage& message, const Run& run);
+    virtual Result<std::string> share(const ShareMessage& message, const Run& run);
     /// Nothing is to be done for a while: memory may be given back.
     virtual void rest() {}
     virtual Result<std::string> spectrum(const SpectrumMessage& message, const Run& run);
@@ -58,11 +60,13 @@ public:
     void add_page(PageNumber page);
     void remove_page(PageNumber page);
     void wish(PageNumber page, ShowMessage message);
-    void ask_chart(PageNumber page, ChartMessage message); ///< the newest counts
-    void ask_pick(PageNumber page, PickMessage message);   ///< the newest counts
-    /// The newest counts. Begun after start_background(), when `pause` seconds nothing else was done, and begun anew when
-    /// it was cancelled for something else.
+    void ask_chart(PageNumber page, ChartMessage message); ///< of this and what follows the newest counts
+    void ask_pick(PageNumber page, PickMessage message);
+    void ask_share(PageNumber page, ShareMessage message);
+    /// Begun after start_background(), when `pause` seconds nothing else was done, and begun anew when it was cancelled for
+    /// something else.
     void ask_spectrum(PageNumber page, SpectrumMessage message);
+    void ask_parts(PageNumber page, PartsMessage message);
     /// A frame with curved cells refined. The same; forgotten at the page's next wish.
     void ask_refined(PageNumber page, ShowMessage message);
     void start_background();
@@ -76,24 +80,28 @@ private:
         ShowMessage message;
         double came = 0;
     };
+    /// What a page asks, one of each kind.
+    struct Question {
+        std::string_view about;
+        std::function<Result<std::string>(FrameMaker& maker, const Run& run)> answer;
+    };
     struct Page {
         Slot<Wish> slot;
-        std::optional<ChartMessage> chart;
-        std::optional<PickMessage> pick;
+        std::vector<Question> now, later; ///< in the order in which they came; later: in the background
         std::optional<ShowMessage> refined;
-        std::optional<SpectrumMessage> spectrum;
         std::vector<std::string> known;
     };
+    enum class When : std::uint8_t { now, later };
 
     void work();
     std::optional<PageNumber> next_page() const;
-    void make_chart(std::unique_lock<std::mutex>& lock, PageNumber number);
+    void ask(PageNumber page, When when, Question question);
+    void answer_now(std::unique_lock<std::mutex>& lock, PageNumber number);
     std::optional<PageNumber> next_in_background() const;
     void make_refined(std::unique_lock<std::mutex>& lock, PageNumber number);
-    void make_spectrum(std::unique_lock<std::mutex>& lock, PageNumber number);
+    void answer_later(std::unique_lock<std::mutex>& lock, PageNumber number);
     void interrupt_background();
     void rest(std::unique_lock<std::mutex>& lock);
-    void make_pick(std::unique_lock<std::mutex>& lock, PageNumber number);
     void tell(PageNumber number, std::string_view about, Result<std::string> answer);
     void send_frame(PageNumber number, std::uint64_t wish, Result<std::string> frame);
     void make_frame(std::unique_lock<std::mutex>& lock, PageNumber number);

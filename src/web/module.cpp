@@ -124,6 +124,16 @@ void Looker::answer(PageMessage message) {
         const Result<Picked> picked = view_->pick(*pick, run);
         return say_text(picked ? picked_text(*picked) : error_text("pick", picked.error().message));
     }
+    if (const auto* parts = std::get_if<PartsMessage>(&message)) {
+        const Result<ShownParts> found = view_->parts(*parts, run);
+        return say_text(found ? parts_text(*parts, view_->step(), found->parts, found->kept)
+                              : error_text("parts", found.error().message));
+    }
+    if (const auto* share = std::get_if<ShareMessage>(&message)) {
+        const Result<double> isovalue = view_->isovalue_at(*share, run);
+        return say_text(isovalue ? share_text(*share, view_->step(), *isovalue)
+                                 : error_text("share", isovalue.error().message));
+    }
 }
 
 std::unique_ptr<Looker> looker;

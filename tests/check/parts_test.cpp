@@ -36,6 +36,36 @@ Surface three_balls(const Run& run = {}) {
     return solids.extract(SolidRange::below(0), run).value().surface;
 }
 
+TEST(PartChoice, IsReadAndWritten) {
+    for (const char* text : {"largest", "3", "area>0.5", "volume>1e-30", "touching:boundary", "touching:x=1:2", "parts:0,2",
+                             "not:7"}) {
+        const auto choice = parse_part_choice(text);
+        ASSERT_TRUE(choice) << text;
+        EXPECT_EQ(to_text(*choice), text);
+    }
+    EXPECT_EQ(to_text(parse_part_choice("parts:2,0,2").value()), "parts:0,2");
+    EXPECT_EQ(to_text(parse_part_choice("1").value()), "largest");
+    for (const char* text : {"", "0", "-1", "1.5", "some", "area>", "area>-1", "area>nan", "volume>inf", "touching:", "parts:",
+                             "parts:1,", "not:-1", "parts:1 ", "not:99999999999999999999"})
+        EXPECT_FALSE(parse_part_choice(text)) << text;
+}
+
+TEST(PartChoice, ByNumberTakesTheseOrAllOthers) {
+    const Surface surface = three_balls();
+    const SurfaceParts found = find_parts(surface).value();
+    const auto chosen = [&](const char* text) {
+        return chosen_parts(surface, found, parse_part_choice(text).value(), PartsOf::solid).value();
+    };
+    EXPECT_EQ(chosen("parts:2,0,9"), (std::vector<std::uint64_t>{0, 2}));
+    EXPECT_EQ(chosen("not:1"), (std::vector<std::uint64_t>{0, 2}));
+    EXPECT_EQ(chosen("2"), (std::vector<std::uint64_t>{0, 1}));
+    EXPECT_EQ(chosen("touching:boundary"), std::vector<std::uint64_t>());
+    EXPECT_FALSE(chosen_parts(surface, found, parse_part_choice("touching:material=2").value(), PartsOf::solid));
+    const Surface kept = keep_parts(surface, parse_part_choice("not:0").value(), PartsOf::solid).value();
+    EXPECT_EQ(kept.triangle_count(), found.parts[1].triangles + found.parts[2].triangles);
+    EXPECT_EQ(kept.cell_fields.size(), surface.cell_fields.size()) << "no field is added";
+}
+
 TEST(Parts, AreMeasuredLargestFirst) {
     const Surface surface = three_balls();
     const SurfaceParts found = find_parts(surface).value();

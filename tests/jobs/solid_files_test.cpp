@@ -3,10 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <isotet/check.hpp>
 #include <isotet/read.hpp>
+#include <isotet/write.hpp>
 
 #include "jobs/listener.hpp"
+#include "support/small_grid.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace isotet::jobs {
@@ -55,6 +59,76 @@ TEST(SolidFiles, OneBetweenTwoIsovaluesIsTheDifferenceOfTwoBelow) {
     const ExtractNumbers one = extract_files(between, listener).value();
     ASSERT_EQ(one.surfaces.size(), 1u);
     EXPECT_NEAR(one.surfaces[0].solid->volume, two.surfaces[1].solid->volume - two.surfaces[0].solid->volume, 1e-5);
+}
+
+TEST(SolidFiles, OfKeptPartsHaveTheirVolumeAndTellOfCavities) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    ExtractJob job = solid_job("make:kuhn:8:sphere", folder.file("box.vtp"), SolidChoice::Kind::above);
+    job.isovalues = {0.5};
+    const SolidNumbers all = *extract_files(job, listener).value().surfaces[0].solid;
+    job.keep = PartChoice{}; // the box without the ball's surface in it
+    const SurfaceNumbers kept = extract_files(job, listener).value().surfaces[0];
+    EXPECT_NEAR(kept.solid->volume, 8, 1e-6);
+    EXPECT_LT(all.volume, 7.6);
+    EXPECT_NEAR(kept.solid->boundary_area, 24, 1e-6);
+    EXPECT_EQ(kept.solid->isosurface_area, 0);
+    EXPECT_EQ(listener.noted.back(), "of the parts left out 1 is a cavity, of negative volume: the solid is filled there");
+}
+
+/// A cube of hexahedra with the cell field "group": 1 for them, 10 and 11 for quadrilaterals on its lower and upper side.
+Grid cube_with_patches(std::uint64_t side) {
+    Grid grid = test::made_grid("hex", side, {"sphere"});
+    std::vector<std::int64_t> corners;
+    for (std::size_t i = 0; i < grid.cells.connectivity.size(); ++i)
+        corners.push_back(static_cast<std::int64_t>(grid.cells.connectivity.at(i)));
+    const std::size_t hexahedra = corners.size() / 8;
+    std::vector<std::int64_t> offsets{0};
+    for (std::size_t i = 1; i <= hexahedra; ++i) offsets.push_back(static_cast<std::int64_t>(8 * i));
+    std::vector<std::uint8_t> types(hexahedra, 12);
+    std::vector<std::int32_t> groups(hexahedra, 1);
+    for (std::size_t i = 0; i < hexahedra; ++i)
+        for (const bool top : {false, true}) {
+            const std::size_t first = 8 * i + (top ? 4 : 0);
+            if (grid.points.at(static_cast<std::size_t>(corners[first]), 2) != (top ? 1 : -1)) continue;
+            for (std::size_t k = 0; k < 4; ++k) corners.push_back(corners[first + k]);
+            offsets.push_back(static_cast<std::int64_t>(corners.size()));
+            types.push_back(9);
+            groups.push_back(top ? 11 : 10);
+        }
+    grid.cells.connectivity = Array::own(std::move(corners));
+    grid.cells.offsets = Array::own(std::move(offsets));
+    grid.cells.types = Array::own(std::move(types));
+    grid.cell_fields.push_back({"group", Array::own(std::move(groups))});
+    return grid;
+}
+
+TEST(SolidFiles, MarkTheirBoundaryByRegionAndPatch) {
+    const test::TemporaryFolder folder;
+    const std::string file = folder.file("cube.vtu");
+    ASSERT_TRUE(write_grid(cube_with_patches(4), file));
+    Listener listener;
+    ExtractJob job = solid_job(file, folder.file("solid.vtp"), SolidChoice::Kind::below);
+    job.isovalues = {1.2};
+    ASSERT_TRUE(extract_files(job, listener));
+    const Surface solid = read_surface(job.out).value().surface;
+    const auto field = [&](const char* name) { return std::ranges::find(solid.cell_fields, name, &Field::name)->values; };
+    const Array group = field("group"), patch = field("patch_group"), on_cell = field("patch_cell"), part = field("boundary");
+    std::size_t on_patches = 0;
+    for (std::size_t i = 0; i < solid.triangle_count(); ++i) {
+        double height = 0; // of all corners
+        for (std::size_t k = 0; k < 3; ++k)
+            height += solid.positions.at(static_cast<std::size_t>(solid.triangles.at(3 * i + k)), 2) / 3;
+        const bool is_lower = part.at(i) == 1 && height < -1 + 1e-6, is_upper = part.at(i) == 1 && height > 1 - 1e-6;
+        EXPECT_EQ(group.at(i), 1) << "of the cell";
+        EXPECT_EQ(patch.at(i), is_lower ? 10 : is_upper ? 11 : -1);
+        EXPECT_EQ(on_cell.at(i) >= 64, is_lower || is_upper);
+        on_patches += is_lower || is_upper;
+    }
+    EXPECT_GT(on_patches, 8u);
+    job.with = {{"group"}};
+    ASSERT_TRUE(extract_files(job, listener));
+    EXPECT_EQ(read_surface(job.out).value().surface.point_fields.size(), 0u);
 }
 
 TEST(SolidFiles, RefuseWhatDoesNotGoTogether) {

@@ -106,14 +106,14 @@ TEST(StateOfCommand, SaysWhatIsWrong) {
               "--isovalue got '0.5,x', but it takes numbers separated by commas, at most 32 of them");
     EXPECT_EQ(state_of_command("--range 2,1").error().message,
               "--range got '2,1', but it takes two numbers, the smaller one first");
-    for (const char* text : {"-i", "-i nan", "-i inf", "--opacity 2", "--camera x", "--colormap jet", "--field"})
+    for (const char* text : {"--keep 0", "--keep touching:steel", "-i", "-i nan", "-i inf", "--opacity 2", "--camera x", "--colormap jet", "--field"})
         EXPECT_FALSE(state_of_command(text)) << text;
 }
 
 TEST(StateOf, RefusesWhatIsNoState) {
     for (const char* text : {"[]", "3", R"({"isovalues":3})", R"({"isovalues":["a"]})", R"({"isovalues":[1e999]})",
                              R"({"field":3})", R"({"map":"jet"})", R"({"range":[1,1]})", R"({"range":[1]})",
-                             R"({"opacity":-0.1})", R"({"opacity":"1"})", R"({"camera":"x"})", R"({"outline":1})", R"({"volume":"ramp"})",
+                             R"({"opacity":-0.1})", R"({"keep":"some"})", R"({"keep":1})", R"({"keep":"touching:material=2"})", R"({"opacity":"1"})", R"({"camera":"x"})", R"({"outline":1})", R"({"volume":"ramp"})",
                              R"({"volume":{"opacity":"steep"}})", R"({"volume":{"opacity":3}})",
                              R"({"volume":{"length":0}})", R"({"volume":{"surfaces":1}})"}) {
         const auto json = parse_json(text);

@@ -503,6 +503,72 @@ TEST_F(GridViewTest, APickOnASolidIsOnItsBoundaryToo) {
     EXPECT_EQ(picked->values.size(), 4U);
 }
 
+/// Far values of a gyroid are in many parts.
+class PartsTest : public testing::Test {
+protected:
+    std::unique_ptr<GridView> view_ = GridView::create(made_grid(16)).value();
+    ShowMessage message_ = [] {
+        ShowMessage message = show(1, {1.3});
+        message.state.field = "gyroid";
+        return message;
+    }();
+
+    std::uint64_t triangles() {
+        std::vector<std::string> known;
+        const auto made = view_->frame(message_, 0, known, {});
+        return head_of(made.value().bytes)["surfaces"][0]["triangles"].get<std::uint64_t>();
+    }
+    ShownParts parts() { return view_->parts({message_.state}, {}).value(); }
+    void keep(const char* choice) { message_.state.keep = parse_part_choice(choice); }
+};
+
+TEST_F(PartsTest, OfSurfacesAndSolidsAreThoseThatAreKept) {
+    for (const bool packed : {false, true})
+        for (const auto solid : {std::optional<SolidSide>(), std::optional(SolidSide::above)}) {
+            if (packed) {
+                ASSERT_TRUE(view_->pack("gyroid", {}));
+            }
+            message_.state.solid = solid;
+            message_.state.keep.reset();
+            const std::uint64_t all = triangles();
+            const ShownParts whole = parts();
+            ASSERT_GT(whole.parts.size(), 2u);
+            ASSERT_EQ(whole.kept.size(), whole.parts.size());
+            std::uint64_t sum = 0;
+            for (const SurfacePart& part : whole.parts) sum += part.triangles;
+            EXPECT_EQ(sum, all);
+            keep("not:0");
+            EXPECT_EQ(triangles(), all - whole.parts[0].triangles);
+            keep("parts:1");
+            EXPECT_EQ(triangles(), whole.parts[1].triangles);
+            EXPECT_EQ(parts().kept, (std::vector<std::uint64_t>{1}));
+            keep("touching:boundary");
+            const auto open = std::ranges::count(whole.parts, false, &SurfacePart::closed); // a solid has none
+            EXPECT_EQ(parts().kept.size() == static_cast<std::size_t>(open), !solid);
+        }
+}
+
+TEST_F(PartsTest, APickTellsThePartAndMeetsNoneThatIsLeftOut) {
+    const auto part_at = [this, centre = parts().parts[0].centre] {
+        const Picked picked = view_->pick({message_.state, {}, centre, {}, true}, {}).value();
+        return std::ranges::find(picked.values, "part", &PickedValue::name)->values;
+    };
+    keep("parts:0");
+    EXPECT_EQ(part_at(), std::vector<double>{0});
+    keep("not:0");
+    EXPECT_NE(part_at(), std::vector<double>{0});
+}
+
+TEST_F(GridViewTest, AnIsovalueByShareIsThatOfTheCommandLine) {
+    const Grid grid = made_grid(12);
+    for (const auto of : {IsovalueShare::Of::volume, IsovalueShare::Of::points}) {
+        const IsovalueShare share{of, 90};
+        const auto expected = isovalues_at(grid, find_field(grid, "sphere").value(), {&share, 1}).value().front();
+        EXPECT_EQ(view_->isovalue_at({"sphere", {}, share}, {}).value(), expected);
+    }
+    EXPECT_FALSE(view_->isovalue_at({"sphere", {}, {IsovalueShare::Of::volume, 101}}, {}));
+}
+
 TEST_F(GridViewTest, APickOnASliceLiesInItsPlane) {
     PickMessage message;
     message.state = show(1, {0.7}).state;

@@ -95,7 +95,9 @@ TEST(ParsePageMessage, RefusesPicksPicturesAndFilesThatMakeNoSense) {
         const char* text : {
             R"({"do":"pick","state":{"isovalues":[1]},"point":[1,2]})",
             R"({"do":"pick","state":{"isovalues":[1]},"point":[1,2,"3"]})",
-            R"({"do":"pick","state":{},"point":[1,2,3]})",
+            R"({"do":"pick","state":{},"point":[1,2,3]})", R"({"do":"parts","state":{}})",
+            R"({"do":"share","field":"p","of":"volume"})", R"({"do":"share","of":"points","percent":5})",
+            R"({"do":"share","field":"p","of":"area","percent":5})",
             R"({"do":"pick","state":{"isovalues":[1]},"slice":0,"point":[1,2,3]})",
             R"({"do":"show","number":1,"state":{},"picture":[0,10]})",
             R"({"do":"show","number":1,"state":{},"picture":[10,8193]})",
@@ -179,6 +181,24 @@ TEST(SaveWords, StepsReplaceTheStepAndSolidsAreSurfaces) {
         const std::string shown = shell_text(save_words(request, "out", "grid.vtu", {}).value());
         EXPECT_NE(shown.find("--solid above"), std::string::npos) << shown;
     }
+}
+
+TEST(SaveWords, NumbersOfPartsAreNotThoseOfAnotherSolid) {
+    SaveRequest request;
+    request.name = "s.stl";
+    request.state.isovalues = {0.5};
+    request.state.solid = SolidSide::above;
+    const auto keeps = [&](SaveKind kind, const char* choice) {
+        request.kind = kind;
+        request.state.keep = parse_part_choice(choice);
+        const auto words = save_words(request, "/folder", "grid.vtu", {}).value();
+        return std::ranges::find(words, "--keep") != words.end();
+    };
+    for (const char* choice : {"parts:0", "not:1"}) {
+        EXPECT_TRUE(keeps(SaveKind::surface, choice) && keeps(SaveKind::above, choice));
+        EXPECT_FALSE(keeps(SaveKind::below, choice));
+    }
+    EXPECT_TRUE(keeps(SaveKind::below, "largest"));
 }
 
 TEST(SaveWords, PicturesHaveASize) {

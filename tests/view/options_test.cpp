@@ -47,6 +47,8 @@ TEST(RenderWords, AreOptionsOfTheProgramWithTheSameMeaning) {
         EXPECT_EQ(render.boundary.value_or(state.volume ? 0 : view::default_boundary_opacity), state.boundary);
         expect_same_volume(render, state.volume);
         EXPECT_EQ(render.edges, state.edges);
+        EXPECT_EQ(render.solid, state.solid);
+        EXPECT_EQ(render.keep, state.keep);
         expect_same_planes(render.clips, state.clips);
         expect_same_planes(render.slices, state.slices);
         EXPECT_EQ(render.field.name, state.field);
@@ -74,6 +76,7 @@ TEST(ExtractWords, AreOptionsOfTheProgramWithTheSameMeaning) {
         EXPECT_EQ(line.extract.grid.file, "./-grid.vtu");
         EXPECT_EQ(line.extract.field.name, state.field);
         EXPECT_EQ(line.extract.isovalues, state.isovalues);
+        EXPECT_EQ(line.extract.keep, state.keep);
         EXPECT_EQ(line.extract.out, "surface.vtp");
     }
 }

@@ -48,6 +48,10 @@ inline view::ViewState random_state(unsigned seed) {
     if (chance(0.3)) state.boundary = std::uniform_real_distribution(0.0, 1.0)(random);
     state.edges = chance(0.3);
     if (chance(0.3)) state.solid = chance(0.5) ? SolidSide::above : SolidSide::below;
+    if (chance(0.3)) {
+        constexpr std::array choices{"largest", "3", "area>0.5", "volume>1e-30", "touching:boundary", "parts:0,7", "not:2"};
+        state.keep = parse_part_choice(choices[std::uniform_int_distribution<std::size_t>(0, choices.size() - 1)(random)]);
+    }
     for (std::vector<Plane>* planes : {&state.clips, &state.slices})
         for (int i = std::uniform_int_distribution(0, 3)(random); i > 0; --i) {
             Plane plane{{number(), number(), number()}, number()};
@@ -63,6 +67,7 @@ inline view::ViewState random_state(unsigned seed) {
         if (chance(0.5)) volume.length = std::abs(number()) + 1e-9;
         if (chance(0.5)) state.isovalues.clear(); // a command line without isovalues has no surfaces
         volume.surfaces = !state.isovalues.empty();
+        if (!volume.surfaces) state.keep.reset();
         if (chance(0.5)) state.color_by = state.field;
         else state.color_by.clear();
     }

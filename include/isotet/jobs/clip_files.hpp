@@ -12,6 +12,7 @@
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
 #include <isotet/refine.hpp>
+#include <isotet/jobs/range_shares.hpp>
 #include <isotet/write.hpp>
 
 namespace isotet::jobs {
@@ -23,6 +24,7 @@ struct ClipJob {
     std::vector<std::string> other_outputs; ///< of the caller: no grid may overwrite them
     FieldChoice field;
     std::optional<SolidRange> range;
+    RangeShares shares; ///< of `range`, each time step its own
     ClipOptions clip;
     std::optional<std::vector<std::string>> with; ///< nothing: all fields
     bool edge_ends = false;

@@ -55,6 +55,7 @@ struct DrawJob {
     std::vector<double> stretch; ///< of x, y and z; or none
     std::vector<Plane> clips, slices;
     std::optional<SolidSide> solid; ///< in place of isosurfaces: solids on this side of them
+    std::optional<PartChoice> keep; ///< of each isosurface or solid only these parts; nothing: all
     bool edges = false;
     bool split_cells = false;
     ShadeBy shade_by = ShadeBy::vertices;

@@ -14,6 +14,7 @@
 #include <isotet/jobs/device_choice.hpp>
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
+#include <isotet/jobs/range_shares.hpp>
 #include <isotet/packed_file.hpp>
 #include <isotet/parts.hpp>
 #include <isotet/pieces.hpp>
@@ -33,19 +34,7 @@ struct SolidChoice {
     };
     Kind kind = Kind::above;
     SolidRange range;
-};
-
-/// Which connected parts of each surface are kept.
-struct PartChoice {
-    enum class Kind : std::uint8_t {
-        largest, ///< the `limit` ones of largest area
-        area,    ///< those of a larger area than `limit`
-        volume,  ///< closed ones that enclose more than `limit`
-        touching ///< those that touch `region` (parts_touching()), or the grid's boundary
-    };
-    Kind kind = Kind::largest;
-    double limit = 1;
-    std::string region; ///< "boundary", a region that the file names, or "FIELD=VALUE" or "FIELD=LOWER:UPPER" of cells
+    RangeShares shares = {}; ///< of `range`, each time step its own
 };
 
 /// Colours that go with each surface, as its point field "rgb".
@@ -86,7 +75,8 @@ struct ExtractJob {
     std::optional<RefineOptions> refine = RefineOptions{}; ///< of curved cells; nothing: at their nodes only
     bool refine_averaged = false; ///< also for a field averaged from cells, which else is taken at the nodes only
     std::optional<SolidChoice> solid;                      ///< nothing: isosurfaces
-    std::optional<PartChoice> keep;                        ///< nothing: all parts
+    std::optional<PartChoice> keep; ///< nothing: all parts; its region may be one that the file names, or "FIELD=VALUE" or
+                                    ///< "FIELD=LOWER:UPPER" of cells
     std::optional<ReduceOptions> reduce; ///< nothing: all triangles
     std::string parts_table; ///< a CSV file with a row for each part; empty: none, and parts are not looked for
     std::optional<std::uint64_t> memory; ///< as PackedFileOptions::memory, where the grid is a packed file
@@ -97,7 +87,7 @@ struct SolidNumbers {
     SolidRange range;
     double volume = 0, grid_volume = 0;
     double isosurface_area = 0, boundary_area = 0;
-    std::uint64_t open_edges = 0;
+    std::uint64_t open_edges = 0, seam_edges = 0;
 };
 
 /// Where the field is below an isovalue, and where it is not, as contour_spectrum() measures it.
