@@ -371,9 +371,10 @@ def test_commands(browser, viewer):
     check(browser.value('document.getElementById("color-by").value') == 'sphere', 'the colours follow')
     check('for x.vtu' in browser.value('document.getElementById("message").textContent'), 'it says that the file is another one')
     browser.click('#command')
-    browser.type(f'isotet extract {GRID} -i 0.5 --keep largest')
+    browser.type(f'isotet extract {GRID} -i 0.5 --keep largest --reduce 90%')
     browser.key('Enter')
-    browser.wait('document.getElementById("message").textContent === "Not taken, as the page does not have it: --keep largest"')
+    browser.wait('document.getElementById("message").textContent === "Not taken, as the page does not have it: --reduce 90%"')
+    check('keep=largest' in browser.value('location.hash'), 'the parts to keep are taken')
     browser.click('#command')
     browser.type('rm -rf /')
     browser.key('Enter')
@@ -478,6 +479,76 @@ def test_solids(browser, viewer):
     browser.wait(f'Number(document.body.dataset.triangles) < {above}')
     choose(browser, '#solid', '')
     browser.wait(f'Number(document.body.dataset.triangles) === {isosurface} && !location.hash.includes("solid=")')
+
+
+def test_parts(browser, viewer):
+    """The table has the parts, largest first; a click leaves one out, and the commands and the address follow."""
+    start(browser, viewer)
+    choose(browser, '#field', 'gyroid')
+    browser.wait('document.body.dataset.field === "gyroid"')
+    type_value(browser, '1.3')
+    at_rest(browser, 1.3)
+    triangles = lambda: int(browser.value('document.body.dataset.triangles'))
+    table = lambda: json.loads(browser.value('document.body.dataset.parts'))
+    told = lambda: browser.value('document.getElementById("parts-told").textContent')
+    whole = triangles()
+    browser.click('#parts summary')
+    browser.wait('document.body.dataset.parts')
+    parts = table()['parts']
+    check(len(parts) > 2 and sum(part['triangles'] for part in parts) == whole, f'all triangles are in a part: {parts}')
+    check([part['area'] for part in parts] == sorted((part['area'] for part in parts), reverse=True), 'largest first')
+    row = '#parts-rows tr:nth-child(1) '
+    browser.click(row + 'td:nth-child(2)')
+    browser.wait(f'Number(document.body.dataset.triangles) === {whole - parts[0]["triangles"]}')
+    browser.wait('location.hash.includes("keep=not%3A0")')
+    browser.wait('document.getElementById("parts-told").textContent.includes("shown")')
+    check(f'{len(parts) - 1} shown' in told(), told())
+    browser.picture(pictures and f'{pictures}/parts.png')
+    browser.click('#copy-extract')
+    browser.wait('document.getElementById("copied").textContent.includes("--keep not:0")')
+    browser.click(row + 'button')
+    browser.wait(f'Number(document.body.dataset.triangles) === {parts[0]["triangles"]}')
+    browser.value('history.back(); 1')
+    browser.wait(f'Number(document.body.dataset.triangles) === {whole - parts[0]["triangles"]}')
+    browser.value('(() => { const box = document.getElementById("keep"); box.focus(); box.value = "2"; '
+                  'box.dispatchEvent(new KeyboardEvent("keydown", {key: "Enter"})); box.blur(); return 1; })()')
+    browser.wait(f'Number(document.body.dataset.triangles) === {parts[0]["triangles"] + parts[1]["triangles"]}')
+    browser.wait('JSON.parse(document.body.dataset.parts).kept === 2')
+    browser.click('#parts-rows tr:nth-child(2) input')  # of a rule, numbers are left
+    browser.wait('location.hash.includes("keep=parts%3A0&") || location.hash.endsWith("keep=parts%3A0")')
+    type_value(browser, '1.35')
+    at_rest(browser, 1.35)
+    check('keep=' not in browser.value('location.hash'), 'numbers are those of one value')
+
+
+def test_shares_and_scales(browser, viewer):
+    """The box takes 90%v and p95 as the command line; the slider goes by logarithm and by share of volume."""
+    program = os.environ['ISOTET_PROGRAM']
+    start(browser, viewer)
+    for text in ['25%v', 'p75']:
+        numbers = json.loads(subprocess.check_output([program, 'extract', GRID, '-f', 'sphere', '-i', text, '--json', '-']))
+        type_value(browser, text)
+        at_rest(browser, numbers['surfaces'][0]['isovalue'])
+    browser.wait('document.body.dataset.spectrum === "sphere"')
+    x, y, w, h = browser.box('#slider')
+    choose(browser, '#scale', 'share')
+    browser.drag((x + 0.3 * w, y + h / 2), (x + 0.5 * w, y + h / 2), steps=3)
+    at_rest(browser)
+    half = json.loads(subprocess.check_output([program, 'extract', GRID, '-f', 'sphere', '-i', '50%v', '--json', '-']))
+    half = half['surfaces'][0]['isovalue']
+    check(abs(shown(browser) - half) < 0.01, f'half of the volume is in the middle: {shown(browser)}, {half}')
+    browser.wait('location.hash.includes("scale=share")')
+    choose(browser, '#scale', 'log')
+    browser.drag((x + 0.3 * w, y + h / 2), (x + 0.5 * w, y + h / 2), steps=3)
+    at_rest(browser)
+    lower, upper = [float(one) for one in browser.value('document.body.dataset.span').split()]
+    middle = (max(lower, 1e-6 * upper) * upper) ** 0.5
+    check(abs(shown(browser) / middle - 1) < 0.05, f'the middle of logarithms: {shown(browser)}, {middle}')
+    before = shown(browser)
+    browser.value('document.getElementById("slider").focus()')
+    browser.key('ArrowRight')
+    at_rest(browser)
+    check(shown(browser) > before, 'a key goes on')
 
 
 def test_pick(browser, viewer):

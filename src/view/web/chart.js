@@ -5,12 +5,14 @@ import {roundTo, short} from './format.js';
 /** The histogram of a chart, `room` high above `base`; `x` is the place of a value. */
 export function paintBars(context, {points, lower, upper}, x, base, room) {
   // Square roots: bins with few points stay visible beside a bin with most of them.
-  const most = Math.sqrt(Math.max(1, ...points)), wide = x(lower + (upper - lower) / points.length) - x(lower);
+  const most = Math.sqrt(Math.max(1, ...points)), end = (i) => x(lower + i / points.length * (upper - lower));
   points.forEach((count, i) => {
     const tall = room * Math.sqrt(count) / most;
-    if (count > 0) context.fillRect(x(lower) + i * wide, base - Math.max(1, tall), Math.max(1, wide - 0.5), Math.max(1, tall));
+    if (count > 0) context.fillRect(end(i), base - Math.max(1, tall), Math.max(1, end(i + 1) - end(i) - 0.5), Math.max(1, tall));
   });
 }
+
+const leastLogarithm = 1e-6; // of the largest value: where logarithms begin if the range has 0 in it
 
 export class ChartSlider {
   /** @param on  {input(value): the hand moves; commit(): it rests} */
@@ -24,6 +26,7 @@ export class ChartSlider {
     this.stops = null; // values that it stops at, rising; null: any
     this.spectrum = null; // area and volume against the isovalue
     this.curve = 'triangles'; // or 'area', 'volume_below'
+    this.scale = '';   // or 'log', 'share': of the volume below
     this.value = 0;
     this.marks = [];
     element.addEventListener('pointerdown', (event) => {
@@ -43,13 +46,42 @@ export class ChartSlider {
 
   range() { return this.span ? this.span.upper - this.span.lower : 0; }
 
-  /** Part of the slider, 0 to 1 between its ends. */
-  part(value) { return (value - this.span.lower) / (this.range() || 1); }
+  /** Part of the range, 0 to 1 between its ends. */
+  evenPart(value) { return (value - this.span.lower) / (this.range() || 1); }
+
+  /** Part of the slider, by its scale. */
+  part(value) {
+    if (this.scale === 'log') {
+      const from = this.logStart();
+      return value <= from ? 0 : Math.log(value / from) / Math.log(this.span.upper / from);
+    }
+    if (this.scale === 'share') return this.measured('volume_below', value) / this.spectrum.volume;
+    return this.evenPart(value);
+  }
+
+  logStart() { return this.span.lower > 0 ? this.span.lower : leastLogarithm * this.span.upper; }
+
+  /** The value at a part of the slider; of a share the least one. */
+  valueAt(part) {
+    const {lower, upper} = this.span;
+    if (part <= 0 || part >= 1) return part <= 0 ? lower : upper;
+    if (this.scale === 'log') return this.logStart() * (upper / this.logStart()) ** part;
+    if (this.scale !== 'share') return lower + part * this.range();
+    const {isovalues, volume_below: below, volume} = this.spectrum, wanted = part * volume, i = below.findIndex((one) => one >= wanted);
+    if (i < 1) return i === 0 ? isovalues[0] : upper;
+    const between = (wanted - below[i - 1]) / (below[i] - below[i - 1]);
+    return isovalues[i - 1] + between * (isovalues[i] - isovalues[i - 1]);
+  }
+
+  /** The value there, in decimals that are as fine as the hand: the range, were it everywhere as here. */
+  roundedAt(part, finer = 1) {
+    const near = 0.005, here = this.scale ? (this.valueAt(part + near) - this.valueAt(part - near)) / (2 * near) : this.range();
+    return this.limited(roundTo(this.valueAt(part), here * finer));
+  }
 
   take(event) {
     const box = this.element.getBoundingClientRect();
-    const part = Math.max(0, Math.min(1, (event.clientX - box.left) / box.width));
-    this.on.input(this.limited(roundTo(this.span.lower + part * this.range(), this.range())));
+    this.on.input(this.roundedAt(Math.max(0, Math.min(1, (event.clientX - box.left) / box.width))));
   }
 
   limited(value) { return this.allowed(Math.max(this.span.lower, Math.min(this.span.upper, value))); }
@@ -63,9 +95,19 @@ export class ChartSlider {
   step(steps) {
     if (!(this.range() > 0)) return;
     if (this.stops) return this.stepOverStops(steps);
-    const fine = this.range() * Math.min(1, Math.abs(steps));
-    this.on.input(this.limited(roundTo(this.value + steps * this.range() / 200, fine)));
+    const finer = Math.min(1, Math.abs(steps));
+    if (this.scale) this.on.input(this.nextByScale(steps / 200, finer));
+    else this.on.input(this.limited(roundTo(this.value + steps * this.range() / 200, this.range() * finer)));
     this.on.commit();
+  }
+
+  /** Over parts of the slider that all have this value. */
+  nextByScale(step, finer) {
+    for (let part = this.part(this.value) + step; part > 0 && part < 1; part += step) {
+      const value = this.roundedAt(part, finer);
+      if ((value - this.value) * step > 0) return value;
+    }
+    return step < 0 ? this.span.lower : this.span.upper;
   }
 
   /** At least one of them. */

@@ -52,6 +52,14 @@ export function parseNumber(text, range = null) {
   return percent ? (1 - part) * range.lower + part * range.upper : value; // exact at both ends
 }
 
+/** "90%v" and "p95", as the command line takes them: {of, percent}. Else null. */
+export function parseShare(text) {
+  const number = (digits) => (digits !== undefined && Number(digits) <= 100 ? Number(digits) : null);
+  const [, volume, points] = /^(?:(\d+\.?\d*|\.\d+)\s*%\s*v|p\s*(\d+\.?\d*|\.\d+))$/i.exec(text.trim().replace(',', '.')) || [];
+  if (number(volume) !== null) return {of: 'volume', percent: number(volume)};
+  return number(points) === null ? null : {of: 'points', percent: number(points)};
+}
+
 /** Decimals that the hand can choose: a step is a 2000th of the range or more. */
 export function roundTo(value, range) {
   const step = 10 ** Math.floor(Math.log10(range / 1000));

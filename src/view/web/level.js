@@ -4,6 +4,7 @@ import {app, id} from './app.js';
 import {ChartSlider} from './chart.js';
 import * as format from './format.js';
 import {say} from './notes.js';
+import {forgetParts, forgetPartNumbers} from './parts.js';
 import {pinColor, showSurfaces} from './surfaces.js';
 import {address, commit, commitSoon} from './undo.js';
 import {forgetPoints, showCurve} from './volume.js';
@@ -16,11 +17,13 @@ const level = {
   left: new Map(),       // what was shown of a field when another one was chosen
   automatic: false,      // the value is that of a field that is constant, until a step has another
   chart: '', spectrum: '', // that were asked for: step and field
+  share: '',             // that was typed last, until its isovalue comes
   empty: '',             // where no value is finite
   msPerTriangle: null,   // of the server, by the last frames that it made
 };
 
 export function setValue(value) {
+  if (app.state.value !== app.slider.allowed(value)) forgetPartNumbers();
   app.state.value = app.slider.allowed(value);
   level.automatic = false;
   showValue();
@@ -35,6 +38,7 @@ export function showValue() {
   }
   const rows = id('surfaces').children;
   if (rows.length > 0 && app.state.value !== null) rows[0].querySelector('.value').textContent = format.short(app.state.value);
+  showScale();
   app.slider.set(app.state.value ?? 0, app.state.pins.map((pin, i) => ({value: pin.value, color: pinColor(i)})));
   const expected = app.state.value === null ? null : app.slider.expected(app.state.value);
   const ms = expected === null || !level.msPerTriangle ? '' : `, ${format.duration(expected * level.msPerTriangle)}`;
@@ -90,6 +94,20 @@ function showSpan() {
     steps.size === app.time.times.length ? 'all steps' : `${steps.size} of ${app.time.times.length} steps`;
   Object.assign(document.body.dataset, {chart_step: slider.chart?.step ?? '', span: slider.span ? `${slider.span.lower} ${slider.span.upper}` : ''});
 }
+
+/** What cannot be is by value: a logarithm of nothing above 0, a share of a volume that is not measured yet. */
+function showScale() {
+  const {slider, state} = app, can = {'': true, log: slider.span?.upper > 0, share: slider.spectrum?.isovalues.length > 1 && slider.spectrum.volume > 0};
+  for (const option of id('scale').options) option.disabled = !can[option.value];
+  id('scale').value = state.scale;
+  slider.scale = can[state.scale] ? state.scale : '';
+}
+
+id('scale').addEventListener('change', () => {
+  app.state.scale = id('scale').value;
+  showValue();
+  commit();
+});
 
 id('span').addEventListener('change', () => {
   app.state.span = id('span').value;
@@ -148,7 +166,10 @@ export function askSpectrum() {
 }
 
 /** Another connection knows of no question. */
-export const forgetQuestions = () => { level.chart = level.spectrum = ''; };
+export function forgetQuestions() {
+  level.chart = level.spectrum = level.share = '';
+  forgetParts();
+}
 
 export function takeSpectrum(spectrum) {
   level.spectrum = '';
@@ -157,10 +178,29 @@ export function takeSpectrum(spectrum) {
   showValue();
 }
 
+/** An isovalue by share is found by the server. */
+function askShare({of, percent}) {
+  const {field, step} = app.state, message = {do: 'share', field, of, percent};
+  if (step !== null) message.step = step;
+  if (app.link.send(message)) level.share = `${question()}|${of}|${percent}`;
+}
+
+export function takeShare({field, step, of, percent, isovalue}) {
+  const {state} = app;
+  if (level.share !== `${question()}|${of}|${percent}` || field !== state.field || (state.step !== null && step !== state.step)) return;
+  level.share = '';
+  id('value').blur();
+  setValue(isovalue);
+  commit();
+}
+
 function typed() {
-  const value = format.parseNumber(id('value').value, app.slider.span);
+  const share = app.grid?.saved === 'surfaces' ? null : format.parseShare(id('value').value);
+  const value = share ? 0 : format.parseNumber(id('value').value, app.slider.span);
   id('value').setAttribute('aria-invalid', value === null);
-  if (value === null) return say('An isovalue is a number, such as 0.25 or 1e-3, or a part of the range, such as 50 %.');
+  if (value === null) return say('An isovalue is a number, such as 0.25 or 1e-3, a part of the range, such as 50 %, or 90%v for 90 % of the volume below it, or p95 for a percentile of the points.');
+  level.share = '';
+  if (share) { say(''); return askShare(share); }
   say('');
   setValue(value);
   commit();
@@ -176,6 +216,7 @@ id('value').addEventListener('blur', () => showValue());
 export function chooseField(name) {
   const {state} = app;
   commit(); // what was shown last is a state of its own
+  forgetPartNumbers();
   level.left.set(state.field, {value: state.value, pins: state.pins});
   Object.assign(state, {field: name, value: null, pins: []}, level.left.get(name));
   app.slider.chart = app.slider.spectrum = null;

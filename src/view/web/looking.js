@@ -4,6 +4,7 @@ import {app, aspect, id} from './app.js';
 import {showValue} from './level.js';
 import {say} from './notes.js';
 import {closePicked} from './picked.js';
+import {forgetPartNumbers} from './parts.js';
 import {drawSoon} from './picture.js';
 import {commit, commitSoon} from './undo.js';
 import {serverDraws, wishSoon} from './wishes.js';
@@ -49,6 +50,7 @@ id('drawn-by').addEventListener('change', () => {
 
 id('solid').addEventListener('change', () => {
   app.state.solid = id('solid').value;
+  forgetPartNumbers();
   closePicked();
   wishSoon();
   commit();

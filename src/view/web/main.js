@@ -7,10 +7,11 @@ import {Cuts} from './cuts.js';
 import {short} from './format.js';
 import {offerField, refuseFormula} from './formula.js';
 import './keys.js';
-import {askChart, followStep, forgetQuestions, forgetSpeed, forgetValues, takeChart, takeSpectrum} from './level.js';
+import {askChart, followStep, forgetQuestions, forgetSpeed, forgetValues, takeChart, takeShare, takeSpectrum} from './level.js';
 import {Link} from './link.js';
 import {moved, showBoundary} from './looking.js';
 import {say, showNotes} from './notes.js';
+import {forgetPartNumbers, showParts, takeParts} from './parts.js';
 import {pickAt, takePicked} from './picked.js';
 import {drawSoon, pictureAsSeen, takeFrame} from './picture.js';
 import {Pointer} from './pointer.js';
@@ -50,6 +51,7 @@ function showState() {
   id('span').value = app.state.span;
   followStep();
   showSurfaces();
+  showParts();
   wishSoon();
   drawSoon();
 }
@@ -73,6 +75,7 @@ app.time = new TimeSteps({section: id('time'), slider: id('step'), label: id('st
   step: () => app.state.step ?? 0, commit, rest: followStep,
   go(step) {
     if (step < 0 || step >= app.time.times.length) return;
+    if (step !== app.state.step) forgetPartNumbers();
     app.state.step = step;
     app.time.show(step);
     wishSoon();
@@ -172,7 +175,9 @@ const messages = {
   chart: takeChart,
   spectrum: takeSpectrum,
   command: takeCommand,
+  parts: takeParts,
   picked: takePicked,
+  share: takeShare,
   state: takeState,
   refused(message) {
     if (message.number >= app.number) stopWaiting();

@@ -2,6 +2,7 @@
 // Values at a point of a surface or slice.
 import {app, aspect, id} from './app.js';
 import * as format from './format.js';
+import {markPart} from './parts.js';
 import {toMessage} from './state.js';
 import {serverDraws} from './wishes.js';
 
@@ -11,12 +12,12 @@ export function pickAt(x, y) {
     if (!app.grid?.lower || (volume && !volume.surfaces && !planes.some(({kind}) => kind === 'slice'))) return;
     const [point, ray] = app.camera.ray(x, y, aspect(), app.grid.lower, app.grid.upper);
     app.picked = {point: null, isovalue: null, key: null, field: app.frame?.field, step: app.frame?.step};
-    app.link.send({do: 'pick', state: {...toMessage(app.state), camera: undefined}, point, ray});
+    app.link.send({do: 'pick', state: {...toMessage(app.state), camera: undefined}, point, ray, parts: id('parts').open});
     return;
   }
   const found = app.scene?.pickSurface(x, y);
   if (!found) return closePicked();
-  const {surface, point} = found, message = {do: 'pick', state: toMessage(app.state), point};
+  const {surface, point} = found, message = {do: 'pick', state: toMessage(app.state), point, parts: id('parts').open};
   delete message.state.camera;
   if (surface.kind === 'slice') message.slice = app.frame.surfaces.filter(({kind}) => kind === 'slice').findIndex(({key}) => key === surface.key);
   else message.state.isovalues = [surface.isovalue];
@@ -42,6 +43,7 @@ export function takePicked(message) {
     row.append(head, cell);
     return row;
   }));
+  markPart(app.picked.isovalue === app.state.value ? message.values.find(({name, cell}) => cell && name === 'part')?.values[0] : undefined);
   id('picked').hidden = false;
   document.body.dataset.picked = JSON.stringify(message);
   placeMark();

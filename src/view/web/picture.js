@@ -6,6 +6,7 @@ import * as format from './format.js';
 import {followStep, measureServer, rangeOf} from './level.js';
 import {paintLabels, showLabels} from './labels.js';
 import {showNotes} from './notes.js';
+import {askParts} from './parts.js';
 import {checkPicked, placeMark} from './picked.js';
 import {planesOf} from './state.js';
 import {showSurfaces} from './surfaces.js';
@@ -79,6 +80,7 @@ function draw() {
     measureServer(app.frame);
     followStep();
     refineSoon();
+    askParts();
   }
   document.body.dataset.camera = app.camera.text();
 }
@@ -194,6 +196,7 @@ async function takePicture(next) {
   if (next.preview && next.number >= app.number) restSoon();
   app.time.shown(next.step);
   followStep();
+  askParts();
 }
 
 /** The server sends no more than two frames ahead: each is acknowledged once, also one that is replaced before it is drawn. */

@@ -86,7 +86,8 @@ export class Save {
   showCommand() {
     const [kind] = this.chosen(), which = {surface: 'extract', above: 'extract', below: 'extract', picture: 'render'}[kind];
     const solid = solids.includes(kind) ? ` --solid ${kind}` : '', all = this.command?.[which] || '';
-    const text = solid ? all.replace(/(--isovalue[ =][^ ,]+),\S*/, '$1').replace(/ --solid \S+/, '') : all;
+    const own = kind === this.on.state().solid, other = own ? / --solid \S+/ : / --solid \S+| --keep (parts|not):\S+/g; // numbers of parts are of what is shown
+    const text = solid ? all.replace(/(--isovalue[ =][^ ,]+),\S*/, '$1').replace(other, '') : all;
     id('save-command').textContent = text.replace(/ -o \S+$/, () => `${solid} -o ${/ /.test(id('save-name').value) ? `'${id('save-name').value}'` : id('save-name').value}`);
   }
 

@@ -6,14 +6,19 @@ export const firstState = () => ({
   color: null, opacity: null,       // of the surface that the slider moves
   colorBy: '', map: 'viridis', range: null, logarithmic: false, outline: false, edges: false, camera: null,
   boundary: 0.1, solid: '', // 'above' or 'below' in place of isosurfaces
+  keep: '', // connected parts, as --keep takes them; all
   planes: [], step: null, drawn: '', // 'server': pictures, 'browser': never
   volume: null, // {opacity, length, surfaces}: as isotet render --volume draws it
   labels: true, // scale, field, isovalue and time in the scene
   span: '', // of the slider: 'step', else all steps that were seen
+  scale: '', // of the slider: 'log', 'share' of the volume, else values
   // planes: [{kind: 'clip' or 'slice', normal, offset}]
 });
 
 const isColor = (text) => /^#[0-9a-f]{6}$/.test(text);
+/** Whether a text is one of --keep that the page shows. */
+export const isKeptParts = (text) => text.length <= 4096 && /^(largest|0*[1-9]\d{0,17}|(area|volume)>\+?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?|touching:boundary|(parts|not):\d{1,18}(,\d{1,18})*)$/i.test(text);
+
 const isPart = (number) => Number.isFinite(number) && number >= 0 && number <= 1;
 
 export const maxPlanes = 6; // of a kind
@@ -32,10 +37,12 @@ export function toAddress(state) {
   for (const flag of ['logarithmic', 'outline', 'edges']) if (state[flag]) parts.set(flag, 1);
   if (state.boundary !== 0.1) parts.set('boundary', state.boundary);
   if (state.solid) parts.set('solid', state.solid);
+  if (state.keep) parts.set('keep', state.keep);
   for (const {kind, normal, offset} of state.planes) parts.append(kind, [...normal, offset].join(','));
   if (state.step !== null) parts.set('step', state.step);
   if (state.drawn) parts.set('drawn', state.drawn);
   if (state.span) parts.set('span', state.span);
+  if (state.scale) parts.set('scale', state.scale);
   if (state.volume) parts.set('volume', state.volume.opacity);
   if (state.volume?.length) parts.set('length', state.volume.length);
   if (state.volume?.surfaces) parts.set('surfaces', 1);
@@ -67,6 +74,7 @@ export function fromAddress(text) {
   const boundary = number(parts.get('boundary'));
   if (boundary !== null && isPart(boundary)) state.boundary = boundary;
   if (['above', 'below'].includes(parts.get('solid'))) state.solid = parts.get('solid');
+  if (isKeptParts(parts.get('keep') || '')) state.keep = parts.get('keep');
   for (const [kind, text] of parts) {
     if (!['clip', 'slice'].includes(kind) || planesOf(state, kind).length >= maxPlanes) continue;
     const numbers = text.split(',').map(Number);
@@ -77,6 +85,7 @@ export function fromAddress(text) {
   if (step !== null && Number.isInteger(step) && step >= 0) state.step = step;
   if (['server', 'browser'].includes(parts.get('drawn'))) state.drawn = parts.get('drawn');
   if (parts.get('span') === 'step') state.span = 'step';
+  if (['log', 'share'].includes(parts.get('scale'))) state.scale = parts.get('scale');
   if (parts.get('volume')) {
     const length = number(parts.get('length'));
     state.volume = {opacity: parts.get('volume').slice(0, 4096), length: length > 0 ? length : null, surfaces: parts.get('surfaces') === '1'};
@@ -96,6 +105,7 @@ export function toMessage(state) {
     edges: state.edges, boundary: state.boundary};
   for (const kind of ['clip', 'slice']) message[kind + 's'] = planesOf(state, kind).map(({normal, offset}) => [...normal, offset]);
   if (state.solid) message.solid = state.solid;
+  if (state.keep) message.keep = state.keep;
   if (state.step !== null) message.step = state.step;
   if (state.value === null) message.isovalues.shift();
   if (state.range) message.range = state.range;
@@ -115,7 +125,7 @@ export function fromMessage(message) {
   const opacity = message.opacity ?? null;
   return {...state, field: message.field, value, pins: pins.map((one) => ({value: one, color: null, opacity})), opacity,
     colorBy: message.color_by, map: message.map, logarithmic: message.logarithmic, outline: message.outline,
-    edges: message.edges, boundary: message.boundary, solid: message.solid ?? '', step: message.step ?? null,
+    edges: message.edges, boundary: message.boundary, solid: message.solid ?? '', keep: message.keep ?? '', step: message.step ?? null,
     planes: ['clip', 'slice'].flatMap((kind) => message[kind + 's'].map((plane) => ({kind, normal: plane.slice(0, 3), offset: plane[3]}))),
     volume: message.volume ? {length: null, ...message.volume} : null,
     range: message.range ?? null, camera: message.camera ?? null};

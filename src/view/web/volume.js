@@ -47,7 +47,7 @@ export function showVolume() {
 
 /** The place of a point on the canvas. Low opacities matter most: the height is their square root. */
 function placeOf([value, opacity], width, height) {
-  return [Math.max(0, Math.min(1, app.slider.part(value))) * width, 4 + (height - 8) * (1 - Math.sqrt(opacity))];
+  return [Math.max(0, Math.min(1, app.slider.evenPart(value))) * width, 4 + (height - 8) * (1 - Math.sqrt(opacity))];
 }
 
 export function showCurve() {
@@ -57,7 +57,7 @@ export function showCurve() {
   [canvas.width, canvas.height] = [Math.round(width * ratio), Math.round(height * ratio)];
   context.scale(ratio, ratio);
   context.fillStyle = css('bars');
-  if (chart) paintBars(context, chart, (value) => app.slider.part(value) * width, height - 4, height - 8);
+  if (chart) paintBars(context, chart, (value) => app.slider.evenPart(value) * width, height - 4, height - 8);
   const points = opacityPoints().map((point) => placeOf(point, width, height));
   if (points.length === 0) return;
   context.strokeStyle = context.fillStyle = css('accent');

@@ -63,7 +63,7 @@ export class Link {
     if (message.do === 'show' || message.do === 'refine') {
       this.wish = message;
       this.next();
-    } else if (['chart', 'spectrum', 'pick'].includes(message.do)) this.worker.postMessage(message);
+    } else if (['chart', 'spectrum', 'pick', 'parts', 'share'].includes(message.do)) this.worker.postMessage(message);
     else if (message.do === 'save') this.save(message);
     else if (message.do === 'part') this.on.part(this.file);
     return true;

@@ -45,7 +45,7 @@ export function stopWaiting() {
 
 /** What a frame depends on. */
 const wanted = () => JSON.stringify([app.state.field, app.state.value, app.state.pins.map((pin) => pin.value), app.state.colorBy, app.state.map, app.state.range, app.state.logarithmic,
-  planesOf(app.state, 'slice'), app.state.boundary > 0, app.state.solid, app.state.step, document.body.dataset.step === 'ready', serverDraws() && [app.camera.text(), pictureSize(), toMessage(app.state)]]);
+  planesOf(app.state, 'slice'), app.state.boundary > 0, app.state.solid, app.state.keep, app.state.step, document.body.dataset.step === 'ready', serverDraws() && [app.camera.text(), pictureSize(), toMessage(app.state)]]);
 
 /** Bytes a ms of the line, by frames that are large enough to tell. */
 export function measureLine(next) {
@@ -93,10 +93,13 @@ export function restSoon() {
   restTimer = setTimeout(() => wish(false), 150);
 }
 
+/** What the page asks for is on the screen, in full. */
+export const isAtRest = () => app.frame?.number === app.number && app.sent === wanted() + '|rest';
+
 /** Curved cells are refined where nothing moves: the surface that is shown is made anew, and takes its time. */
 export function refineSoon() {
   if (!app.grid.refines || app.state.solid || app.frame.picture || app.frame.preview || app.frame.field_bound != null) return;
-  if (app.frame.number !== app.number || app.sent !== wanted() + '|rest') return;
+  if (!isAtRest()) return;
   const message = {do: 'refine', number: app.number + 1, state: toMessage(app.state), most: measured.lastMost};
   delete message.state.camera;
   if (!app.link.send(message)) return;
