@@ -28,7 +28,8 @@ def ball_in_box(order, recombined=False):
     gmsh.model.addPhysicalGroup(2, [gmsh.model.getEntities(2)[0][1]], name="a wall")
     if recombined:
         gmsh.option.setNumber("Mesh.SubdivisionAlgorithm", 2)
-    gmsh.option.setNumber("Mesh.MeshSizeMax", 1.0 if recombined else 0.6)
+    gmsh.option.setNumber("Mesh.MeshSizeMin", 1.2 if recombined else 0)
+    gmsh.option.setNumber("Mesh.MeshSizeMax", 1.5 if recombined else 0.6)
     gmsh.model.mesh.generate(3)
     gmsh.option.setNumber("Mesh.SubdivisionAlgorithm", 0)
     gmsh.model.mesh.setOrder(order)
