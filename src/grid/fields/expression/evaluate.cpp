@@ -2,6 +2,7 @@
 #include "grid/fields/expression/evaluate.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <initializer_list>
 #include <optional>
@@ -257,9 +258,22 @@ private:
         case ExpressionOp::subtract: join([](double a, double b) { return a - b; }); break;
         case ExpressionOp::multiply: join([](double a, double b) { return a * b; }); break;
         case ExpressionOp::divide: join([](double a, double b) { return a / b; }); break;
-        case ExpressionOp::magnitude:
-            tensor([](std::span<const double> v) { return magnitude_of(v.data(), v.size()); });
+        case ExpressionOp::magnitude: {
+            std::array<double, block_size> largest{};
+            std::fill_n(out, count, 0.0);
+            for (std::size_t c = 0; c < width(0); ++c) {
+                const double* from = row(0, c);
+                for (std::size_t i = 0; i < count; ++i) {
+                    largest[i] = std::max(largest[i], std::abs(from[i]));
+                    out[i] += from[i] * from[i];
+                }
+            }
+            for (std::size_t i = 0; i < count; ++i) out[i] = std::sqrt(out[i]);
+            const auto is_plain = [](double x) { return x > 0x1p-500 && x < 0x1p500; };
+            if (!std::all_of(largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(count), is_plain))
+                tensor([](std::span<const double> v) { return magnitude_of(v.data(), v.size()); });
             break;
+        }
         case ExpressionOp::dot:
             each([&](std::size_t, std::size_t i) {
                 double sum = 0;

@@ -14,6 +14,7 @@
 #include "base/errors.hpp"
 #include "grid/fields/expression/functions.hpp"
 #include "grid/fields/expression/tree.hpp"
+#include "grid/fields/scalar_of.hpp"
 
 namespace isotet {
 
