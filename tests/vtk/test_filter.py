@@ -425,6 +425,45 @@ class HandedToVtk(unittest.TestCase):
         contour.Update()
         self.assertEqual(contour.GetOutput().GetNumberOfPolys(), plain.GetOutput().GetNumberOfPolys())
 
+    def test_solids_are_closed_and_make_up_the_grid(self):
+        grid = sphere(6)
+
+        def volume(name, *values):
+            contour = start(grid, value=values[0])
+            if len(values) > 1:
+                contour.SetValue(1, values[1])
+            getattr(contour, "SetSolidTo" + name)()
+            contour.Update()
+            self.assertEqual(contour.said, [])
+            surface = contour.GetOutput()
+            self.assertEqual(open_edges(surface), 0)
+            self.assertIsNone(surface.GetPointData().GetNormals())
+            self.assertEqual(surface.GetPointData().GetScalars().GetName(), "r")
+            self.assertLessEqual(set(vtk_to_numpy(surface.GetCellData().GetArray("boundary"))), {0, 1})
+            a, b, c = (points_of(surface)[triangles_of(surface)[:, k]].astype(float) for k in range(3))
+            return (a * np.cross(b, c)).sum() / 6
+
+        above, below, between, whole = volume("Above", 0.3), volume("Below", 0.3), volume("Between", 0.4, 0.3), volume("Below", 99)
+        self.assertGreater(min(above, below, between), 0)
+        self.assertAlmostEqual(above + below, whole, places=5)
+        self.assertAlmostEqual(below + between, volume("Below", 0.4), places=5)
+
+    def test_says_why_there_is_no_solid(self):
+        blocks = vtkMultiBlockDataSet()
+        for i in range(2):
+            blocks.SetBlock(i, sphere(2))
+        image = vtkRTAnalyticSource()
+        image.Update()
+        for data, array, why in ((blocks, "r", "one grid on one rank"), (image.GetOutput(), "RTData", "a Solid was asked for, but")):
+            contour = start(data, name=array)
+            contour.SetSolidToAbove()
+            contour.Update()
+            self.assertIn(why, contour.said[0])
+        contour = start(sphere(2))
+        contour.SetSolidToBetween()
+        contour.Update()
+        self.assertIn("takes two of them", contour.said[0])
+
     def test_blocks_with_quadratic_cells_are_not_refined(self):
         blocks = vtkMultiBlockDataSet()
         for i in range(2):

@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "block.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <vtkCellData.h>
@@ -8,6 +9,8 @@
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkUnstructuredGrid.h>
+
+#include <isotet/solid.hpp>
 
 #include "polydata.hpp"
 
@@ -39,6 +42,18 @@ std::vector<isotet::Field> fields_of(std::map<std::string, SharedArray>& carried
     return fields;
 }
 
+std::vector<isotet::SolidRange> ranges_of(const Wishes& wishes) {
+    std::vector<isotet::SolidRange> ranges;
+    if (wishes.solid == SolidWish::between) {
+        const auto [least, most] = std::ranges::minmax(wishes.isovalues);
+        return {{least, most}};
+    }
+    for (const double isovalue : wishes.isovalues)
+        ranges.push_back(wishes.solid == SolidWish::above ? isotet::SolidRange::above(isovalue)
+                                                          : isotet::SolidRange::below(isovalue));
+    return ranges;
+}
+
 /// What a user should know of refined cells; the same for every isovalue, so that it is said once.
 std::vector<std::string> notes_of(const isotet::RefinementReport& report) {
     std::vector<std::string> notes;
@@ -50,6 +65,16 @@ std::vector<std::string> notes_of(const isotet::RefinementReport& report) {
     if (report.too_fine || report.too_bent)
         notes.push_back("some curved cells fold or are too small to be refined to the Tolerance: GetFieldBound() tells "
                         "what was reached");
+    return notes;
+}
+
+std::vector<std::string> notes_of(const isotet::Solid& solid) {
+    std::vector<std::string> notes = notes_of(solid.contour.refinement);
+    if (solid.open_edges > 0)
+        notes.push_back("the solid has " + std::to_string(solid.open_edges) + " open edges: the grid has repeated cells");
+    if (solid.seam_edges > 0)
+        notes.push_back("the isosurface of the solid has " + std::to_string(solid.seam_edges) +
+                        " open edges inside the grid, where points are doubled: vtkStaticCleanUnstructuredGrid joins them");
     return notes;
 }
 
@@ -81,6 +106,49 @@ isotet::Result<void> Block::take(vtkUnstructuredGrid* grid, vtkDataArray* scalar
     return {};
 }
 
+isotet::ContourInput Block::contour_input(bool with_numbers) const {
+    isotet::ContourInput input;
+    input.grid = input_;
+    if (with_numbers) input.grid.point_numbers = numbers_;
+    input.field = contoured_;
+    input.point_fields = point_fields_;
+    input.cell_fields = cell_fields_;
+    return input;
+}
+
+/// Nothing is kept for the next execution: solids would hold arrays of VTK. The boundary has other values than the
+/// isovalue: the contoured array is carried.
+isotet::Result<void> Block::extract_solids(const isotet::Run& run, vtkPolyData* out) {
+    update_ = isotet::ContourUpdate::grid;
+    session_.reset();
+    isotet::ContourInput input = contour_input(false);
+    if (wishes_.scalars) input.point_fields.push_back({contoured_.name, contoured_.values});
+    isotet::ContourOptions options;
+    options.method = isotet::Method::direct;
+    if (wishes_.tolerance > 0) options.refine = isotet::RefineOptions{.relative_tolerance = wishes_.tolerance};
+    if (wishes_.points == isotet::Precision::float64) options.precision = isotet::Precision::float64;
+    isotet::Result<isotet::Solids> solids = isotet::Solids::create(std::move(input), options, run);
+    if (!solids) return solids.error();
+    extract_seconds_ = field_bound_ = 0;
+    notes_.clear();
+    std::vector<isotet::Surface> surfaces;
+    for (const isotet::SolidRange& range : ranges_of(wishes_)) {
+        isotet::Result<isotet::Solid> solid = solids->extract(range, run);
+        if (!solid) return solid.error();
+        method_ = solid->contour.method;
+        extract_seconds_ += solid->contour.extract_seconds;
+        if (solid->contour.refinement.refined) field_bound_ = solid->contour.refinement.field_bound;
+        for (std::string& note : notes_of(*solid))
+            if (std::ranges::find(notes_, note) == notes_.end()) notes_.push_back(std::move(note));
+        surfaces.push_back(std::move(solid->surface));
+    }
+    Wishes plain = wishes_;
+    plain.normals = plain.scalars = false;
+    write_polydata(surfaces, plain, scalars_, grid_, out);
+    if (wishes_.scalars) out->GetPointData()->SetActiveScalars(contoured_.name.c_str());
+    return {};
+}
+
 isotet::Result<isotet::Survey> Block::survey(const isotet::Run& run) {
     if (survey_) return *survey_;
     std::vector<isotet::Field> fields = {{contoured_.name, contoured_.values}};
@@ -92,15 +160,10 @@ isotet::Result<isotet::Survey> Block::survey(const isotet::Run& run) {
 }
 
 isotet::Result<void> Block::set(const std::optional<isotet::Frame>& frame, bool with_numbers, const isotet::Run& run) {
-    isotet::ContourInput input;
-    input.grid = input_;
+    isotet::ContourInput input = contour_input(with_numbers);
     // Gradients are sums over the cells around a point, ghost cells among them.
     const bool needs_ghosts = wishes_.normals && cells_.has_ghosts();
     if (needs_ghosts) input.grid.cells = cells_.all();
-    if (with_numbers) input.grid.point_numbers = numbers_;
-    input.field = contoured_;
-    input.point_fields = point_fields_;
-    input.cell_fields = cell_fields_;
     isotet::ContourOptions options;
     options.surfaces = wishes_.expected_surfaces;
     options.normals = wishes_.normals ? isotet::Normals::gradient : isotet::Normals::none;
@@ -123,6 +186,7 @@ isotet::Result<void> Block::set(const std::optional<isotet::Frame>& frame, bool 
 
 isotet::Result<void> Block::extract(const std::optional<isotet::Frame>& frame, bool with_numbers,
                                     const isotet::Run& run, vtkPolyData* out) {
+    if (wishes_.solid != SolidWish::none) return extract_solids(run, out);
     if (auto ok = set(frame, with_numbers, run); !ok) return ok;
     isotet::Result<isotet::ContourResult> result = session_->extract(wishes_.isovalues, run);
     if (!result) return result.error();

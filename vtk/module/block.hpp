@@ -55,6 +55,8 @@ public:
     double extract_seconds() const { return extract_seconds_; }
 
 private:
+    isotet::ContourInput contour_input(bool with_numbers) const;
+    isotet::Result<void> extract_solids(const isotet::Run& run, vtkPolyData* out);
     isotet::Result<void> set(const std::optional<isotet::Frame>& frame, bool with_numbers, const isotet::Run& run);
 
     SharedCells cells_;

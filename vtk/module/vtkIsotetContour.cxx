@@ -77,6 +77,26 @@ std::string WhyThereIsNone(vtkAlgorithm* algorithm, vtkDataSet* data)
   return text;
 }
 
+/// Empty where a solid can be made.
+std::string WhyNoSolid(const Work& work, const isotet_vtk::Wishes& wishes, int ranks)
+{
+  if (!work.Reasons.empty())
+  {
+    return "a Solid was asked for, but " + *work.Reasons.begin();
+  }
+  if (work.Tasks.size() > 1 || ranks > 1)
+  {
+    return "a Solid is made of one grid on one rank, but there are " + std::to_string(work.Tasks.size()) + " grids on " +
+      std::to_string(ranks);
+  }
+  const auto different = std::set<double>(wishes.isovalues.begin(), wishes.isovalues.end()).size();
+  if (wishes.solid == isotet_vtk::SolidWish::between && different < 2)
+  {
+    return "a Solid between values takes two of them";
+  }
+  return {};
+}
+
 /// The data sets of `input`; the output is given a polydata for each.
 std::vector<Leaf> LeavesOf(vtkDataObject* input, vtkDataObject* output)
 {
@@ -341,6 +361,7 @@ int vtkIsotetContour::RequestData(
 
   wishes.triangles = this->GenerateTriangles;
   wishes.component = this->ArrayComponent;
+  wishes.solid = static_cast<isotet_vtk::SolidWish>(this->Solid);
 
   vtkDataObject* const input = vtkDataObject::GetData(inputs[0], 0);
   Work work;
@@ -393,6 +414,10 @@ int vtkIsotetContour::RequestData(
 
   isotet_vtk::AlgorithmRun run(this, this->NumberOfThreads);
   const isotet_vtk::Ranks ranks(this->Controller);
+  if (this->Solid != NO_SOLID && work.Error.empty())
+  {
+    work.Error = WhyNoSolid(work, wishes, ranks.count());
+  }
   isotet_vtk::Blocks& blocks = this->Internal->Blocks;
   const bool found = !work.Tasks.empty() || !work.ForVtk.empty();
   const std::string error =
@@ -405,6 +430,14 @@ int vtkIsotetContour::RequestData(
   {
     vtkErrorMacro(<< error);
     return 0;
+  }
+  for (const BlockTask& task : work.Tasks)
+  {
+    if (this->Solid != NO_SOLID && !blocks.other_types(task.index).empty())
+    {
+      work.Reasons.insert("cells that isotet does not contour are no part of the solid");
+      return this->SayReasons(work.Reasons);
+    }
   }
   for (const auto& [leaf, scalars] : work.ForVtk)
   {
@@ -426,14 +459,19 @@ int vtkIsotetContour::RequestData(
     isotet_vtk::append(others, task.out);
   }
   work.Reasons.insert(blocks.notes().begin(), blocks.notes().end());
-  for (const std::string& reason : work.Reasons)
+  return this->SayReasons(work.Reasons);
+}
+
+int vtkIsotetContour::SayReasons(const std::set<std::string>& reasons)
+{
+  for (const std::string& reason : reasons)
   {
     if (!this->Internal->Warned.count(reason))
     {
       vtkWarningMacro(<< reason);
     }
   }
-  this->Internal->Warned = work.Reasons;
+  this->Internal->Warned = reasons;
   this->UpdateProgress(1.0);
   return 1;
 }
@@ -454,6 +492,7 @@ void vtkIsotetContour::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ScalarTree: " << this->ScalarTree.GetPointer() << "\n";
   os << indent << "Locator: " << this->Locator.GetPointer() << "\n";
   os << indent << "Tolerance: " << this->Tolerance << "\n";
+  os << indent << "Solid: " << this->Solid << "\n";
   os << indent << "ExpectedSurfaces: " << this->ExpectedSurfaces << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Controller: " << this->Controller << "\n";

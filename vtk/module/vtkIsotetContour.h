@@ -32,6 +32,7 @@
 #include "vtkSmartPointer.h" // For members
 
 #include <memory> // For std::unique_ptr
+#include <set>    // For warnings
 #include <string> // For arguments
 
 class vtkContourValues;
@@ -139,6 +140,28 @@ public:
   vtkGetMacro(Tolerance, double);
   ///@}
 
+  enum Solids
+  {
+    NO_SOLID,     ///< isosurfaces
+    SOLID_ABOVE,  ///< where the array is at least the value, of each
+    SOLID_BELOW,  ///< where it is less
+    SOLID_BETWEEN ///< from the smallest to the largest of at least two values
+  };
+
+  ///@{
+  /**
+   * Closed solids in place of isosurfaces: the isosurface and the part of the grid's boundary on one side of it, cut at it,
+   * outward oriented. The cell array "boundary" is 1 on the boundary; points have the contoured array as it is there, and no
+   * normals. Of one vtkUnstructuredGrid on one rank, all of whose cells isotet contours; all else is an error. The boundary is
+   * found anew in each execution. NO_SOLID by default.
+   */
+  vtkSetClampMacro(Solid, int, NO_SOLID, SOLID_BETWEEN);
+  vtkGetMacro(Solid, int);
+  void SetSolidToAbove() { this->SetSolid(SOLID_ABOVE); }
+  void SetSolidToBelow() { this->SetSolid(SOLID_BELOW); }
+  void SetSolidToBetween() { this->SetSolid(SOLID_BETWEEN); }
+  ///@}
+
   ///@{
   /**
    * How many surfaces will be asked for, over all isovalues and time steps: from a few on, the first one packs. 0, the
@@ -204,6 +227,7 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int SayReasons(const std::set<std::string>& reasons);
 
   vtkContourValues* ContourValues;
   vtkTypeBool ComputeNormals = 1;
@@ -217,6 +241,7 @@ protected:
   vtkSmartPointer<vtkScalarTree> ScalarTree;
   vtkSmartPointer<vtkIncrementalPointLocator> Locator;
   double Tolerance = 0;
+  int Solid = NO_SOLID;
   int ExpectedSurfaces = 0;
   int NumberOfThreads = 0;
   vtkMultiProcessController* Controller = nullptr;

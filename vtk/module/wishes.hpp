@@ -9,6 +9,14 @@
 
 namespace isotet_vtk {
 
+/// Which solids are made in place of surfaces, as vtkIsotetContour::Solids.
+enum class SolidWish : std::uint8_t {
+    none,
+    above,  ///< of each isovalue
+    below,  ///< of each isovalue
+    between ///< one: from the smallest to the largest isovalue
+};
+
 /// What a filter was told about its surfaces.
 struct Wishes {
     std::vector<double> isovalues;
@@ -19,6 +27,7 @@ struct Wishes {
     std::optional<isotet::Precision> points; ///< of the output's points; nothing: that of the input
     double tolerance = 0; ///< of the field in curved cells, as a share of its range; 0: VTK contours these cells
     std::uint64_t expected_surfaces = 0; ///< as ContourOptions::surfaces
+    SolidWish solid = SolidWish::none;
     int threads = 0;
 };
 
