@@ -13,6 +13,7 @@
 #include "draw/volumes.hpp"
 #include "render/cpu/encode.hpp"
 #include "support/random_grid.hpp"
+#include "support/seeds.hpp"
 #include "support/small_grid.hpp"
 
 namespace isotet::test {
@@ -200,7 +201,7 @@ private:
 
 TEST(VolumeBytes, AreThoseOfEveryTetAgainstEveryRay) {
     std::size_t worse = 0, pixels = 0;
-    for (std::uint32_t seed = 1; seed <= 200; ++seed) {
+    for (const std::uint32_t seed : Seeds(1, 200)) {
         NastyOptions options;
         options.side = 2 + static_cast<int>(seed % 2);
         options.values = seed % 3 == 0 ? 0 : 5;

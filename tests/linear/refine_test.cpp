@@ -158,7 +158,7 @@ TEST(Refine, KeepsItsBoundAtRandomPlaces) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> uniform(0, 1);
     const CurvedGrid made = curved_grid({.shape = "kuhn", .side = 2, .seed = 2, .field = quadric});
-    for (const double tolerance : {0.1, 0.01, 0.001}) {
+    for (const double tolerance : some_of({0.01, 0.1, 0.001})) {
         const LinearGrid linear = refine(made.grid, made.field, {.tolerance = tolerance}).value();
         EXPECT_LE(linear.refinement.field_bound, tolerance);
         EXPECT_FALSE(linear.refinement.too_fine);

@@ -9,6 +9,7 @@
 
 #include "base/parallel.hpp"
 #include "base/radix_sort.hpp"
+#include "support/seeds.hpp"
 
 namespace isotet::test {
 namespace {
@@ -25,7 +26,7 @@ void expect_sorted(std::size_t n, const std::function<std::uint64_t(std::size_t)
     EXPECT_TRUE(std::equal(items.begin(), items.end(), expected.begin(), same)) << n << " items";
 }
 
-constexpr std::size_t sizes[] = {0, 1, 2, 24, 25, 1000, 70'000, (1 << 18) + 1, 1'000'000};
+constexpr std::size_t sizes[] = {0, 1, 2, 24, 25, 1000, 70'000, (1 << 18) + 1, 1'000'000 / seed_share};
 
 TEST(RadixSort, SortsEvenlySpreadKeysLikeTheStableSort) {
     std::mt19937_64 random(1);

@@ -5,18 +5,33 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
+#include <initializer_list>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 namespace isotet::test {
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-inline constexpr std::uint32_t seed_share = 6; ///< a sixth of the seeds where every access is watched
+inline constexpr bool is_watched = true;
+#elif defined(__has_feature) // clang 19
+inline constexpr bool is_watched = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);
 #else
-inline constexpr std::uint32_t seed_share = 1;
+inline constexpr bool is_watched = false;
 #endif
+
+/// A sixth of the seeds where every access is watched.
+inline constexpr std::uint32_t seed_share = is_watched ? 6 : 1;
+
+/// All cases; where every access is watched, every `seed_share`th, from the first on.
+template <class Case>
+std::vector<Case> some_of(std::initializer_list<Case> cases) {
+    std::vector<Case> some;
+    for (std::size_t i = 0; i < cases.size(); i += seed_share) some.push_back(cases.begin()[i]);
+    return some;
+}
 
 /// `for (const std::uint32_t seed : Seeds(first, count))`. The variable ISOTET_SEED asks for one seed alone.
 class Seeds {
