@@ -204,6 +204,20 @@ TEST_F(ReadXdmfSeries, TagsOfCellsAreFieldsOfTheMesh) {
                                         "grid 'facets' is left out: its cells have no volume"}));
 }
 
+/// As DOLFIN writes several functions into one file.
+TEST_F(ReadXdmfSeries, AMeshThatIsStatedAgainForEachFunctionIsOneGrid) {
+    const auto two = read_domain(xdmf_grid("a", xdmf_points("1") + xdmf_tets() + xdmf_field("p", "1 2 3 4 5")) +
+                                 xdmf_grid("b", xdmf_points("1.0") + xdmf_tets() + xdmf_field("q", "6 7 8 9 10")));
+    ASSERT_TRUE(two) << two.error().message;
+    EXPECT_EQ(two->grid.cells.count(), 2u);
+    EXPECT_EQ(two->grid.points.tuples(), 5u);
+    ASSERT_EQ(two->grid.point_fields.size(), 2u);
+    EXPECT_EQ(two->grid.point_fields[0].values.at(4), 5);
+    EXPECT_EQ(two->grid.point_fields[1].values.at(4), 10);
+    EXPECT_EQ(two->notes,
+              (std::vector<std::string>{"the cells of grid \"b\" are cells of \"a\": they are one grid"}));
+}
+
 TEST_F(ReadXdmfSeries, CollectionsOfBothKindsNestEitherWay) {
     const auto block = [](const std::string& name, const std::string& x, const std::string& time) {
         return xdmf_grid(name, xdmf_points(x) + xdmf_tets() + time + xdmf_field("p", x + " 2 3 4 5"));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <optional>
 #include <unordered_map>
@@ -104,6 +105,23 @@ bool has_field(const std::vector<Field>& fields, const std::string& name) {
     return std::ranges::find(fields, name, &Field::name) != fields.end();
 }
 
+/// Files that state a mesh again for each function have the same coordinates under other names.
+bool have_same_points(const NamedPiece& a, const NamedPiece& b) {
+    if (a.points == b.points) return true;
+    const Array &left = a.piece.grid.points, &right = b.piece.grid.points;
+    return left.type() == right.type() && left.tuples() == right.tuples() && left.components() == right.components() &&
+           (left.empty() || std::memcmp(left.data(), right.data(), left.bytes()) == 0);
+}
+
+/// Values in the middle of edges belong to all cells, in their order.
+bool fit_edges(const NamedPiece& whole, const NamedPiece& part, const std::vector<std::size_t>& places) {
+    if (!whole.edges && !part.edges) return true;
+    if (whole.piece.grid.cells.count() != places.size()) return false;
+    for (std::size_t cell = 0; cell < places.size(); ++cell)
+        if (places[cell] != cell) return false;
+    return true;
+}
+
 /// False where a field of the part is one of the whole already.
 bool take_fields(Piece& whole, Piece& part, const std::vector<std::size_t>& places) {
     for (const Field& field : part.grid.cell_fields)
@@ -123,12 +141,14 @@ void take_fields_of_same_cells(std::vector<NamedPiece>& pieces, std::vector<std:
     for (std::size_t p = 1; p < pieces.size();) {
         bool taken = false;
         for (std::size_t w = 0; w < p && !taken; ++w) {
-            if (pieces[w].points != pieces[p].points) continue;
+            if (!have_same_points(pieces[w], pieces[p])) continue;
             const auto places = cells_in(pieces[w].piece.grid.cells, pieces[p].piece.grid.cells);
-            taken = places && take_fields(pieces[w].piece, pieces[p].piece, *places);
-            if (taken)
-                notes.push_back(fmt::format("the cells of grid \"{}\" are cells of \"{}\": they are one grid",
-                                            escaped(pieces[p].name), escaped(pieces[w].name)));
+            taken = places && fit_edges(pieces[w], pieces[p], *places) &&
+                    take_fields(pieces[w].piece, pieces[p].piece, *places);
+            if (!taken) continue;
+            if (!pieces[w].edges) pieces[w].edges = pieces[p].edges;
+            notes.push_back(fmt::format("the cells of grid \"{}\" are cells of \"{}\": they are one grid",
+                                        escaped(pieces[p].name), escaped(pieces[w].name)));
         }
         if (taken) pieces.erase(pieces.begin() + static_cast<std::ptrdiff_t>(p));
         else ++p;
