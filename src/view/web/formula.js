@@ -6,9 +6,9 @@ import {say} from './notes.js';
 
 const formula = {asked: '', before: ''};
 
-/** The lists of fields have it, too. */
+/** The lists of fields have it, too; a page of saved surfaces has the colours that it has. */
 export function offerField(name) {
-  for (const list of [id('field'), id('color-by')])
+  for (const list of app.grid?.colors ? [id('field')] : [id('field'), id('color-by')])
     if (name && ![...list.options].some(({value}) => value === name)) list.add(new Option(name, name));
 }
 
