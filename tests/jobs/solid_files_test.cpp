@@ -118,7 +118,7 @@ TEST(SolidFiles, MarkTheirBoundaryByRegionAndPatch) {
     for (std::size_t i = 0; i < solid.triangle_count(); ++i) {
         double height = 0; // of all corners
         for (std::size_t k = 0; k < 3; ++k)
-            height += solid.positions.at(static_cast<std::size_t>(solid.triangles.at(3 * i + k)), 2) / 3;
+            height += solid.positions.at(static_cast<std::size_t>(solid.triangles.at(i, k)), 2) / 3;
         const bool is_lower = part.at(i) == 1 && height < -1 + 1e-6, is_upper = part.at(i) == 1 && height > 1 - 1e-6;
         EXPECT_EQ(group.at(i), 1) << "of the cell";
         EXPECT_EQ(patch.at(i), is_lower ? 10 : is_upper ? 11 : -1);
