@@ -5,11 +5,12 @@
 # templates of the standard library, which show themselves.
 set -euo pipefail
 stage=$1 consumer=$2 folder=$3 cxx=$4
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 
 rm -rf "$folder"
 mkdir -p "$folder"
 cp -r "$stage" "$folder/prefix"
-lib=$(dirname "$(find "$folder/prefix" -name libisotet.a)")
+lib=$(realpath "$(dirname "$(find "$folder/prefix" -name libisotet.a)")")
 export PKG_CONFIG_PATH=$lib/pkgconfig
 
 # link NAME NEEDED...: a library without names that are nowhere.
@@ -40,9 +41,11 @@ for component in isotet vulkan render io; do
 done
 
 # The C functions: from C, and from Python's ctypes without a header.
-cc -std=c99 -Wall -Wextra -Wpedantic -Werror "$(dirname "$0")/c_face/main.c" "${flags[@]}" -lm -Wl,-rpath,"$lib" \
+c_flags=()
+for flag in "${flags[@]}"; do [[ $flag == -std=* ]] || c_flags+=("$flag"); done
+cc -std=c99 -Wall -Wextra -Wpedantic -Werror "$here/c_face/main.c" "${c_flags[@]}" -lm -Wl,-rpath,"$lib" \
     -o "$folder/c_face"
 (cd "$folder" && ./c_face)
-(cd "$folder" && python3 -B "$(realpath "$(dirname "$0")")/c_face/face.py" "$lib/libisotet_io.so")
+(cd "$folder" && python3 -B "$here/c_face/face.py" "$lib/libisotet_io.so")
 
 echo "$(nm -DC --defined-only "$lib/libisotet.so" | wc -l) names of libisotet.so"
