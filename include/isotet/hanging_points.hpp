@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -72,12 +73,14 @@ struct ISOTET_API ClosedGrid {
 /// Method       docs/inside/hanging.md
 ISOTET_API Result<ClosedGrid> close_hanging_points(const Grid& grid, const Run& run = {});
 
-/// Whether some face without a neighbour lies near a larger one of another cell, by their places alone: for grids of
-/// which only the cells that isovalues meet are there, whose other faces have lost their neighbours. True of thin
-/// grids, too.
+/// Whether the surfaces of isovalues may end at hanging points, by places: a face that they cut, and that no other cell
+/// has, lies on a larger one. For grids of which only the cells that the isovalues cut are there (active_cells.hpp):
+/// their other faces have lost their neighbours. True of thin grids, too; false where only the smaller cells are cut.
 ///
-/// Cost     as close_hanging_points() of a grid without hanging points
-/// Errors   likewise
-ISOTET_API Result<bool> may_have_hanging_points(const Grid& grid, const Run& run = {});
+/// `field`  one scalar a point
+/// Cost     two passes over the cells, and the places of faces at which the surfaces end
+/// Errors   invalid_argument when the field does not fit; else as close_hanging_points()
+ISOTET_API Result<bool> may_have_hanging_points(const Grid& active, const PointField& field,
+                                                std::span<const double> isovalues, const Run& run = {});
 
 } // namespace isotet

@@ -18,6 +18,7 @@
 #include <isotet/jobs/number_text.hpp>
 #include <isotet/jobs/output_names.hpp>
 #include <isotet/linear_cells.hpp>
+#include <isotet/slice.hpp>
 
 #include "grid/orientation.hpp"
 #include "jobs/refuse.hpp"
@@ -392,7 +393,11 @@ Result<ReadResult> GridSource::read_active(const FieldsToRead& fields, std::size
     Result<ReadResult> result = read_file(fields, step, std::move(options), caller.run());
     if (!result) return result;
     if (result->cells_in_file && options_.hanging_points != HangingChoice::leave) {
-        const Result<bool> hanging = may_have_hanging_points(result->grid, caller.run());
+        const Grid& cut = result->grid;
+        const auto field = active.shape ? slice_field(cut.points, *active.shape, caller.run())
+                                        : find_field(cut, active.field, {}, caller.run());
+        if (!field) return field.error();
+        const Result<bool> hanging = may_have_hanging_points(cut, *field, active.isovalues, caller.run());
         if (!hanging) return hanging.error();
         if (*hanging) {
             caller.detail("cells may have hanging points: all are read");

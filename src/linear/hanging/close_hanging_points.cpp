@@ -15,9 +15,9 @@
 #include "linear/derived.hpp"
 #include "linear/hanging/corner_cells.hpp"
 #include "linear/hanging/covers.hpp"
+#include "linear/hanging/cut_faces.hpp"
 #include "linear/hanging/hanging_rows.hpp"
 #include "linear/hanging/listed_cells.hpp"
-#include "linear/hanging/near_faces.hpp"
 #include "linear/hanging/open_faces.hpp"
 
 namespace isotet {
@@ -25,6 +25,22 @@ namespace isotet {
 namespace linear {
 
 namespace {
+
+/// The cells of a checked grid.
+struct CheckedCells {
+    core::CellReader cells;
+    core::FaceReader faces;
+};
+
+Result<CheckedCells> checked_cells(const Grid& grid, const Progress& progress) {
+    const auto cells = core::CellReader::open(grid);
+    if (!cells) return cells.error();
+    if (auto sound = core::check_cells(grid, *cells, progress); !sound) return sound.error();
+    if (auto sound = core::check_faces(grid, *cells, progress); !sound) return sound.error();
+    const auto faces = core::FaceReader::open(grid.cells);
+    if (!faces) return faces.error();
+    return CheckedCells{*cells, *faces};
+}
 
 /// A checked grid, and its faces without a neighbour.
 struct OpenGrid {
@@ -34,15 +50,11 @@ struct OpenGrid {
 };
 
 Result<OpenGrid> open_faces_of(const Grid& grid, const Progress& progress) {
-    const auto cells = core::CellReader::open(grid);
-    if (!cells) return cells.error();
-    if (auto sound = core::check_cells(grid, *cells, progress); !sound) return sound.error();
-    if (auto sound = core::check_faces(grid, *cells, progress); !sound) return sound.error();
-    const auto faces = core::FaceReader::open(grid.cells);
-    if (!faces) return faces.error();
-    auto open = find_open_faces(*cells, *faces, progress);
+    const auto all = checked_cells(grid, progress);
+    if (!all) return all.error();
+    auto open = find_open_faces(all->cells, all->faces, progress);
     if (!open) return open.error();
-    return OpenGrid{*cells, *faces, *std::move(open)};
+    return OpenGrid{all->cells, all->faces, *std::move(open)};
 }
 
 /// Errors of cells that are curved are those who refine them to tell: nothing is open of a grid that has some.
@@ -164,12 +176,17 @@ std::vector<std::string> HangingReport::notes() const {
     return out;
 }
 
-Result<bool> may_have_hanging_points(const Grid& grid, const Run& run) {
+Result<bool> may_have_hanging_points(const Grid& active, const PointField& field, std::span<const double> isovalues,
+                                     const Run& run) {
     return core::carry_out("looking for hanging points", run, [&](const Progress& progress) -> Result<bool> {
-        const Grid some = has_curved_cells(grid.cells) ? linear::corner_cells(grid) : grid;
-        const auto all = linear::open_faces_of(some, progress);
+        if (field.values.tuples() != active.points.tuples() || field.values.components() != 1)
+            return invalid_argument(fmt::format("the field has {} values of {} components, but the grid has {} points",
+                                                      field.values.tuples(), field.values.components(),
+                                                      active.points.tuples()));
+        const auto all = linear::checked_cells(active, progress);
         if (!all) return all.error();
-        return linear::has_smaller_faces(all->open, all->cells, core::PointReader(grid.points));
+        return linear::has_smaller_cut_faces(all->cells, all->faces, core::PointReader(active.points),
+                                             linear::CutRule(field.values, isovalues), progress);
     });
 }
 

@@ -29,6 +29,15 @@ Point normal_of(std::span<const std::uint64_t> loop, const core::PointReader& po
     return out;
 }
 
+Point middle_of(std::span<const std::uint64_t> loop, const core::PointReader& points) {
+    Point out{};
+    for (const std::uint64_t point : loop) {
+        const Point at = points[point];
+        for (std::size_t axis = 0; axis < 3; ++axis) out[axis] += at[axis] / static_cast<double>(loop.size());
+    }
+    return out;
+}
+
 FaceShapes::FaceShapes(const OpenFaces& faces, const core::CellReader& cells, const core::PointReader& points)
     : faces_(faces), points_(points), shapes_(faces.size()), twice_areas_(faces.size()) {
     core::parallel_each(faces.size(), 1 << 10, [&](std::size_t face) {
@@ -42,11 +51,11 @@ FaceShapes::Shape FaceShapes::shape_of(std::size_t face, const core::CellReader&
     const auto loop = faces_.loop(face);
     Shape out;
     out.normal = normal_of(loop, points_);
+    out.middle = middle_of(loop, points_);
     Point lower = points_[loop[0]], upper = lower;
     for (const std::uint64_t point : loop) {
         const Point at = points_[point];
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            out.middle[axis] += at[axis] / static_cast<double>(loop.size());
             lower[axis] = std::min(lower[axis], at[axis]);
             upper[axis] = std::max(upper[axis], at[axis]);
         }

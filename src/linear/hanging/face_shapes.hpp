@@ -20,6 +20,9 @@ constexpr double largest_share = 0.999; // of a face's area: one that covers it 
 /// Twice a face's area along its normal, by its loop (Newell).
 Point normal_of(std::span<const std::uint64_t> loop, const core::PointReader& points);
 
+/// The mean of its points.
+Point middle_of(std::span<const std::uint64_t> loop, const core::PointReader& points);
+
 class FaceShapes {
 public:
     /// All borrowed.

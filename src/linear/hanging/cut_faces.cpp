@@ -1,0 +1,198 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "linear/hanging/cut_faces.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include "base/buffer.hpp"
+#include "base/memory.hpp"
+#include "base/parallel.hpp"
+#include "linear/hanging/face_shapes.hpp"
+#include "linear/hanging/face_walk.hpp"
+#include "linear/hanging/place_tree.hpp"
+
+namespace isotet::linear {
+
+namespace {
+
+constexpr double near_face = 0.1; // of a face's extent: one that may lie on it
+constexpr std::size_t cells_per_list = 1 << 12;
+
+/// What holds some points, and curved neighbours beside them.
+class Box {
+public:
+    void add(const Point& at) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            lower[axis] = std::min(lower[axis], at[axis]);
+            upper[axis] = std::max(upper[axis], at[axis]);
+        }
+    }
+    void widen() {
+        const double more = beside_face * std::sqrt(core::squared_distance(lower, upper));
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            lower[axis] -= more;
+            upper[axis] += more;
+        }
+    }
+
+    Point lower{most, most, most}, upper{-most, -most, -most};
+
+private:
+    static constexpr double most = std::numeric_limits<double>::max();
+};
+
+class CutFaceFinder {
+public:
+    CutFaceFinder(const core::CellReader& cells, const core::FaceReader& faces, const core::PointReader& points,
+                  const CutRule& rule, const Progress& progress)
+        : cells_(cells), faces_(faces), points_(points), rule_(rule), progress_(progress), sums_(slots(cells)) {}
+
+    /// Of the sums of hashes.
+    static std::size_t slots(const core::CellReader& cells) { return std::bit_ceil(cells.count() + 1); }
+
+    /// Those that one cell has.
+    OpenFaces alone() {
+        add_hashes();
+        OpenFaces out;
+        FaceWalk walk(cells_, faces_);
+        for (const FoundFace& face : alone_of(collect())) out.add(face.place, walk.loop(face.place));
+        return out;
+    }
+
+    /// All faces of cells near the middles of faces of others.
+    std::vector<OpenFaces::Place> beside(const OpenFaces& cut, const PlaceTree& middles) const {
+        return gathered<OpenFaces::Place>([&](FaceWalk& walk, std::size_t cell, std::vector<OpenFaces::Place>& part) {
+            Box box;
+            const std::uint64_t first = cells_.first(cell), end = first + cells_.corners(cell);
+            for (std::uint64_t i = first; i < end; ++i) box.add(points_[cells_.corner(i)]);
+            box.widen();
+            bool is_near = false;
+            middles.each_in(box.lower, box.upper,
+                            [&](std::uint32_t other) { is_near = is_near || cut.place(other).cell != cell; });
+            if (!is_near) return;
+            walk.each_hash(cell, [&](std::size_t face, const FaceHash&) {
+                part.push_back({cell, static_cast<std::uint32_t>(face)});
+            });
+        });
+    }
+
+private:
+    /// Calls use(face, hash) for each face of a cell that is cut.
+    template <class Use>
+    void each_cut(FaceWalk& walk, std::size_t cell, const Use& use) const {
+        walk.each_hash(cell, [&](std::size_t face, const FaceHash& hash) {
+            const OpenFaces::Place place{cell, static_cast<std::uint32_t>(face)};
+            if (rule_.cuts(walk.loop(place))) use(place, hash.hash);
+        });
+    }
+
+    std::uint64_t& sum_of(std::uint64_t hash) { return sums_[hash & (sums_.size() - 1)]; }
+    const std::uint64_t& sum_of(std::uint64_t hash) const { return sums_[hash & (sums_.size() - 1)]; }
+
+    void add_hashes() {
+        std::ranges::fill(sums_, std::uint64_t{0});
+        core::parallel_pieces(cells_.count(), cells_per_list, progress_, [&](std::size_t begin, std::size_t end) {
+            FaceWalk walk(cells_, faces_);
+            for (std::size_t cell = begin; cell < end; ++cell)
+                each_cut(walk, cell, [&](const OpenFaces::Place&, std::uint64_t hash) {
+                    std::atomic_ref(sum_of(hash)).fetch_xor(hash, std::memory_order_relaxed);
+                });
+        });
+    }
+
+    /// Faces whose sums are not 0.
+    std::vector<FoundFace> collect() const {
+        return gathered<FoundFace>([&](FaceWalk& walk, std::size_t cell, std::vector<FoundFace>& part) {
+            each_cut(walk, cell, [&](const OpenFaces::Place& place, std::uint64_t hash) {
+                if (sum_of(hash) != 0) part.push_back({hash, place});
+            });
+        });
+    }
+
+    /// What look(walk, cell, part) adds, in the order of the cells.
+    template <class Item, class Look>
+    std::vector<Item> gathered(const Look& look) const {
+        std::vector<std::vector<Item>> parts((cells_.count() + cells_per_list - 1) / cells_per_list);
+        core::parallel_pieces(parts.size(), 1, progress_, [&](std::size_t first, std::size_t last) {
+            FaceWalk walk(cells_, faces_);
+            for (std::size_t part = first; part < last; ++part) {
+                const std::size_t end = std::min((part + 1) * cells_per_list, cells_.count());
+                for (std::size_t cell = part * cells_per_list; cell < end; ++cell) look(walk, cell, parts[part]);
+            }
+        });
+        std::vector<Item> out;
+        for (const std::vector<Item>& part : parts) out.insert(out.end(), part.begin(), part.end());
+        return out;
+    }
+
+    const core::CellReader& cells_;
+    const core::FaceReader& faces_;
+    const core::PointReader& points_;
+    const CutRule& rule_;
+    const Progress& progress_;
+    core::Buffer<std::uint64_t> sums_; ///< of the hashes that have the place's low bits
+};
+
+/// Whether one of the places of `middles` is over a face from number `first` on.
+bool is_some_over(const OpenFaces& faces, std::size_t first, const PlaceTree& middles, const core::CellReader& cells,
+                  const core::PointReader& points) {
+    const FaceShapes shapes(faces, cells, points);
+    std::atomic<bool> found{false};
+    const auto look_at = [&](std::size_t face) {
+        Box box;
+        for (const std::uint64_t point : faces.loop(face)) box.add(points[point]);
+        box.widen();
+        middles.each_in(box.lower, box.upper, [&](std::uint32_t other) {
+            if (shapes.is_over(face, other) && shapes.distance(face, other) <= near_face)
+                found.store(true, std::memory_order_relaxed);
+        });
+    };
+    core::parallel_ranges(faces.size() - first, 1 << 9, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t face = begin; face < end && !found.load(std::memory_order_relaxed); ++face)
+            look_at(first + face);
+    });
+    return found;
+}
+
+} // namespace
+
+CutRule::CutRule(const Array& values, std::span<const double> isovalues)
+    : values_(values), isovalues_(isovalues.begin(), isovalues.end()) {
+    std::ranges::sort(isovalues_);
+}
+
+bool CutRule::cuts(std::span<const std::uint64_t> loop) const {
+    constexpr double most = std::numeric_limits<double>::infinity();
+    double lowest = most, highest = -most;
+    for (const std::uint64_t point : loop) {
+        const double value = values_.at(point);
+        if (std::isnan(value)) return false;
+        lowest = std::min(lowest, value);
+        highest = std::max(highest, value);
+    }
+    const auto next = std::ranges::lower_bound(isovalues_, lowest);
+    return next != isovalues_.end() && *next <= highest;
+}
+
+Result<bool> has_smaller_cut_faces(const core::CellReader& cells, const core::FaceReader& faces,
+                                   const core::PointReader& points, const CutRule& rule, const Progress& progress) {
+    if (auto fits = core::require_memory("looking for hanging points", 8 * CutFaceFinder::slots(cells)); !fits)
+        return fits.error();
+    CutFaceFinder finder(cells, faces, points, rule, progress);
+    OpenFaces all = finder.alone();
+    const std::size_t cut = all.size();
+    std::vector<Point> middles(cut);
+    for (std::size_t i = 0; i < cut; ++i) middles[i] = middle_of(all.loop(i), points);
+    const PlaceTree tree(std::move(middles));
+    FaceWalk walk(cells, faces);
+    for (const OpenFaces::Place& place : finder.beside(all, tree)) all.add(place, walk.loop(place));
+    if (progress.cancelled()) return Error{ErrorCode::cancelled, "looking for hanging points was cancelled"};
+    return is_some_over(all, cut, tree, cells, points);
+}
+
+} // namespace isotet::linear
