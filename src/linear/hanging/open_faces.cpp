@@ -2,6 +2,7 @@
 #include "linear/hanging/open_faces.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <limits>
 #include <utility>
@@ -61,11 +62,39 @@ private:
         std::ranges::fill(sums_, std::uint64_t{0});
         core::parallel_pieces(cells_.count(), cells_per_look, progress_, [&](std::size_t begin, std::size_t end) {
             FaceWalk walk(cells_, faces_);
-            for (std::size_t cell = begin; cell < end; ++cell)
-                walk.each_hash(cell, [&](std::size_t, const FaceHash& hash) {
-                    std::atomic_ref(sums_[hash.lowest]).fetch_xor(hash.hash, std::memory_order_relaxed);
-                });
+            if (cells_.bare_tets())
+                cells_.connectivity().visit([&](const auto* corners) { add_tets(corners, begin, end, walk); });
+            else
+                for (std::size_t cell = begin; cell < end; ++cell) add_faces(walk, cell);
         });
+    }
+
+    void add_faces(FaceWalk& walk, std::size_t cell) {
+        walk.each_hash(cell, [&](std::size_t, const FaceHash& face) { add(face.lowest, face.hash); });
+    }
+
+    /// As add_faces(): three faces of a tet have its lowest point, and the other one the next, so two sums are changed.
+    template <class Index>
+    void add_tets(const Index* corners, std::size_t begin, std::size_t end, FaceWalk& walk) {
+        for (std::size_t cell = begin; cell < end; ++cell) {
+            std::array<std::uint64_t, 4> points;
+            for (std::size_t i = 0; i < 4; ++i) points[i] = static_cast<std::uint64_t>(corners[4 * cell + i]);
+            for (const auto& [a, b] : {std::pair(0, 1), {2, 3}, {0, 2}, {1, 3}, {1, 2}})
+                if (points[a] > points[b]) std::swap(points[a], points[b]);
+            if (points[0] == points[1] || points[1] == points[2] || points[2] == points[3]) {
+                add_faces(walk, cell);
+                continue;
+            }
+            std::array<std::uint64_t, 4> hashes;
+            std::uint64_t all = 0;
+            for (std::size_t i = 0; i < 4; ++i) all += hashes[i] = scattered(points[i]);
+            add(points[0], scattered(all - hashes[1]) ^ scattered(all - hashes[2]) ^ scattered(all - hashes[3]));
+            add(points[1], scattered(all - hashes[0]));
+        }
+    }
+
+    void add(std::uint64_t point, std::uint64_t hash) {
+        std::atomic_ref(sums_[point]).fetch_xor(hash, std::memory_order_relaxed);
     }
 
     /// Faces at points whose sums are not 0, by cells.
@@ -94,10 +123,11 @@ private:
 
     /// Some face of it may have no neighbour.
     bool has_odd_corner(std::size_t cell) const {
-        const std::uint64_t first = cells_.first(cell), end = first + cells_.corners(cell);
-        for (std::uint64_t i = first; i < end; ++i)
-            if (sums_[cells_.corner(i)] != 0) return true;
-        return false;
+        const std::uint64_t first = cells_.first(cell), count = cells_.corners(cell);
+        return cells_.connectivity().visit([&](const auto* corners) {
+            return std::any_of(corners + first, corners + first + count,
+                               [&](auto point) { return sums_[static_cast<std::size_t>(point)] != 0; });
+        });
     }
 
     /// A face that shares no point with those of other cells meets none. So grids where each cell has points of its own
