@@ -11,6 +11,8 @@
 
 #include "base/buffer.hpp"
 #include "base/parallel.hpp"
+#include "grid/cell/cell_kind.hpp"
+#include "grid/cell/split.hpp"
 #include "grid/face_counter.hpp"
 #include "numbers/point_hash.hpp"
 
@@ -71,6 +73,73 @@ public:
         std::size_t count_ = 0;
     };
 
+    /// Adds whole cells, whose quadrilaterals are taken as they are: one beside two triangles is doubted, too. Of cells with
+    /// the same corners the later one is, as of tets.
+    class CellAdder {
+    public:
+        explicit CellAdder(FaceSums& to) : to_(to) {}
+        CellAdder(const CellAdder&) = delete;
+        CellAdder& operator=(const CellAdder&) = delete;
+        ~CellAdder() { flush(); }
+
+        /// `mirrored`   its faces are clockwise seen from outside
+        void add(const WholeCell& cell, bool mirrored) {
+            std::array<std::uint64_t, 8> hashes;
+            std::uint64_t all = 0;
+            for (std::size_t i = 0; i < corner_count(cell.kind); ++i)
+                all += hashes[i] = mixed(cell.corners[i] + 0x9e3779b97f4a7c15u);
+            std::uint64_t lowest = cell.corners[0];
+            for (const CellFace& face : shape_of(cell.kind).faces()) {
+                const FaceChange change = change_of(cell, face, hashes);
+                lowest = std::min(lowest, change.point);
+                put({change.point, mirrored ? 0 - change.sum : change.sum});
+            }
+            cells_[cell_count_++] = {lowest, bits_of(mixed(all))};
+            if (cell_count_ == cells_.size()) flush();
+        }
+
+    private:
+        struct FaceChange {
+            std::uint64_t point, sum;
+        };
+        struct CellChange {
+            std::uint64_t point, bits;
+        };
+
+        static FaceChange change_of(const WholeCell& cell, const CellFace& face,
+                                    const std::array<std::uint64_t, 8>& hashes) {
+            std::size_t first = 0;
+            for (std::size_t i = 1; i < face.count; ++i)
+                if (cell.corners[face.corners[i]] < cell.corners[face.corners[first]]) first = i;
+            const auto corner = [&](std::size_t i) { return face.corners[(first + i) % face.count]; };
+            const std::size_t next = corner(1), last = corner(face.count - 1);
+            const bool is_forward = cell.corners[next] < cell.corners[last];
+            const std::size_t low = is_forward ? next : last, high = is_forward ? last : next;
+            std::uint64_t hash = mixed(hashes[low] + cell.corners[high]);
+            if (face.count == 4) hash = mixed(hash + hashes[corner(2)]);
+            return {cell.corners[corner(0)], is_forward ? hash : 0 - hash};
+        }
+
+        void put(const FaceChange& change) {
+            __builtin_prefetch(&to_.sums_[change.point], 1);
+            faces_[face_count_++] = change;
+        }
+
+        void flush() {
+            for (std::size_t i = 0; i < face_count_; ++i) to_.add_face(faces_[i].point, faces_[i].sum);
+            for (std::size_t i = 0; i < cell_count_; ++i) {
+                if (!to_.filter(cells_[i].point, cells_[i].bits)) continue;
+                std::atomic_ref(to_.doubted_[cells_[i].point]).store(1, std::memory_order_relaxed);
+            }
+            face_count_ = cell_count_ = 0;
+        }
+
+        FaceSums& to_;
+        std::array<CellChange, 16> cells_;
+        std::array<FaceChange, 6 * 16> faces_;
+        std::size_t cell_count_ = 0, face_count_ = 0;
+    };
+
     /// Once all have been added. Returns how many points are doubted.
     std::uint64_t look() {
         std::atomic<std::uint64_t> doubted{0};
@@ -97,22 +166,33 @@ private:
         const std::uint64_t p23 = mixed(second + p[3]), p13 = mixed(first + p[3]), p12 = mixed(first + p[2]);
         const std::uint64_t at_lowest = p13 - p23 - p12;
         const std::uint64_t tet_hash = mixed(first + p23 + p[0]);
-        std::uint64_t bits = 0;
-        for (unsigned i = 0; i < 4; ++i) bits |= std::uint64_t{1} << (tet_hash >> 6 * i & 63);
         return {p[0],
                 p[1],
                 tet.mirrored() ? 0 - at_lowest : at_lowest,
                 tet.mirrored() ? 0 - p23 : p23,
-                bits,
+                bits_of(tet_hash),
                 (tet_hash >> 24 & 1) != 0};
     }
 
+    static std::uint64_t bits_of(std::uint64_t hash) {
+        std::uint64_t bits = 0;
+        for (unsigned i = 0; i < 4; ++i) bits |= std::uint64_t{1} << (hash >> 6 * i & 63);
+        return bits;
+    }
+
+    void add_face(std::uint64_t point, std::uint64_t sum) {
+        std::atomic_ref(sums_[point].faces).fetch_add(sum, std::memory_order_relaxed);
+    }
+
+    /// True where the filter of a point had the bits.
+    bool filter(std::uint64_t point, std::uint64_t bits) {
+        return (std::atomic_ref(sums_[point].tets).fetch_or(bits, std::memory_order_relaxed) & bits) == bits;
+    }
+
     void apply(const Change& change) {
-        const auto at = [](std::uint64_t& number) { return std::atomic_ref(number); };
-        at(sums_[change.lowest].faces).fetch_add(change.at_lowest, std::memory_order_relaxed);
-        at(sums_[change.second].faces).fetch_add(change.at_second, std::memory_order_relaxed);
-        std::uint64_t& filter = sums_[change.filter_of_second ? change.second : change.lowest].tets;
-        if ((at(filter).fetch_or(change.tet, std::memory_order_relaxed) & change.tet) != change.tet) return;
+        add_face(change.lowest, change.at_lowest);
+        add_face(change.second, change.at_second);
+        if (!filter(change.filter_of_second ? change.second : change.lowest, change.tet)) return;
         for (const std::uint64_t point : {change.lowest, change.second})
             std::atomic_ref(doubted_[point]).store(1, std::memory_order_relaxed);
     }

@@ -13,6 +13,7 @@
 
 #include "base/dealt.hpp"
 #include "base/parallel.hpp"
+#include "grid/cell/native_cells.hpp"
 #include "grid/face_counter.hpp"
 #include "grid/face_sums.hpp"
 
@@ -92,8 +93,15 @@ private:
     void find_doubted() {
         FaceSums sums(cells_.points());
         parallel_pieces(cells_.count(), min_chunk, progress_, [&](std::size_t begin, std::size_t end) {
-            FaceSums::Adder<Point> adder(sums);
-            for_tets(begin, end, [&](const Tet&, const auto& make) { adder.add(make()); });
+            FaceSums::Adder<Point> tets(sums);
+            FaceSums::CellAdder cells(sums);
+            const auto add_tets = [&](std::size_t first, std::size_t last) {
+                for_tets(first, last, [&](const Tet&, const auto& make) { tets.add(make()); });
+            };
+            if (cells_.only_tets()) return add_tets(begin, end);
+            for (std::size_t cell = begin; cell < end; ++cell)
+                if (const auto whole = whole_cell(cell)) cells.add(*whole, is_cell_mirrored(*whole));
+                else add_tets(cell, cell + 1);
         });
         const double points = static_cast<double>(cells_.points() - survey_.unused);
         const double tets_of_a_point = 2 * static_cast<double>(survey_.tets) / points;
@@ -101,6 +109,29 @@ private:
         to_count_ = static_cast<std::uint64_t>(std::min(tets, static_cast<double>(survey_.tets)));
         doubted_ = std::move(sums).take_doubted();
         report(0);
+    }
+
+    /// A cell of which the tets follow from its faces: nothing for tets, and where corners are repeated.
+    std::optional<WholeCell> whole_cell(std::size_t cell) const {
+        const std::uint8_t type = cells_.type(cell);
+        if (!is_contoured(type) || is_ordered(type) || Orienter::is_whole(type)) return std::nullopt;
+        const WholeCell whole = cells_.whole(cell);
+        if (has_repeated_corner(whole)) return std::nullopt;
+        return whole;
+    }
+
+    bool is_cell_mirrored(const WholeCell& cell) const {
+        return !survey_.all_alike() && Orienter::six_volumes(points_, split_cell(cell)) < 0;
+    }
+
+    /// Whether some tet of a cell may be counted.
+    bool has_counted_corner(std::size_t cell) const {
+        if (doubted_.empty()) return true;
+        const std::uint64_t first = cells_.first(cell), count = cells_.corners(cell);
+        return cells_.connectivity().visit([&](const auto* corners) {
+            return std::any_of(corners + first, corners + first + count,
+                               [&](auto point) { return doubted_[static_cast<std::size_t>(point)] != 0; });
+        });
     }
 
     bool is_counted(std::uint64_t point) const { return doubted_.empty() || doubted_[point]; }
@@ -151,6 +182,13 @@ private:
     /// Deals the tets of the cells [begin, end) that belong into the buckets [first, last).
     template <class Dealer>
     void deal(std::size_t begin, std::size_t end, std::size_t first, std::size_t last, Dealer& dealer) const {
+        if (cells_.only_tets()) return deal_tets(begin, end, first, last, dealer);
+        for (std::size_t cell = begin; cell < end; ++cell)
+            if (has_counted_corner(cell)) deal_tets(cell, cell + 1, first, last, dealer);
+    }
+
+    template <class Dealer>
+    void deal_tets(std::size_t begin, std::size_t end, std::size_t first, std::size_t last, Dealer& dealer) const {
         for_tets(begin, end, [&](const Tet& tet, const auto& make) {
             const auto [lowest, second] = two_lowest(tet);
             const std::size_t a = buckets_.of(lowest), b = buckets_.of(second);

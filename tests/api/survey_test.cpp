@@ -15,6 +15,7 @@
 #include "base/parallel.hpp"
 #include "grid/faces.hpp"
 #include "grid/mixed_faces.hpp"
+#include "support/mixed_grid.hpp"
 #include "support/random_grid.hpp"
 
 namespace isotet::test {
@@ -274,9 +275,40 @@ Array rounded(const Array& points) {
     return Array::own(std::move(out), 3);
 }
 
+/// Tets, or from seed 5 on cells of other kinds: those of odd seeds inside out, moved and collapsed here and there.
+NastyGrid nasty_cells(std::uint32_t seed) {
+    if (seed <= 4)
+        return nasty_grid(seed, {.side = 9, .missing = 0.1, .inverted = 0.1, .mirrored = 0.3, .repeated = 0.2});
+    const double some = seed % 2 ? 0.2 : 0;
+    return mixed_grid(seed, {.shape = seed <= 8 ? "mixed" : seed <= 10 ? "hex" : "wedge",
+                             .side = 6,
+                             .missing = 0.1,
+                             .mirrored = some,
+                             .repeated = 0.1,
+                             .moved = some,
+                             .collapsed = some});
+}
+
+TEST(Survey, FindsTheSameFacesOfAllKindsOfCellsBySumsAndByCountingAll) {
+    for (std::uint32_t seed = 5; seed <= 12; ++seed) {
+        const NastyGrid g = nasty_cells(seed);
+        const core::CellReader cells = core::CellReader::open(g.grid).value();
+        const core::TetSurvey tets = core::survey_tets(g.grid, cells);
+        const auto found = [&](std::uint64_t memory) {
+            return core::survey_faces(g.grid, cells, tets, {memory, false, 1 << 20}, {}).value();
+        };
+        const core::FaceSurvey all = found(0), some = found(std::uint64_t{1} << 30);
+        EXPECT_EQ(some.repeated, all.repeated) << "seed " << seed;
+        EXPECT_GT(all.faces.size(), 0u);
+        EXPECT_TRUE(std::ranges::equal(some.faces, all.faces, [](const auto& a, const auto& b) {
+            return a.points == b.points && a.mirrored == b.mirrored;
+        })) << "seed " << seed;
+    }
+}
+
 TEST(Survey, CountsFacesAlikeWithAnyMemoryAndWidth) {
     for (std::uint32_t seed = 1; seed <= 4; ++seed) {
-        NastyGrid g = nasty_grid(seed, {.side = 10, .missing = 0.1, .inverted = 0.1, .mirrored = 0.3, .repeated = 0.1});
+        NastyGrid g = nasty_cells(seed);
         if (seed % 2) g.grid.points = rounded(g.grid.points); // flat tets, also repeated the other way round
         const core::CellReader cells = core::CellReader::open(g.grid).value();
         const core::TetSurvey tets = core::survey_tets(g.grid, cells);
@@ -293,7 +325,7 @@ TEST(Survey, CountsFacesAlikeWithAnyMemoryAndWidth) {
 
 TEST(Survey, FindsTheSameFacesWithAnyMemoryWidthAndThreads) {
     for (std::uint32_t seed = 1; seed <= 4; ++seed) {
-        NastyGrid g = nasty_grid(seed, {.side = 9, .missing = 0.1, .inverted = 0.1, .mirrored = 0.3, .repeated = 0.2});
+        NastyGrid g = nasty_cells(seed);
         if (seed == 4) g.grid = make_grid({.shape = "mixed", .side = 7, .fields = {}}).value();
         if (seed % 2) g.grid.points = rounded(g.grid.points);
         const core::CellReader cells = core::CellReader::open(g.grid).value();
