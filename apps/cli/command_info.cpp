@@ -194,8 +194,40 @@ Json json_of(const std::vector<BlockInfo>& blocks) {
     return list;
 }
 
-const char* association_of(const FieldSummary& field) {
-    return field.association == Association::point ? "point" : "cell";
+const char* name_of(Association association) { return association == Association::point ? "point" : "cell"; }
+
+/// "float32 x 3".
+std::string type_text(ScalarType type, std::size_t components) {
+    return std::string(name_of(type)) + (components > 1 ? fmt::format(" x {}", components) : "");
+}
+
+/// What the file announces.
+std::string heads_table(const GridSummary& found, const std::string& path) {
+    Table table = facts();
+    table.row({"file", fmt::format("{} ({})", path, found.file.format)});
+    if (found.file.cells > 0) table.row({"cells", grouped(found.file.cells)});
+    if (!found.file.times.empty()) table.row({"time steps", times_text(found.file.times)});
+    for (const LeftOut& item : found.file.left_out)
+        table.row({"left out", fmt::format("{} '{}': {}", item.what, item.name, item.reason)});
+    return table.text();
+}
+
+std::string field_table(const std::vector<FieldInfo>& fields) {
+    using enum Table::Align;
+    Table table({left, left, left, left});
+    for (const FieldInfo& field : fields)
+        table.row({"field", field.name, name_of(field.association), type_text(field.type, field.components)});
+    return table.text();
+}
+
+Json json_of(const std::vector<FieldInfo>& fields) {
+    Json list = Json::array();
+    for (const FieldInfo& field : fields)
+        list.push_back({{"name", json_text(field.name)},
+                        {"association", name_of(field.association)},
+                        {"type", name_of(field.type)},
+                        {"components", field.components}});
+    return list;
 }
 
 std::string field_table(const std::vector<FieldSummary>& fields) {
@@ -203,8 +235,7 @@ std::string field_table(const std::vector<FieldSummary>& fields) {
     Table table({left, left, left, right, left, left});
     for (const FieldSummary& described : fields) {
         const std::size_t count = described.components.size();
-        const std::string type = std::string(name_of(described.type)) + (count > 1 ? fmt::format(" x {}", count) : "");
-        table.row({"field", described.name, association_of(described), type,
+        table.row({"field", described.name, name_of(described.association), type_text(described.type, count),
                    count == 1 ? range_text(described.components[0], described.type) : "",
                    count == 1 ? holes_text(described.components[0]) : ""});
         for (std::size_t c = 0; count > 1 && c < count; ++c) {
@@ -220,7 +251,7 @@ std::string vector_table(const std::vector<VectorSummary>& vectors) {
     using enum Table::Align;
     Table table({left, left, left, left});
     for (const auto& [group, association] : vectors)
-        table.row({"vector", group.name, association == Association::point ? "point" : "cell",
+        table.row({"vector", group.name, name_of(association),
                    fmt::format("{}", fmt::join(group.parts, ", "))});
     return table.text();
 }
@@ -231,7 +262,7 @@ Json json_of(const std::vector<VectorSummary>& vectors) {
         Json parts = Json::array();
         for (const std::string& part : group.parts) parts.push_back(json_text(part));
         list.push_back({{"name", json_text(group.name)},
-                        {"association", association == Association::point ? "point" : "cell"},
+                        {"association", name_of(association)},
                         {"fields", std::move(parts)}});
     }
     return list;
@@ -250,7 +281,7 @@ Json json_of(const std::vector<FieldSummary>& fields) {
             infinite.push_back(component.infinite);
         }
         list.push_back({{"name", json_text(described.name)},
-                        {"association", association_of(described)},
+                        {"association", name_of(described.association)},
                         {"type", name_of(described.type)},
                         {"components", described.components.size()},
                         {"range", std::move(ranges)},
@@ -298,6 +329,24 @@ Json json_of(const GridSummary& found, const std::string& path) {
     return report;
 }
 
+/// With --heads: what the file announces.
+Result<ExitCode> finish_heads(Console& console, const InfoCommand& command, const GridSummary& found) {
+    const std::string& path = command.grid.file;
+    Json report = json_report("info");
+    report["file"] = json_text(path);
+    report["format"] = found.file.format;
+    report["cells"] = found.file.cells > 0 ? Json(found.file.cells) : Json(nullptr);
+    report["times"] = found.file.times;
+    report["blocks"] = json_of(found.file.blocks);
+    report["regions"] = json_of(found.file.regions);
+    report["fields"] = json_of(found.file.fields);
+    report["vectors"] = json_of(found.vectors);
+    return finish(console, command.common,
+                  heads_table(found, path) + block_table(found.file) + region_table(found.file) +
+                      field_table(found.file.fields) + vector_table(found.vectors),
+                  std::move(report));
+}
+
 } // namespace
 
 Result<ExitCode> run_info(const InfoCommand& command) {
@@ -313,6 +362,7 @@ Result<ExitCode> run_info(const InfoCommand& command) {
     job.other_outputs = {command.common.json};
     const Result<GridSummary> found = look_into(job, console);
     if (!found) return found.error();
+    if (job.heads) return finish_heads(console, command, *found);
     const std::string& path = job.grid.file;
     Json report = json_of(*found, path);
     report["curved"] = json_of(found->curved);

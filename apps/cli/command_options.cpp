@@ -203,13 +203,19 @@ void add_info(const Command& program, InfoCommand& info) {
     add_more_files(command, info.grid);
     add_time(command, info.grid);
     add_reading(command, info.grid, "--format");
-    command.add_flag(
+    const Option survey = command.add_flag(
         "--survey", info.survey,
         "Count repeated tets, duplicate points, boundary faces and hanging points, too: that takes about as long as "
         "reading");
     const Option chart = command.add_count(
         "--chart", {1, 65'535}, [&](std::uint64_t n) { info.chart = n; }, "N",
         "Area of the isosurface and volume below it at N + 1 isovalues, from end to end of the field's range");
+    command.add_flag(
+        "--heads", info.heads,
+        "Only what the file announces, without reading values: fields, cells, time steps, blocks. At once at any size, "
+        "but for formats of text")
+        .excludes(survey)
+        .excludes(chart);
     add_field(command, info.field, "The field of the chart; default: the one that is shown first").needs(chart);
     add_common(command, info.common);
     command.set_details(info_details);

@@ -63,6 +63,7 @@ struct LeftOut {
 /// What a file holds.
 struct FileInfo {
     std::string format;
+    std::uint64_t cells = 0; ///< of all types, pieces and blocks; 0 where only reading the grid would tell
     std::vector<FieldInfo> fields;
     std::vector<double> times; ///< empty where the file knows no time; ascending as stored
     std::vector<std::string>

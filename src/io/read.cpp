@@ -281,6 +281,8 @@ Result<FileInfo> inspect_one(const std::string& path, const ReadOptions& options
     auto info = (*reader)->inspect(path, options, progress);
     if (!info) return info;
     if (auto known = check_blocks(*info, options); !known) return known.error();
+    if (info->cells == 0)
+        for (const BlockInfo& block : info->blocks) info->cells += block.cells;
     return info;
 }
 

@@ -122,6 +122,7 @@ Result<void> choose_hanging_values(ClosedGrid& closed, HangingChoice choice, Cal
 
 /// Cells list their hanging points, and what was found is noted.
 Result<Grid> closed(Grid grid, HangingChoice choice, Caller& caller, const Run& run) {
+    if (choice == HangingChoice::not_sought) return grid;
     Result<ClosedGrid> found = close_hanging_points(grid, run);
     if (!found) return found.error();
     if (choice == HangingChoice::leave) {
@@ -392,7 +393,9 @@ Result<ReadResult> GridSource::read_active(const FieldsToRead& fields, std::size
     options.active_cells = active;
     Result<ReadResult> result = read_file(fields, step, std::move(options), caller.run());
     if (!result) return result;
-    if (result->cells_in_file && options_.hanging_points != HangingChoice::leave) {
+    const bool closes =
+        options_.hanging_points == HangingChoice::close || options_.hanging_points == HangingChoice::interpolate;
+    if (result->cells_in_file && closes) {
         const Grid& cut = result->grid;
         const auto field = active.shape ? slice_field(cut.points, *active.shape, caller.run())
                                         : find_field(cut, active.field, {}, caller.run());

@@ -34,6 +34,30 @@ std::vector<VectorSummary> vectors_of(const Grid& grid) {
     return vectors;
 }
 
+/// The same of what a file announces.
+std::vector<VectorSummary> vectors_of(const FileInfo& file) {
+    std::vector<VectorSummary> vectors;
+    for (const Association association : {Association::point, Association::cell}) {
+        std::vector<std::string> scalars;
+        for (const FieldInfo& field : file.fields)
+            if (field.association == association && field.components == 1) scalars.push_back(field.name);
+        for (ComponentGroup& group : component_groups(scalars)) vectors.push_back({std::move(group), association});
+    }
+    return vectors;
+}
+
+Result<GridSummary> look_at_heads(const GridSource& source, const GridOptions& options, Caller& caller) {
+    GridSummary summary;
+    summary.file = source.info();
+    if (options.step || options.time) {
+        const auto steps = choose_steps(summary.file, options, Steps::one, caller);
+        if (!steps) return steps.error();
+        summary.step = steps->front();
+    }
+    summary.vectors = vectors_of(summary.file);
+    return summary;
+}
+
 Result<CurvedSummary> look_at_curved_cells(const Grid& grid, const std::vector<FieldSummary>& summaries,
                                            const Run& run) {
     CurvedSummary found;
@@ -73,10 +97,11 @@ Result<std::optional<FieldChart>> make_chart(const InfoJob& job, const Grid& gri
 Result<GridSummary> look_into(const InfoJob& job, Caller& caller) {
     if (auto paths = check_output_paths({job.grid.file}, job.other_outputs); !paths) return paths.error();
     GridOptions options = job.grid;
-    options.hanging_points = HangingChoice::leave; // cells are counted as the file has them
+    options.hanging_points = HangingChoice::not_sought; // cells are counted as the file has them
     Result<GridSource> source = GridSource::open(options, caller);
     if (!source) return source.error();
     if (auto paths = check_output_paths(source->info().files, job.other_outputs); !paths) return paths.error();
+    if (job.heads) return look_at_heads(*source, options, caller);
     const ChoiceWish wish{Steps::one, {}, {}, false};
     const Result<FirstChoice> choice = choose_first(*source, options, wish, caller, caller.run());
     if (!choice) return choice.error();

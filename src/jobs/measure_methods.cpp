@@ -90,7 +90,7 @@ Result<void> BenchRun::measure_all(const std::string& name, const Grid& grid, co
 
 Result<void> BenchRun::run_file() {
     GridOptions options = job_.grid;
-    options.hanging_points = HangingChoice::leave; // polyhedra are not measured
+    options.hanging_points = HangingChoice::not_sought; // polyhedra are not measured
     const Result<GridSource> source = GridSource::open(options, caller_);
     if (!source) return source.error();
     if (auto paths = check_output_paths(source->info().files, job_.other_outputs); !paths) return paths;

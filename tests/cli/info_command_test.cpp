@@ -44,6 +44,23 @@ TEST_F(Program, InfoCountsFacesAndPlacesOnlyInASurvey) {
     EXPECT_NE(isotet({"info", "make:kuhn:3", "--survey"}).out.find("boundary faces  108"), std::string::npos);
 }
 
+TEST_F(Program, InfoOfHeadsTellsWhatTheFileAnnounces) {
+    ASSERT_EQ(isotet({"make", "mixed", "--side", "3", "--fields", "sphere,integer", "-o", path("m.vtu")}).status, 0);
+    const json whole = json_of({"info", path("m.vtu")}), heads = json_of({"info", path("m.vtu"), "--heads"});
+    EXPECT_EQ(heads["cells"], whole["cells"]);
+    EXPECT_EQ(heads["format"], "vtu");
+    ASSERT_EQ(heads["fields"].size(), whole["fields"].size());
+    for (std::size_t i = 0; i < heads["fields"].size(); ++i)
+        for (const char* key : {"name", "association", "type", "components"})
+            EXPECT_EQ(heads["fields"][i][key], whole["fields"][i][key]);
+    const RunResult run = isotet({"info", path("m.vtu"), "--heads"});
+    EXPECT_NE(run.out.find("field  integer  point  int32"), std::string::npos) << run.out;
+    EXPECT_EQ(run.out.find("bounds"), std::string::npos) << "for which points are read";
+    EXPECT_EQ(isotet({"info", path("m.vtu"), "--heads", "--survey"}).status, 2);
+    put_content(path("cut.vtu"), content_of(path("m.vtu")).substr(0, content_of(path("m.vtu")).size() - 300));
+    EXPECT_NE(isotet({"info", path("cut.vtu"), "--heads"}).status, 0);
+}
+
 TEST_F(Program, InfoCountsValuesThatAreNoNumber) {
     std::string grid = small_grid({{"p", {1, 2, 3, 4, 9}}});
     grid.replace(grid.find("3 3\n"), 4, "3 nan\n");

@@ -22,7 +22,8 @@ namespace isotet::jobs {
 enum class HangingChoice : std::uint8_t {
     close,       ///< they list them
     interpolate, ///< and the points have the values of the larger cells
-    leave,       ///< nothing: the surface is open there
+    leave,       ///< nothing: the surface is open there, which is noted
+    not_sought,  ///< nothing, and none is looked for: where no surface is made
 };
 
 /// Which grid, and how it is read.

@@ -22,6 +22,7 @@ struct InfoJob {
     GridOptions grid;
     std::vector<std::string> other_outputs; ///< of the caller: no file of the grid may be one
     bool survey = false;                    ///< also what takes longer than reading
+    bool heads = false;                     ///< only what the file announces: no values are read, nothing is counted
     FieldChoice field;                      ///< of the chart; empty: that of first_view()
     std::optional<std::uint64_t> chart;     ///< steps; nothing: no chart
 };
@@ -57,6 +58,7 @@ struct FieldChart {
     ContourSpectrum spectrum;
 };
 
+/// With InfoJob::heads: `file`, `step` and `vectors` alone.
 struct GridSummary {
     FileInfo file;
     std::size_t step = 0;
@@ -72,7 +74,8 @@ struct GridSummary {
     std::optional<FieldChart> chart;
 };
 
-/// Reads a step whole, and counts.
+/// Reads a step whole, and counts; with InfoJob::heads in time by the number of fields, blocks and files, for formats
+/// that have such heads (docs/formats.md).
 /// Errors   as of reading; invalid_argument: a step or field that there is not; invalid_data: nothing to chart
 Result<GridSummary> look_into(const InfoJob& job, Caller& caller);
 

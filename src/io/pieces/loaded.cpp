@@ -29,7 +29,7 @@ void append(Loaded& whole, Loaded part) {
     std::ranges::move(part.info.files, std::back_inserter(whole.info.files));
     std::ranges::move(part.pieces, std::back_inserter(whole.pieces));
     std::ranges::move(part.notes, std::back_inserter(whole.notes));
-    whole.cells += part.cells;
+    whole.info.cells += part.info.cells;
 }
 
 Error broken(const std::string& path, std::string_view what) {

@@ -38,7 +38,6 @@ struct Piece {
 struct Loaded {
     FileInfo info;
     std::size_t step = 0;
-    std::uint64_t cells = 0; ///< that a VTK XML file announces, of all types
     std::vector<Piece> pieces;
     std::vector<std::string> notes;
 };

@@ -87,8 +87,9 @@ public:
     }
     void describe(const FileInfo& info) {
         // A member that is not sent is an error here: this counts them.
-        [[maybe_unused]] const auto& [format, field_infos, times, files, blocks, regions, left_out] = info;
+        [[maybe_unused]] const auto& [format, info_cells, field_infos, times, files, blocks, regions, left_out] = info;
         out_.text(info.format);
+        out_.number(info.cells);
         out_.list(info.fields, [&](const FieldInfo& field) {
             out_.text(field.name);
             out_.number(field.association);
@@ -176,6 +177,7 @@ public:
     FileInfo info() {
         FileInfo result;
         result.format = in_.text();
+        result.cells = in_.number<std::uint64_t>();
         in_.list([&] {
             FieldInfo& field = result.fields.emplace_back();
             field.name = in_.text();

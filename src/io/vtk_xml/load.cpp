@@ -38,7 +38,7 @@ Result<Loaded> load_document(const std::shared_ptr<Document>& shared, const std:
     if (!cells) return cells.error();
     Loaded loaded;
     if (auto told = announce_fields(document, *layouts, options, progress, loaded); !told) return told.error();
-    loaded.cells = *cells;
+    loaded.info.cells = *cells;
     if (depth == Depth::description) return loaded;
     const Wanted wanted{options, loaded.step, ids, path};
     if (unstructured) {
@@ -134,7 +134,7 @@ Loaded put_together(std::vector<Loaded> parts) {
         if (std::ranges::none_of(part.notes, [&](const std::string& note) { return note.starts_with(of_one); }))
             continue;
         ++structured;
-        hexahedra += part.cells;
+        hexahedra += part.info.cells;
     }
     Loaded whole;
     whole.info.times = common_time(parts);

@@ -145,7 +145,7 @@ Result<Loaded> load_blocks(const std::string& path, std::string_view type, const
     }
     auto parts = vtk_xml::load_files(files, options, progress);
     if (!parts) return parts.error();
-    for (std::size_t i = 0; i < parts->size(); ++i) index.blocks[index.leaves[i].block].cells += (*parts)[i].cells;
+    for (std::size_t i = 0; i < parts->size(); ++i) index.blocks[index.leaves[i].block].cells += (*parts)[i].info.cells;
     for (std::size_t first = 0, end = 0; first < parts->size(); first = end) {
         while (end < parts->size() && index.leaves[end].grid == index.leaves[first].grid) ++end;
         const auto of_grid = std::span(*parts).subspan(first, end - first);

@@ -25,10 +25,13 @@ Result<Loaded> load_grid(const std::string& path, const ReadOptions& options, De
     const HdfGrid grid(path, *rows, "/VTKHDF/");
     Loaded loaded;
     if (auto done = grid.announce_all(loaded.info); !done) return done.error();
-    if (depth == Depth::description) return loaded;
     const auto step = choose_step(loaded.info, options);
     if (!step) return step.error();
     loaded.step = *step;
+    const auto cells = grid.count_cells(*step);
+    if (!cells) return cells.error();
+    loaded.info.cells = *cells;
+    if (depth == Depth::description) return loaded;
     if (auto done = grid.load(options, *step, "", loaded); !done) return done.error();
     if (loaded.pieces.empty()) return broken(path, "it has no part");
     return loaded;
