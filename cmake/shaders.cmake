@@ -19,10 +19,15 @@ function(isotet_shaders target header namespace)
     set(all "")
     foreach(source ${ARGN})
         get_filename_component(name ${source} NAME_WE)
+        # Devices of Vulkan 1.1 take them; mesh shaders are not for these.
+        set(version 1.1)
+        if(source MATCHES "[.]mesh$")
+            set(version 1.2)
+        endif()
         set(words ${folder}/${name}.inc)
         add_custom_command(OUTPUT ${words}
-            COMMAND ${ISOTET_GLSLC} --target-env=vulkan1.2 -Werror -I ${PROJECT_SOURCE_DIR}/src/vulkan/kernels -mfmt=num
-                    -MD -MF ${words}.d -MT ${words} -o ${words} ${CMAKE_CURRENT_SOURCE_DIR}/${source}
+            COMMAND ${ISOTET_GLSLC} --target-env=vulkan${version} -Werror -I ${PROJECT_SOURCE_DIR}/src/vulkan/kernels
+                    -mfmt=num -MD -MF ${words}.d -MT ${words} -o ${words} ${CMAKE_CURRENT_SOURCE_DIR}/${source}
             DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${source} DEPFILE ${words}.d VERBATIM COMMENT "Compiling shader ${name}")
         list(APPEND numbers ${words})
         string(APPEND declarations "extern const ShaderCode ${name};\n")

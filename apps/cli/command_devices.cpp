@@ -34,7 +34,7 @@ void add_rows(Table& table, const DeviceInfo& device, const DeviceList& list) {
     table.row({"", use_text(device, list)});
     table.row({"driver", device.driver});
     table.row({"Vulkan", device.api});
-    if (device.memory == 0) return; // nothing more is known of devices before Vulkan 1.2
+    if (device.memory == 0) return; // nothing more is known of devices before Vulkan 1.1
     table.row({"memory", memory_text(device)});
     table.row({"largest buffer", format_bytes(device.allocation_limit)});
     table.row({"workgroups",

@@ -155,7 +155,7 @@ constexpr const char* formats_details = R"(--format takes the names in the first
 )";
 
 constexpr const char* devices_details = R"(
-A device can be used when it has Vulkan 1.2 and what the engine needs; of one that cannot, the reason is told. Software
+A device can be used when it has Vulkan 1.1 and what the engine needs; of one that cannot, the reason is told. Software
 devices are used only when asked for, by --device software. Without Vulkan, or without a device, isotet works on the
 CPU.
 
@@ -274,7 +274,8 @@ SolidChoice parse_solid(const std::string& text) {
     if (text == "above") return {SolidChoice::Kind::above, {}};
     if (text == "below") return {SolidChoice::Kind::below, {}};
     SolidChoice out{SolidChoice::Kind::between, {}};
-    if (text.find(':') == std::string::npos) refuse_value("--solid", text, "above, below, or two isovalues A:B, A below B");
+    if (text.find(':') == std::string::npos)
+        refuse_value("--solid", text, "above, below, or two isovalues A:B, A below B");
     out.range = parse_range("--solid", text, out.shares);
     return out;
 }
@@ -299,7 +300,8 @@ ReduceOptions& wanted_reduction(ExtractJob& job) {
 void add_extract(const Command& program, ExtractCommand& extract) {
     const Command command = program.add_command("extract", "Extract isosurfaces and write them into files");
     add_grid_and_surface(command, extract);
-    add_field(command, extract.field, "The field to contour, or an expression such as mag(U); default: the one that info says is shown first");
+    add_field(command, extract.field,
+              "The field to contour, or an expression such as mag(U); default: the one that info says is shown first");
     add_centre(command, extract.field);
     add_levels(command, extract);
     add_surface_options(command, extract,
@@ -324,7 +326,9 @@ void add_view(const Command& program, ViewCommand& view) {
     const Command command = program.add_command("view", "Look at isosurfaces in the browser, with a slider");
     command.add_file("FILE", view.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]").required();
     add_more_files(command, view.grid);
-    add_field(command, view.field, "The field to begin with, or an expression such as mag(U); default: the one that info says is shown first");
+    add_field(
+        command, view.field,
+        "The field to begin with, or an expression such as mag(U); default: the one that info says is shown first");
     add_isovalues(command, view.isovalues, view.shares);
     command.add_text("--color-by", view.color_by, "FIELD", "Colour by this point or cell field to begin with");
     command.add_count(
@@ -341,9 +345,10 @@ void add_view(const Command& program, ViewCommand& view) {
     command.add_text("--listen", view.listen, "ADDRESS",
                      "Serve at this address of the machine, 0.0.0.0 for all, instead of 127.0.0.1: whoever knows the "
                      "printed address can look, over an open line; or unix:PATH, a socket that only you can open");
-    command.add_flag("--keep", view.keep,
-                     "Keep running after the last page was closed; default: end after a minute, or half an hour after it "
-                     "was lost");
+    command.add_flag(
+        "--keep", view.keep,
+        "Keep running after the last page was closed; default: end after a minute, or half an hour after it "
+        "was lost");
     command.add_flag("--no-browser", view.no_browser, "Open no browser: only print the address");
     add_refinement(command, view.refine);
     add_time(command, view.grid);
@@ -356,11 +361,13 @@ void add_export(const Command& program, ExportCommand& exported) {
     const Command command = program.add_command("export", "Make a page of one file with isosurfaces and a slider");
     command.add_file("FILE", exported.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]").required();
     command.add_file("OUT", exported.out, "OUT_FILE", "The page: .html").required();
-    add_field(command, exported.field, "The field to contour, or an expression such as mag(U); default: the one that info says is shown first");
+    add_field(command, exported.field,
+              "The field to contour, or an expression such as mag(U); default: the one that info says is shown first");
     const Option isovalues = add_isovalues(command, exported.isovalues, exported.shares);
-    command.add_choice<bool>("--as", exported.grid_inside, {{"surfaces", false}, {"grid", true}},
-                             "What is in the page: surfaces (the default), or the grid, with isotet as WebAssembly: any "
-                             "isovalue, slices, colours by all its fields");
+    command.add_choice<bool>(
+        "--as", exported.grid_inside, {{"surfaces", false}, {"grid", true}},
+        "What is in the page: surfaces (the default), or the grid, with isotet as WebAssembly: any "
+        "isovalue, slices, colours by all its fields");
     command
         .add_count(
             "--surfaces", {1, 10'000}, [&](std::uint64_t n) { exported.count = n; }, "N",
@@ -414,7 +421,8 @@ void add_check(const Command& program, CheckCommand& check) {
     command.add_flag("--strict", check.strict, "Fail for more: see below");
     command.add_text("--format", check.format, "FORMAT", "Format of the surface; default: the name decides");
     add_reading(command, check.grid, "--grid-format");
-    for (const char* name : {"--time", "--step", "--grid-format", "--displace", "--merge-points", "--hanging-points", "--keep-pieces"}) {
+    for (const char* name :
+         {"--time", "--step", "--grid-format", "--displace", "--merge-points", "--hanging-points", "--keep-pieces"}) {
         command.option(name).needs(grid);
     }
     add_common(command, check.common);
@@ -427,16 +435,19 @@ void add_pack(const Command& program, PackCommand& pack) {
     command.add_file("OUT", pack.out, "OUT_FILE", "The packed file: .isotet").required();
     command.add_texts(
         "--fields", [&](const std::vector<std::string>& names) { pack.fields = names; }, "FIELD[,...]",
-        "The fields to pack, separated by commas; may be repeated. Default: all point fields of one component, or else the "
+        "The fields to pack, separated by commas; may be repeated. Default: all point fields of one component, or else "
+        "the "
         "field that info says is shown first");
-    command.add_flag("--cell-field", pack.cell_field, "A name that is both a point and a cell field means the cell field");
+    command.add_flag("--cell-field", pack.cell_field,
+                     "A name that is both a point and a cell field means the cell field");
     add_time(command, pack.grid);
     command.add_flag("--all-steps", pack.all_steps, "All time steps; they must have the same cells and points")
         .excludes(command.option("--time"))
         .excludes(command.option("--step"));
-    command.add_flag("--append", pack.append,
-                     "Add the time step, or all, to OUT, which has the same cells and points: with its fields, precision and "
-                     "so on");
+    command.add_flag(
+        "--append", pack.append,
+        "Add the time step, or all, to OUT, which has the same cells and points: with its fields, precision and "
+        "so on");
     command.add_flag("--source-cells", pack.source_cells,
                      "Keep the numbers of cells, for extract --source-cells: 4 bytes a tet, 8 another cell");
     command.add_flag("--gradients", pack.gradients,
@@ -457,8 +468,9 @@ void add_make(const Command& program, MakeCommand& make) {
                   "kuhn, perturbed, shuffled, layer, hex, wedge, pyramid, mixed, tet10, curved, hex27, kelvin, octree, "
                   "octree-random, octree-bent or octree-tets")
         .required();
-    command.add_count(
-               "--side", {1}, [&](std::uint64_t n) { make.grid.side = n; }, "N", "Cubes along an edge, 1 to 4096")
+    command
+        .add_count(
+            "--side", {1}, [&](std::uint64_t n) { make.grid.side = n; }, "N", "Cubes along an edge, 1 to 4096")
         .required();
     command.add_words(
         "--fields", [&](const std::vector<std::string>& names) { make.grid.fields = names; }, "A[,B...]",
@@ -533,9 +545,7 @@ void add_reading(const Command& command, GridOptions& grid, const std::string& f
         .needs(command.option("--merge-points"));
     command.add_choice<HangingChoice>(
         "--hanging-points", grid.hanging_points,
-        {{"close", HangingChoice::close},
-         {"interpolate", HangingChoice::interpolate},
-         {"leave", HangingChoice::leave}},
+        {{"close", HangingChoice::close}, {"interpolate", HangingChoice::interpolate}, {"leave", HangingChoice::leave}},
         "Points on faces and edges of larger cells: close, these cells list them; interpolate, and the points have the "
         "values of these cells; leave, the surface is open there");
     command.add_flag("--keep-pieces", grid.keep_pieces,
@@ -626,8 +636,7 @@ void add_out_and_more_files(const Command& command, GridOptions& grid, std::stri
     const auto take = [&grid, &out, by_place](const std::string& option, const std::string& name) {
         if (name.empty()) refuse_value(option, name, "the name of a file");
         if (is_of_grid(name)) return add_step(option, name, grid);
-        if (!out.empty() && !*by_place)
-            refuse_value(option, name, "nothing beside -o but grids of further time steps");
+        if (!out.empty() && !*by_place) refuse_value(option, name, "nothing beside -o but grids of further time steps");
         if (*by_place) add_step(option, out, grid); // the last one is OUT
         out = name;
         *by_place = true;
@@ -811,8 +820,10 @@ void add_surface_options(const Command& command, ExtractJob& job, const std::str
     command.add_value(
         "--keep", [&job](const std::string& text) { job.keep = parse_parts(text); },
         "largest|N|area>A|volume>V|touching:REGION|parts:I[,J]|not:I[,J]",
-        "Only these connected parts of each surface or solid: the largest by area, the N largest, those of more area or "
-        "enclosed volume, those that touch boundary, a named region, or cells with FIELD=VALUE, or by their numbers, as "
+        "Only these connected parts of each surface or solid: the largest by area, the N largest, those of more area "
+        "or "
+        "enclosed volume, those that touch boundary, a named region, or cells with FIELD=VALUE, or by their numbers, "
+        "as "
         "--parts and the cell field part have them");
     command.add_file("--parts", job.parts_table, "FILE.csv",
                      "Write a table of the connected parts: triangles, area, volume, place, means of the fields");
@@ -843,8 +854,7 @@ void add_surface_options(const Command& command, ExtractJob& job, const std::str
                                   {{"float", Precision::float32}, {"double", Precision::float64}},
                                   "Precision of the packed grid");
     command.add_choice<std::optional<Method>>(
-        "--method", job.method,
-        {{"auto", std::nullopt}, {"clusters", Method::clusters}, {"direct", Method::direct}},
+        "--method", job.method, {{"auto", std::nullopt}, {"clusters", Method::clusters}, {"direct", Method::direct}},
         "How: clusters packs the grid once, which pays for many surfaces; direct goes through all cells for each "
         "surface; auto chooses by their number");
     command.add_choice<EngineChoice>(

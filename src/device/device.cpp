@@ -13,7 +13,7 @@ namespace isotet {
 
 Result<DeviceList> list_devices() {
     return core::guarded("listing the devices", []() -> Result<DeviceList> {
-        Result<vulkan::FoundDevices> found = vulkan::find_devices({}, {});
+        Result<vulkan::FoundDevices> found = vulkan::find_devices({}, vulkan::whole_version, {});
         DeviceList list;
         if (found) {
             if (const Result<std::size_t> best = vulkan::choose(found->infos, "")) list.best = *best;

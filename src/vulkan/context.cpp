@@ -33,7 +33,7 @@ Result<std::shared_ptr<Context>> Context::open(const DeviceOptions& options, con
 }
 
 Result<std::shared_ptr<Context>> Context::open_unguarded(const DeviceOptions& options, const Settings& settings) {
-    Result<FoundDevices> found = find_devices(settings.watch, settings.alter_capabilities);
+    Result<FoundDevices> found = find_devices(settings.watch, settings.vulkan_version, settings.alter_capabilities);
     if (!found) return found.error();
     const Result<std::size_t> chosen = choose(found->infos, options.choice);
     if (!chosen) return chosen.error();

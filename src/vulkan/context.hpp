@@ -28,6 +28,7 @@ namespace isotet::vulkan {
 /// What tests force upon a device; the public options stay apart. Nothing here changes a byte of any result.
 struct Settings {
     Watch watch;
+    std::uint32_t vulkan_version = whole_version;          ///< the newest that is used
     bool force_staging = false;                            ///< as if the processor did not reach the device's memory
     std::uint64_t max_items = std::uint64_t{0xffffffff};   ///< vertices of a surface, and triangles: what 32 bits can
                                                            ///< number

@@ -13,8 +13,8 @@ namespace isotet::vulkan {
 Kernels::Kernels(LogicalDevice& device, const Capabilities& capabilities, PipelineCache& cache)
     : device_(device),
       cache_(cache),
-      controls_{capabilities.properties12.shaderRoundingModeRTEFloat32 == VK_TRUE,
-                capabilities.properties12.shaderSignedZeroInfNanPreserveFloat32 == VK_TRUE} {}
+      controls_{capabilities.floats.shaderRoundingModeRTEFloat32 == VK_TRUE,
+                capabilities.floats.shaderSignedZeroInfNanPreserveFloat32 == VK_TRUE} {}
 
 Kernels::~Kernels() {
     if (device_.hung()) return;

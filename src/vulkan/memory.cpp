@@ -44,10 +44,7 @@ void Buffer::swap(Buffer& other) noexcept {
 }
 
 Memory::Memory(LogicalDevice& device, const Capabilities& capabilities, std::uint64_t limit)
-    : device_(device),
-      limit_(limit),
-      largest_(capabilities.properties11.maxMemoryAllocationSize),
-      budget_(capabilities.memory_budget) {}
+    : device_(device), limit_(limit), largest_(capabilities.largest_allocation), budget_(capabilities.memory_budget) {}
 
 Result<std::unique_ptr<Memory>> Memory::open(LogicalDevice& device, const Capabilities& capabilities,
                                              const Options& options) {

@@ -37,6 +37,13 @@ TEST_F(Forced, StagingGivesTheSameBytes) {
     expect_same_on_a_nasty_grid({.page_bytes = 20'000, .surface_bytes = {}});
 }
 
+TEST_F(Forced, Vulkan11WithItsExtensionsGivesTheSameBytes) {
+    vulkan::Settings settings = watched();
+    settings.vulkan_version = VK_API_VERSION_1_1;
+    reopen(settings);
+    expect_same_on_a_nasty_grid();
+}
+
 TEST_F(Forced, FoldingOfWorkgroupsGivesTheSameBytes) {
     vulkan::Settings settings = watched();
     settings.groups_per_axis = 7;

@@ -43,9 +43,8 @@ Capabilities card() {
     for (auto& size : limits.maxComputeWorkGroupSize) size = 1024;
     limits.maxComputeSharedMemorySize = 49152;
     limits.maxPushConstantsSize = 256;
-    device.properties11.maxMemoryAllocationSize = 4 * gigabyte;
-    device.features12.bufferDeviceAddress = VK_TRUE;
-    device.features12.scalarBlockLayout = VK_TRUE;
+    device.largest_allocation = 4 * gigabyte;
+    device.buffer_addresses = device.scalar_layout = true;
     device.queues = {{VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT | VK_QUEUE_TRANSFER_BIT, 64},
                      {VK_QUEUE_TRANSFER_BIT, 64}};
     device.compute_family = 0;
@@ -76,12 +75,10 @@ TEST(Capabilities, ThatAreMissingAreNamed) {
         alter(device);
         return vulkan::why_unusable(device);
     };
-    EXPECT_EQ(why([](auto& d) { d.properties.apiVersion = VK_MAKE_API_VERSION(0, 1, 1, 177); }),
-              "it has Vulkan 1.1.177, but 1.2 is needed");
-    EXPECT_EQ(why([](auto& d) { d.features12.bufferDeviceAddress = VK_FALSE; }),
-              "it lacks the feature bufferDeviceAddress");
-    EXPECT_EQ(why([](auto& d) { d.features12.scalarBlockLayout = VK_FALSE; }),
-              "it lacks the feature scalarBlockLayout");
+    EXPECT_EQ(why([](auto& d) { d.properties.apiVersion = VK_MAKE_API_VERSION(0, 1, 0, 177); }),
+              "it has Vulkan 1.0.177, but 1.1 is needed");
+    EXPECT_EQ(why([](auto& d) { d.buffer_addresses = false; }), "it lacks the feature bufferDeviceAddress");
+    EXPECT_EQ(why([](auto& d) { d.scalar_layout = false; }), "it lacks the feature scalarBlockLayout");
     EXPECT_EQ(why([](auto& d) { d.compute_family = Capabilities::none; }),
               "it cannot compute: no queue takes compute work");
     EXPECT_EQ(why([](auto& d) { d.properties.limits.maxComputeSharedMemorySize = 8192; }),
@@ -98,9 +95,9 @@ TEST(Capabilities, ThatAreMissingAreNamed) {
 
 TEST(Capabilities, OfAnOldSoftwareDeviceAreNotTrusted) {
     Capabilities device = card();
-    device.properties12.driverID = VK_DRIVER_ID_MESA_LLVMPIPE;
+    device.driver.driverID = VK_DRIVER_ID_MESA_LLVMPIPE;
     const auto with_driver = [&](const char* info) {
-        std::strcpy(device.properties12.driverInfo, info);
+        std::strcpy(device.driver.driverInfo, info);
         return vulkan::why_unusable(device);
     };
     EXPECT_EQ(with_driver("Mesa 22.3.6 (LLVM 15.0.6)"), "it is the software device of Mesa 22.3.6 (LLVM 15.0.6), which "
@@ -109,7 +106,7 @@ TEST(Capabilities, OfAnOldSoftwareDeviceAreNotTrusted) {
     EXPECT_NE(with_driver("something else"), "");
     EXPECT_EQ(with_driver("Mesa 25.0.7-2~bpo12+1 (LLVM 15.0.6)"), "");
     EXPECT_EQ(with_driver("Mesa 26.1.0"), "");
-    device.properties12.driverID = VK_DRIVER_ID_MESA_RADV;
+    device.driver.driverID = VK_DRIVER_ID_MESA_RADV;
     EXPECT_EQ(with_driver("Mesa 22.3.6"), "") << "only the software device";
 }
 

@@ -34,7 +34,7 @@ protected:
         device("Intel Arc A770", DeviceKind::discrete, 16000),
         device("Intel UHD 770", DeviceKind::integrated, 60000),
         device("NVIDIA RTX 4090", DeviceKind::discrete, 24000),
-        device("NVIDIA Quadro 600", DeviceKind::discrete, 30000, "it has Vulkan 1.0.3, but 1.2 is needed"),
+        device("NVIDIA Quadro 600", DeviceKind::discrete, 30000, "it has Vulkan 1.0.3, but 1.1 is needed"),
     };
 };
 
@@ -74,7 +74,7 @@ TEST_F(Choosing, RefusesAPartThatFitsSeveral) {
 }
 
 TEST_F(Choosing, SaysWhyTheDeviceThatWasNamedCannotBeUsed) {
-    const std::string why = "the device NVIDIA Quadro 600 cannot be used: it has Vulkan 1.0.3, but 1.2 is needed";
+    const std::string why = "the device NVIDIA Quadro 600 cannot be used: it has Vulkan 1.0.3, but 1.1 is needed";
     EXPECT_EQ(chosen("quadro"), why);
     EXPECT_EQ(chosen("4"), why);
     EXPECT_EQ(code("4"), ErrorCode::no_device);

@@ -4,13 +4,16 @@
 #include <array>
 #include <chrono>
 #include <cstring>
+#include <string_view>
 #include <thread>
+#include <tuple>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "test_shaders.hpp"
 #include "vulkan/add_push.hpp"
+#include "vulkan/devices/found_devices.hpp"
 #include "vulkan/failing_calls.hpp"
 #include "vulkan/software_device.hpp"
 
@@ -186,9 +189,39 @@ TEST_F(Faults, AKernelThatCannotBeBuiltIsNamed) {
     }
 }
 
+class VersionsOfVulkan : public OnDevice {};
+
+TEST_F(VersionsOfVulkan, BringTheirExtensionsAlong) {
+    const auto has = [&](std::string_view name) {
+        const std::vector<const char*>& used = context().capabilities().extensions;
+        return std::ranges::count(used, name, [](const char* one) { return std::string_view(one); });
+    };
+    Settings settings = watched();
+    for (const std::uint32_t version : {VK_API_VERSION_1_1, VK_API_VERSION_1_2}) {
+        settings.vulkan_version = version;
+        reopen(settings);
+        const std::ptrdiff_t expected = version == VK_API_VERSION_1_1; // they are part of 1.2
+        EXPECT_EQ(has(VK_KHR_BUFFER_DEVICE_ADDRESS_EXTENSION_NAME), expected);
+        EXPECT_EQ(has(VK_EXT_SCALAR_BLOCK_LAYOUT_EXTENSION_NAME), expected);
+        EXPECT_EQ(has(VK_KHR_SHADER_FLOAT_CONTROLS_EXTENSION_NAME), expected);
+    }
+}
+
+TEST_F(VersionsOfVulkan, GiveTheSameDescription) {
+    const auto described = [](std::uint32_t version) {
+        const vulkan::FoundDevices found = vulkan::find_devices({}, version, {}).value();
+        const auto software = std::ranges::find(found.infos, DeviceKind::software, &DeviceInfo::kind);
+        const vulkan::Capabilities& can = found.capabilities[software->index];
+        return std::tuple(software->unusable, software->driver, software->allocation_limit, software->subgroup_size,
+                          software->memory, can.floats.shaderRoundingModeRTEFloat32, can.driver.driverID);
+    };
+    EXPECT_EQ(described(VK_API_VERSION_1_1), described(VK_API_VERSION_1_2));
+    EXPECT_EQ(std::get<0>(described(VK_API_VERSION_1_1)), "");
+}
+
 TEST(FaultsOfDevices, AMissingFeatureIsNamed) {
     Settings settings = watched();
-    settings.alter_capabilities = [](vulkan::Capabilities& device) { device.features12.scalarBlockLayout = VK_FALSE; };
+    settings.alter_capabilities = [](vulkan::Capabilities& device) { device.scalar_layout = false; };
     const auto refused = Context::open({"software", 0}, settings);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, ErrorCode::no_device);

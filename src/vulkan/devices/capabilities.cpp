@@ -43,12 +43,108 @@ int mesa_version(std::string_view driver_info) {
     return version;
 }
 
-bool has_extension(const InstanceFunctions& call, VkPhysicalDevice device, std::string_view name) {
+/// What a device has beside its version of Vulkan.
+class Extensions {
+public:
+    /// `whole`   Vulkan 1.2 is there
+    Extensions(const InstanceFunctions& call, VkPhysicalDevice device, bool whole) : whole_(whole) {
+        std::uint32_t count = 0;
+        if (call.vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr) != VK_SUCCESS) return;
+        found_.resize(count);
+        if (call.vkEnumerateDeviceExtensionProperties(device, nullptr, &count, found_.data()) < VK_SUCCESS)
+            found_.clear();
+    }
+
+    bool whole() const { return whole_; }
+
+    bool has(std::string_view name) const {
+        return std::any_of(found_.begin(), found_.end(), [&](const auto& one) { return one.extensionName == name; });
+    }
+
+    /// Whether the device has what became part of Vulkan 1.2: by its version, or by the extension that it was before.
+    bool has_early(std::string_view name) const { return whole_ || has(name); }
+
+    /// Notes that the extension is to be enabled, if there is such; Vulkan 1.2 needs none for its own parts.
+    void use_early(const char* name, std::vector<const char*>& used) const {
+        if (!whole_ && has(name)) used.push_back(name);
+    }
+
+private:
+    bool whole_;
+    std::vector<VkExtensionProperties> found_;
+};
+
+/// A chain of structs for a driver to fill in.
+class Chain {
+public:
+    explicit Chain(void** first) : next_(first) {}
+
+    template <class Struct>
+    void add(Struct& one, VkStructureType type) {
+        one.sType = type;
+        *next_ = &one;
+        next_ = &one.pNext;
+    }
+
+private:
+    void** next_;
+};
+
+void ask_properties(Capabilities& found, const InstanceFunctions& call, VkPhysicalDevice device,
+                    const Extensions& extensions) {
+    VkPhysicalDeviceProperties2 properties{};
+    properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+    Chain chain(&properties.pNext);
+    VkPhysicalDeviceSubgroupProperties subgroups{};
+    chain.add(subgroups, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES);
+    VkPhysicalDeviceMaintenance3Properties allocations{};
+    chain.add(allocations, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES);
+    if (extensions.has_early(VK_KHR_DRIVER_PROPERTIES_EXTENSION_NAME))
+        chain.add(found.driver, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES);
+    if (extensions.has_early(VK_KHR_SHADER_FLOAT_CONTROLS_EXTENSION_NAME))
+        chain.add(found.floats, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FLOAT_CONTROLS_PROPERTIES);
+    call.vkGetPhysicalDeviceProperties2(device, &properties);
+    found.subgroup_size = subgroups.subgroupSize;
+    found.largest_allocation = allocations.maxMemoryAllocationSize;
+    found.driver.pNext = found.floats.pNext = nullptr; // they are copied from here on
+    extensions.use_early(VK_KHR_SHADER_FLOAT_CONTROLS_EXTENSION_NAME, found.extensions);
+}
+
+void ask_features(Capabilities& found, const InstanceFunctions& call, VkPhysicalDevice device,
+                  const Extensions& extensions) {
+    VkPhysicalDeviceFeatures2 features{};
+    features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+    Chain chain(&features.pNext);
+    VkPhysicalDeviceBufferDeviceAddressFeatures addresses{};
+    if (extensions.has_early(VK_KHR_BUFFER_DEVICE_ADDRESS_EXTENSION_NAME))
+        chain.add(addresses, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_BUFFER_DEVICE_ADDRESS_FEATURES);
+    VkPhysicalDeviceScalarBlockLayoutFeatures layout{};
+    if (extensions.has_early(VK_EXT_SCALAR_BLOCK_LAYOUT_EXTENSION_NAME))
+        chain.add(layout, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SCALAR_BLOCK_LAYOUT_FEATURES);
+    VkPhysicalDeviceMeshShaderFeaturesEXT mesh{};
+    // Their SPIR-V is newer than what Vulkan 1.1 takes.
+    const bool may_mesh = extensions.whole() && extensions.has(VK_EXT_MESH_SHADER_EXTENSION_NAME);
+    if (may_mesh) chain.add(mesh, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MESH_SHADER_FEATURES_EXT);
+    call.vkGetPhysicalDeviceFeatures2(device, &features);
+    found.features = features.features;
+    found.buffer_addresses = addresses.bufferDeviceAddress;
+    found.scalar_layout = layout.scalarBlockLayout;
+    found.mesh_shaders = mesh.meshShader;
+    extensions.use_early(VK_KHR_BUFFER_DEVICE_ADDRESS_EXTENSION_NAME, found.extensions);
+    extensions.use_early(VK_EXT_SCALAR_BLOCK_LAYOUT_EXTENSION_NAME, found.extensions);
+    if (found.mesh_shaders) found.extensions.push_back(VK_EXT_MESH_SHADER_EXTENSION_NAME);
+}
+
+void ask_queues(Capabilities& found, const InstanceFunctions& call, VkPhysicalDevice device) {
     std::uint32_t count = 0;
-    if (call.vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr) != VK_SUCCESS) return false;
-    std::vector<VkExtensionProperties> found(count);
-    if (call.vkEnumerateDeviceExtensionProperties(device, nullptr, &count, found.data()) < VK_SUCCESS) return false;
-    return std::any_of(found.begin(), found.end(), [&](const auto& one) { return one.extensionName == name; });
+    call.vkGetPhysicalDeviceQueueFamilyProperties2(device, &count, nullptr);
+    VkQueueFamilyProperties2 empty{};
+    empty.sType = VK_STRUCTURE_TYPE_QUEUE_FAMILY_PROPERTIES_2;
+    std::vector<VkQueueFamilyProperties2> families(count, empty);
+    call.vkGetPhysicalDeviceQueueFamilyProperties2(device, &count, families.data());
+    for (const auto& family : families)
+        found.queues.push_back(
+            {family.queueFamilyProperties.queueFlags, family.queueFamilyProperties.timestampValidBits});
 }
 
 void choose_queues(Capabilities& found) {
@@ -126,45 +222,18 @@ bool is_unified_type(const Capabilities& capabilities, std::uint32_t type) {
     return (capabilities.memory.memoryTypes[type].propertyFlags & mappable) == mappable && is_unified(capabilities);
 }
 
-Capabilities ask(const InstanceFunctions& call, VkPhysicalDevice device) {
+Capabilities ask(const InstanceFunctions& call, VkPhysicalDevice device, std::uint32_t version) {
     Capabilities found;
     call.vkGetPhysicalDeviceProperties(device, &found.properties);
-    // What follows came with 1.2; without it the device is unusable, and is listed with what is known so far.
-    if (found.properties.apiVersion < VK_API_VERSION_1_2) return found;
-
-    found.properties11.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES;
-    found.properties12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES;
-    found.properties11.pNext = &found.properties12;
-    VkPhysicalDeviceProperties2 properties{};
-    properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
-    properties.pNext = &found.properties11;
-    call.vkGetPhysicalDeviceProperties2(device, &properties);
-
-    found.features12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
-    VkPhysicalDeviceMeshShaderFeaturesEXT mesh{};
-    mesh.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MESH_SHADER_FEATURES_EXT;
-    if (has_extension(call, device, VK_EXT_MESH_SHADER_EXTENSION_NAME)) found.features12.pNext = &mesh;
-    VkPhysicalDeviceFeatures2 features{};
-    features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
-    features.pNext = &found.features12;
-    call.vkGetPhysicalDeviceFeatures2(device, &features);
-    found.features = features.features;
-    found.mesh_shaders = mesh.meshShader;
-    // The structs are copied from here on; links into the old ones would dangle.
-    found.properties11.pNext = found.properties12.pNext = found.features12.pNext = nullptr;
-
-    std::uint32_t count = 0;
-    call.vkGetPhysicalDeviceQueueFamilyProperties2(device, &count, nullptr);
-    VkQueueFamilyProperties2 empty{};
-    empty.sType = VK_STRUCTURE_TYPE_QUEUE_FAMILY_PROPERTIES_2;
-    std::vector<VkQueueFamilyProperties2> families(count, empty);
-    call.vkGetPhysicalDeviceQueueFamilyProperties2(device, &count, families.data());
-    for (const auto& family : families)
-        found.queues.push_back(
-            {family.queueFamilyProperties.queueFlags, family.queueFamilyProperties.timestampValidBits});
+    // What follows came with 1.1; without it the device is unusable, and is listed with what is known so far.
+    if (found.properties.apiVersion < oldest_version) return found;
+    const Extensions extensions(call, device, std::min(found.properties.apiVersion, version) >= whole_version);
+    ask_properties(found, call, device, extensions);
+    ask_features(found, call, device, extensions);
+    ask_queues(found, call, device);
     choose_queues(found);
-
-    found.memory_budget = has_extension(call, device, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
+    found.memory_budget = extensions.has(VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
+    if (found.memory_budget) found.extensions.push_back(VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
     refresh_free_memory(found, call, device);
     return found;
 }
@@ -186,17 +255,16 @@ void refresh_free_memory(Capabilities& capabilities, const InstanceFunctions& ca
 
 std::string why_unusable(const Capabilities& capabilities) {
     const VkPhysicalDeviceProperties& properties = capabilities.properties;
-    if (properties.apiVersion < VK_API_VERSION_1_2)
-        return fmt::format("it has Vulkan {}, but 1.2 is needed", version_text(properties.apiVersion));
-    if (capabilities.properties12.driverID == VK_DRIVER_ID_MESA_LLVMPIPE &&
-        mesa_version(capabilities.properties12.driverInfo) < oldest_lavapipe) {
+    if (properties.apiVersion < oldest_version)
+        return fmt::format("it has Vulkan {}, but 1.1 is needed", version_text(properties.apiVersion));
+    if (capabilities.driver.driverID == VK_DRIVER_ID_MESA_LLVMPIPE &&
+        mesa_version(capabilities.driver.driverInfo) < oldest_lavapipe) {
         return fmt::format("it is the software device of {}, which ends long loops early; Mesa {} or later is needed",
-                           capabilities.properties12.driverInfo, oldest_lavapipe);
+                           capabilities.driver.driverInfo, oldest_lavapipe);
     }
     if (capabilities.compute_family == Capabilities::none) return "it cannot compute: no queue takes compute work";
-    const auto& features = capabilities.features12;
-    if (!features.bufferDeviceAddress) return "it lacks the feature bufferDeviceAddress";
-    if (!features.scalarBlockLayout) return "it lacks the feature scalarBlockLayout";
+    if (!capabilities.buffer_addresses) return "it lacks the feature bufferDeviceAddress";
+    if (!capabilities.scalar_layout) return "it lacks the feature scalarBlockLayout";
     const VkPhysicalDeviceLimits& limits = properties.limits;
     const auto short_of = [](const char* what, std::uint32_t there, std::uint32_t needed) {
         return fmt::format("{} is {}, but {} is needed", what, there, needed);
@@ -228,9 +296,8 @@ DeviceInfo describe(const Capabilities& capabilities, std::size_t index) {
     info.name = properties.deviceName;
     info.kind = kind_of(properties.deviceType);
     info.api = version_text(properties.apiVersion);
-    info.driver = fmt::format("{} {}", capabilities.properties12.driverName, capabilities.properties12.driverInfo);
-    if (properties.apiVersion < VK_API_VERSION_1_2)
-        info.driver = fmt::format("version {:#x}", properties.driverVersion);
+    info.driver = fmt::format("{} {}", capabilities.driver.driverName, capabilities.driver.driverInfo);
+    if (capabilities.driver.driverName[0] == 0) info.driver = fmt::format("version {:#x}", properties.driverVersion);
     info.unusable = why_unusable(capabilities);
     if (const std::uint32_t type = device_memory_type(capabilities); type != Capabilities::none) {
         const std::uint32_t heap = capabilities.memory.memoryTypes[type].heapIndex;
@@ -242,12 +309,12 @@ DeviceInfo describe(const Capabilities& capabilities, std::size_t index) {
     info.transfer_queue = capabilities.transfer_family != capabilities.compute_family;
     info.timestamps = capabilities.compute_family != Capabilities::none &&
                       capabilities.queues[capabilities.compute_family].timestamp_bits > 0;
-    info.allocation_limit = capabilities.properties11.maxMemoryAllocationSize;
+    info.allocation_limit = capabilities.largest_allocation;
     for (std::size_t axis = 0; axis < 3; ++axis)
         info.workgroups[axis] = properties.limits.maxComputeWorkGroupCount[axis];
     info.workgroup_size = properties.limits.maxComputeWorkGroupInvocations;
     info.shared_memory = properties.limits.maxComputeSharedMemorySize;
-    info.subgroup_size = capabilities.properties11.subgroupSize;
+    info.subgroup_size = capabilities.subgroup_size;
     return info;
 }
 

@@ -22,25 +22,32 @@ struct QueueFamily {
 /// What was asked of a physical device.
 struct Capabilities {
     VkPhysicalDeviceProperties properties{};
-    VkPhysicalDeviceVulkan11Properties properties11{};
-    VkPhysicalDeviceVulkan12Properties properties12{}; ///< driver, float controls
+    VkPhysicalDeviceDriverProperties driver{};
+    VkPhysicalDeviceFloatControlsProperties floats{};
+    VkDeviceSize largest_allocation = 0;
+    std::uint32_t subgroup_size = 0;
     VkPhysicalDeviceFeatures features{};
-    VkPhysicalDeviceVulkan12Features features12{};
+    bool buffer_addresses = false; ///< bufferDeviceAddress
+    bool scalar_layout = false;    ///< scalarBlockLayout
     VkPhysicalDeviceMemoryProperties memory{};
     std::array<VkDeviceSize, VK_MAX_MEMORY_HEAPS> heap_free{}; ///< of each heap, for this process; its size where not
                                                                ///< known
     std::vector<QueueFamily> queues;
     bool memory_budget = false; ///< VK_EXT_memory_budget: heap_free is known, and changes
 
-    bool mesh_shaders = false; ///< VK_EXT_mesh_shader with the feature
+    bool mesh_shaders = false;           ///< VK_EXT_mesh_shader with the feature
+    std::vector<const char*> extensions; ///< to be enabled: what is used and is no part of its version of Vulkan
 
     static constexpr std::uint32_t none = UINT32_MAX;
     std::uint32_t compute_family = none;
     std::uint32_t transfer_family = none; ///< one that only copies, if there is one; else compute_family
 };
 
-/// Asks.
-Capabilities ask(const InstanceFunctions& call, VkPhysicalDevice device);
+/// The version of Vulkan that has all that is needed; of older ones down to 1.1 the extensions will do.
+constexpr std::uint32_t whole_version = VK_API_VERSION_1_2, oldest_version = VK_API_VERSION_1_1;
+
+/// Asks. `version` is that of the instance: nothing newer of the device is used.
+Capabilities ask(const InstanceFunctions& call, VkPhysicalDevice device, std::uint32_t version);
 
 /// Asks again what is free.
 void refresh_free_memory(Capabilities& capabilities, const InstanceFunctions& call, VkPhysicalDevice device);

@@ -21,8 +21,10 @@ struct FoundDevices {
     std::vector<DeviceInfo> infos;
 };
 
+/// `version`  the newest version of Vulkan that is used
 /// `alter`    changes what devices say of themselves, for tests; may be empty
 /// Errors     machine when there is no loader, no driver, or either fails
-Result<FoundDevices> find_devices(const Watch& watch, const std::function<void(Capabilities&)>& alter);
+Result<FoundDevices> find_devices(const Watch& watch, std::uint32_t version,
+                                  const std::function<void(Capabilities&)>& alter);
 
 } // namespace isotet::vulkan

@@ -50,18 +50,19 @@ Error no_instance(VkResult result) {
 
 } // namespace
 
-Result<std::unique_ptr<Instance>> Instance::open(const Watch& watch) {
+Result<std::unique_ptr<Instance>> Instance::open(const Watch& watch, std::uint32_t version) {
     const Validation validation = watch.validation;
     const Result<LoaderFunctions> found = loader();
     if (!found) return found.error();
     const LoaderFunctions& load = *found;
 
-    std::uint32_t version = VK_API_VERSION_1_0;
-    if (const VkResult asked = load.vkEnumerateInstanceVersion(&version); asked != VK_SUCCESS)
+    std::uint32_t of_loader = VK_API_VERSION_1_0;
+    if (const VkResult asked = load.vkEnumerateInstanceVersion(&of_loader); asked != VK_SUCCESS)
         return no_instance(asked);
-    if (version < VK_API_VERSION_1_2) {
-        return Error{ErrorCode::no_device, fmt::format("the Vulkan loader is of version {}.{}, but 1.2 is needed",
-                                                       VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version))};
+    if (of_loader < VK_API_VERSION_1_2) {
+        return Error{ErrorCode::no_device,
+                     fmt::format("the Vulkan loader is of version {}.{}, but 1.2 is needed",
+                                 VK_API_VERSION_MAJOR(of_loader), VK_API_VERSION_MINOR(of_loader))};
     }
     if (validation != Validation::off && !has_validation_layer(load))
         return Error{ErrorCode::no_device, fmt::format("the layer {} is not installed", validation_layer)};
@@ -76,7 +77,7 @@ Result<std::unique_ptr<Instance>> Instance::open(const Watch& watch) {
     application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
     application.pApplicationName = "isotet";
     application.pEngineName = "isotet";
-    application.apiVersion = VK_API_VERSION_1_2;
+    application.apiVersion = version;
 
     VkDebugUtilsMessengerCreateInfoEXT messages{};
     messages.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;

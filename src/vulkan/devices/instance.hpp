@@ -48,7 +48,8 @@ struct Watch {
 class Instance {
 public:
     /// Errors   machine when there is no loader, no driver, or no validation layer though one is asked for
-    static Result<std::unique_ptr<Instance>> open(const Watch& watch = {});
+    /// `version`   the newest version of Vulkan that is used; devices may have less
+    static Result<std::unique_ptr<Instance>> open(const Watch& watch, std::uint32_t version);
 
     Instance(const Instance&) = delete;
     Instance& operator=(const Instance&) = delete;

@@ -30,31 +30,29 @@ Result<std::unique_ptr<LogicalDevice>> LogicalDevice::open(const Instance& insta
     queues[0].queueFamilyIndex = capabilities.compute_family;
     queues[1].queueFamilyIndex = capabilities.transfer_family;
 
-    VkPhysicalDeviceVulkan12Features features12{};
-    features12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
-    features12.bufferDeviceAddress = VK_TRUE;
-    features12.scalarBlockLayout = VK_TRUE;
+    VkPhysicalDeviceBufferDeviceAddressFeatures addresses{};
+    addresses.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_BUFFER_DEVICE_ADDRESS_FEATURES;
+    addresses.bufferDeviceAddress = VK_TRUE;
+    VkPhysicalDeviceScalarBlockLayoutFeatures layout{};
+    layout.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SCALAR_BLOCK_LAYOUT_FEATURES;
+    layout.pNext = &addresses;
+    layout.scalarBlockLayout = VK_TRUE;
 
     VkPhysicalDeviceMeshShaderFeaturesEXT mesh{};
     mesh.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MESH_SHADER_FEATURES_EXT;
     mesh.meshShader = VK_TRUE;
-    if (capabilities.mesh_shaders) features12.pNext = &mesh;
+    if (capabilities.mesh_shaders) addresses.pNext = &mesh;
 
     VkPhysicalDeviceFeatures features{}; // of these none is needed, but for drawing
     features.fragmentStoresAndAtomics = capabilities.features.fragmentStoresAndAtomics;
 
-    std::vector<const char*> extensions;
-    if (capabilities.memory_budget) extensions.push_back(VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
-
-    if (capabilities.mesh_shaders) extensions.push_back(VK_EXT_MESH_SHADER_EXTENSION_NAME);
-
     VkDeviceCreateInfo create{};
     create.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
-    create.pNext = &features12;
+    create.pNext = &layout;
     create.queueCreateInfoCount = device->has_transfer_queue() ? 2 : 1;
     create.pQueueCreateInfos = queues.data();
-    create.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
-    create.ppEnabledExtensionNames = extensions.data();
+    create.enabledExtensionCount = static_cast<std::uint32_t>(capabilities.extensions.size());
+    create.ppEnabledExtensionNames = capabilities.extensions.data();
     create.pEnabledFeatures = &features;
     const InstanceFunctions& ask = instance.call();
     if (const VkResult made = ask.vkCreateDevice(physical, &create, nullptr, &device->handle_); made != VK_SUCCESS) {
@@ -65,6 +63,9 @@ Result<std::unique_ptr<LogicalDevice>> LogicalDevice::open(const Instance& insta
     DeviceFunctions& call = device->call_;
 #define ISOTET_LOAD(name) call.name = reinterpret_cast<PFN_##name>(ask.vkGetDeviceProcAddr(device->handle_, #name));
     ISOTET_VULKAN_DEVICE_FUNCTIONS(ISOTET_LOAD)
+    if (!call.vkGetBufferDeviceAddress) // in Vulkan 1.1 it has the extension's name
+        call.vkGetBufferDeviceAddress = reinterpret_cast<PFN_vkGetBufferDeviceAddress>(
+            ask.vkGetDeviceProcAddr(device->handle_, "vkGetBufferDeviceAddressKHR"));
     if (capabilities.mesh_shaders) {
         ISOTET_VULKAN_MESH_FUNCTIONS(ISOTET_LOAD)
     }
