@@ -95,7 +95,7 @@ void find_seams() {
             ++found;
         }
     }
-    for (uint k = gl_LocalInvocationIndex; k < ghost_seams; k += workgroup_size) {
+    for (uint k = gl_LocalInvocationIndex; k < ghost_seams(); k += workgroup_size) {
         const uvec3 seam = ghost_seam(k);
         if (!is_crossed(seam.xy)) continue;
         ++found;

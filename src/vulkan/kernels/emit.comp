@@ -187,7 +187,7 @@ void number_seams() {
         const uint place = in_window(rank_of(edge));
         if (!many_edges || place < few_edges) set_seam_number(place, own_seam_number(k));
     }
-    for (uint k = gl_LocalInvocationIndex; k < ghost_seams; k += workgroup_size) {
+    for (uint k = gl_LocalInvocationIndex; k < ghost_seams(); k += workgroup_size) {
         const uvec3 seam = ghost_seam(k);
         if (!is_crossed(seam.xy)) continue;
         const uint place = in_window(rank_of(seam.xy));

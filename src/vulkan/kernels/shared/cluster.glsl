@@ -8,13 +8,10 @@
 // The cluster at hand; the same in all invocations.
 Cluster cluster;
 Page page;
-uint own_points, ghost_points, neighbour_count, own_seams, ghost_seams;
+uint own_points, ghost_points, own_seams;
 uvec4 kind_counts; ///< tets, pyramids, wedges, hexahedra
 uvec4 kind_ends;   ///< the group behind the last one of each
 uvec4 kind_words;  ///< the first word of each
-uint seams_at;     ///< word of the page
-uint ghost_points_at, seam_indices_at; ///< bytes of the page
-uint index_bytes;  ///< of a ghost seam's index: 1 or 2
 
 void open_cluster(Tables tables, uint number) {
     cluster = Clusters(tables.clusters).at[number];
@@ -28,16 +25,19 @@ void open_cluster(Tables tables, uint number) {
         kind_ends[kind] = kind_ends[kind - 1u] + (kind_counts[kind] + group_size / 2u - 1u) / (group_size / 2u);
         if (kind < 3u) kind_words[kind + 1u] = kind_words[kind] + 2u * kind_counts[kind];
     }
-    neighbour_count = cluster.tets >> 16;
     own_seams = cluster.seams & own_seams_bits;
-    index_bytes = (cluster.seams & wide_seams_flag) == 0u ? 1u : 2u;
-    ghost_seams = cluster.seams >> 16;
-    seams_at = page.links + cluster.first_link + 3u * neighbour_count;
-    ghost_points_at = 4u * seams_at + 2u * (own_seams + ghost_seams);
-    seam_indices_at = ghost_points_at + ghost_points;
 }
 
 uint local_points() { return ghost_points + own_points; }
+
+// Where the cluster's parts lie is worked out where it is used: kept from the start, it would take registers from the
+// cutting of cells.
+uint neighbour_count() { return cluster.tets >> 16; }
+uint ghost_seams() { return cluster.seams >> 16; }
+uint seams_at() { return page.links + cluster.first_link + 3u * neighbour_count(); }  ///< word of the page
+uint ghost_points_at() { return 4u * seams_at() + 2u * (own_seams + ghost_seams()); } ///< byte of the page
+uint seam_indices_at() { return ghost_points_at() + ghost_points; }                   ///< byte of the page
+uint index_bytes() { return (cluster.seams & wide_seams_flag) == 0u ? 1u : 2u; } ///< of a ghost seam's index
 
 /// A word of the page. Its address is made of numbers here: SwiftShader keeps a global that is a reference in half of the bytes
 /// it takes, and so overwrites the one behind.
@@ -54,7 +54,7 @@ Neighbour neighbour_at(uint place) {
 /// points, 16 for seams.
 Neighbour neighbour_of(uint k, uint shift) {
     const uint begins_at = page.links + cluster.first_link + 2u;
-    uint first = 0u, end = neighbour_count;
+    uint first = 0u, end = neighbour_count();
     while (end - first > 1u) {
         const uint middle = (first + end) / 2u;
         const uint begin = page_word(begins_at + 3u * middle) >> shift & 0xffffu;
@@ -65,7 +65,7 @@ Neighbour neighbour_of(uint k, uint shift) {
 }
 
 /// Ghost point `k`: its place among the points that its neighbour has in this page.
-uint ghost_place(uint k) { return page_byte(ghost_points_at + k); }
+uint ghost_place(uint k) { return page_byte(ghost_points_at() + k); }
 
 /// The page-local number of local point `k`.
 uint page_point(uint k) {
@@ -107,14 +107,14 @@ uint range_of_group(uint group) {
 
 /// (lower, higher) local index of own seam `k`; those of ghost seams stand behind.
 uvec2 own_seam(uint k) {
-    const uint pair = page_word(seams_at + k / 2u) >> 16u * (k % 2u);
+    const uint pair = page_word(seams_at() + k / 2u) >> 16u * (k % 2u);
     return uvec2(pair & 0xffu, pair >> 8 & 0xffu);
 }
 
 /// (lower, higher, index among the owner's own seams) of ghost seam `k`.
 uvec3 ghost_seam(uint k) {
-    const uint at = seam_indices_at + index_bytes * k;
-    return uvec3(own_seam(own_seams + k), page_byte(at) | (index_bytes == 1u ? 0u : page_byte(at + 1u) << 8));
+    const uint at = seam_indices_at() + index_bytes() * k;
+    return uvec3(own_seam(own_seams + k), page_byte(at) | (index_bytes() == 1u ? 0u : page_byte(at + 1u) << 8));
 }
 
 #endif
