@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -82,6 +83,11 @@ struct ReadActiveCells {
     std::optional<SliceShape> shape = {}; ///< slice_field() in place of `field`
 };
 
+/// Where inspect() leaves a file that it had to read whole, so that read() need not read it again. Nothing of it is left
+/// when read() has taken it; a file that was changed meanwhile is read again.
+class KeptFiles;
+ISOTET_API std::shared_ptr<KeptFiles> keep_files();
+
 struct ReadOptions {
     std::string format;                                                ///< empty: by content, then by name
     std::optional<std::vector<std::string>> point_fields, cell_fields; ///< names to read; nothing: all
@@ -103,6 +109,7 @@ struct ReadOptions {
     std::optional<ReadActiveCells> active_cells = {}; ///< where that can be done while reading (VTU, PVTU, VTM, PVD,
                                                       ///< VTKHDF of one piece, binary legacy VTK; linear cells, no cell
                                                       ///< fields, points that do not coincide); else all are read
+    std::shared_ptr<KeptFiles> kept = {}; ///< keep_files(); the same for inspect() and the read() behind it
 };
 
 struct ReadResult {

@@ -13,6 +13,7 @@
 #include <fmt/core.h>
 
 #include "io/files/escape.hpp"
+#include "io/files/kept_files.hpp"
 #include "io/files/text_scanner.hpp"
 #include "io/files/whole_file.hpp"
 #include "io/foam/read_openfoam.hpp"
@@ -76,10 +77,13 @@ std::string_view without_byte_order_mark(std::string_view text) {
 }
 
 template <class Value, class Parse>
-Result<Value> with_file(const std::string& path, const Progress& progress, std::size_t most, const Parse& parse) {
-    const auto file = WholeFile::read(path, progress, most);
+Result<Value> with_file(const std::string& path, const Result<WholeFile>& file, const Parse& parse) {
     if (!file) return file.error();
     return in_file<Value>(path, parse(without_byte_order_mark(file->text())));
+}
+
+Result<WholeFile> beginning_of(const std::string& path, const Progress& progress) {
+    return WholeFile::read(path, progress, head_bytes);
 }
 
 int recognizes_gmsh(std::string_view head, std::string_view extension) {
@@ -89,8 +93,8 @@ int recognizes_gmsh(std::string_view head, std::string_view extension) {
     return by_content_or_name(content, extension == ".msh");
 }
 
-Result<FileInfo> inspect_gmsh_file(const std::string& path, const ReadOptions&, const Progress& progress) {
-    return with_file<FileInfo>(path, progress, WholeFile::all,
+Result<FileInfo> inspect_gmsh_file(const std::string& path, const ReadOptions& options, const Progress& progress) {
+    return with_file<FileInfo>(path, look_into_file(path, options, progress),
                                [&](std::string_view text) { return inspect_gmsh(text, progress); });
 }
 
@@ -110,7 +114,7 @@ std::optional<std::string> other_partition(const std::string& path) {
 }
 
 Result<ReadResult> read_gmsh_file(const std::string& path, const ReadOptions& options, const Progress& progress) {
-    auto result = with_file<ReadResult>(path, progress, WholeFile::all,
+    auto result = with_file<ReadResult>(path, take_file(path, options, progress),
                                         [&](std::string_view text) { return parse_gmsh(text, options, progress); });
     if (!result ||
         std::ranges::find(result->info.fields, "gmsh:partition", &FieldInfo::name) == result->info.fields.end())
@@ -146,11 +150,12 @@ Result<Value> with_mesh_and_solution(const std::string& path, const ReadOptions&
                                      std::size_t most, const Parse& parse) {
     const auto solution_path = solution_beside(path);
     if (!solution_path)
-        return with_file<Value>(path, progress, most, [&](std::string_view mesh) { return parse(mesh, std::nullopt); });
+        return with_file<Value>(path, WholeFile::read(path, progress, most),
+                                [&](std::string_view mesh) { return parse(mesh, std::nullopt); });
     if (auto allowed = check_companion(path, *solution_path, options); !allowed) return allowed.error();
     const auto solution = WholeFile::read(*solution_path, progress);
     if (!solution) return solution.error();
-    auto result = with_file<Value>(path, progress, most, [&](std::string_view mesh) {
+    auto result = with_file<Value>(path, WholeFile::read(path, progress, most), [&](std::string_view mesh) {
         return parse(mesh, std::optional(without_byte_order_mark(solution->text())));
     });
     if (result) add_file(*result, *solution_path);
@@ -213,12 +218,12 @@ int recognizes_gocad(std::string_view head, std::string_view extension) {
 }
 
 Result<FileInfo> inspect_gocad_file(const std::string& path, const ReadOptions&, const Progress& progress) {
-    return with_file<FileInfo>(path, progress, head_bytes,
+    return with_file<FileInfo>(path, beginning_of(path, progress),
                                [&](std::string_view text) { return inspect_gocad(text, progress); });
 }
 
 Result<ReadResult> read_gocad_file(const std::string& path, const ReadOptions& options, const Progress& progress) {
-    return with_file<ReadResult>(path, progress, WholeFile::all,
+    return with_file<ReadResult>(path, take_file(path, options, progress),
                                  [&](std::string_view text) { return parse_gocad(text, options, progress); });
 }
 
@@ -226,13 +231,13 @@ int recognizes_frd(std::string_view head, std::string_view extension) {
     return by_content_or_name(looks_like_frd(head), extension == ".frd");
 }
 
-Result<FileInfo> inspect_frd_file(const std::string& path, const ReadOptions&, const Progress& progress) {
-    return with_file<FileInfo>(path, progress, WholeFile::all,
+Result<FileInfo> inspect_frd_file(const std::string& path, const ReadOptions& options, const Progress& progress) {
+    return with_file<FileInfo>(path, look_into_file(path, options, progress),
                                [&](std::string_view text) { return inspect_frd(text, progress); });
 }
 
 Result<ReadResult> read_frd_file(const std::string& path, const ReadOptions& options, const Progress& progress) {
-    return with_file<ReadResult>(path, progress, WholeFile::all,
+    return with_file<ReadResult>(path, take_file(path, options, progress),
                                  [&](std::string_view text) { return parse_frd(text, options, progress); });
 }
 
@@ -241,13 +246,13 @@ int recognizes_ucd(std::string_view head, std::string_view extension) {
     return (extension == ".inp" || extension == ".avs") && looks_like_ucd(head) ? 2 : 0;
 }
 
-Result<FileInfo> inspect_ucd_file(const std::string& path, const ReadOptions&, const Progress& progress) {
-    return with_file<FileInfo>(path, progress, WholeFile::all,
+Result<FileInfo> inspect_ucd_file(const std::string& path, const ReadOptions& options, const Progress& progress) {
+    return with_file<FileInfo>(path, look_into_file(path, options, progress),
                                [&](std::string_view text) { return inspect_ucd(text, progress); });
 }
 
 Result<ReadResult> read_ucd_file(const std::string& path, const ReadOptions& options, const Progress& progress) {
-    return with_file<ReadResult>(path, progress, WholeFile::all,
+    return with_file<ReadResult>(path, take_file(path, options, progress),
                                  [&](std::string_view text) { return parse_ucd(text, options, progress); });
 }
 

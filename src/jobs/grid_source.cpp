@@ -211,6 +211,7 @@ Result<GridSource> GridSource::open(const GridOptions& options, Caller& caller) 
     read_options.blocks = options.blocks;
     read_options.more_files = options.more_files;
     read_options.step = options.step;
+    read_options.kept = keep_files();
     Result<FileInfo> info = inspect(options.file, read_options, caller.run());
     if (!info && options.step) { // choose_steps() refuses a step that is not there
         read_options.step.reset();

@@ -2,7 +2,9 @@
 // Files that change while they are read: an error or the file as it was, never the end of the process.
 #include <atomic>
 #include <filesystem>
+#include <fstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -11,6 +13,7 @@
 
 #include "io/files/plain_file.hpp"
 #include "io/files/whole_file.hpp"
+#include "readers/gmsh_sample.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace isotet::test {
@@ -26,6 +29,34 @@ TEST(WholeFile, HoldsEveryByte) {
     const std::string path = folder.write("file", content);
     EXPECT_TRUE(WholeFile::read(path, {}).value().text() == content);
     EXPECT_TRUE(WholeFile::read(path, {}, 5'000'000).value().text() == content.substr(0, 5'000'000));
+}
+
+/// Writes other bytes over the beginning of a file, which looks as old as before.
+void change_unseen(const std::string& path, std::string_view bytes) {
+    const auto time = std::filesystem::last_write_time(path);
+    std::fstream(path, std::ios::in | std::ios::out | std::ios::binary) << bytes;
+    std::filesystem::last_write_time(path, time);
+}
+
+TEST(KeptFiles, AreReadOnceForLookingAndReading) {
+    const TemporaryFolder folder;
+    const std::string path = folder.write("grid.msh", gmsh_sample({}));
+    ReadOptions options;
+    options.kept = keep_files();
+    ASSERT_TRUE(inspect(path, options));
+    change_unseen(path, "no mesh");
+    EXPECT_TRUE(read(path, options)) << "the bytes that inspect() read";
+    EXPECT_FALSE(read(path, options)) << "they were taken";
+}
+
+TEST(KeptFiles, AreReadAgainWhereTheyWereChanged) {
+    const TemporaryFolder folder;
+    const std::string path = folder.write("grid.msh", gmsh_sample({}));
+    ReadOptions options;
+    options.kept = keep_files();
+    ASSERT_TRUE(inspect(path, options));
+    folder.write("grid.msh", "no mesh");
+    EXPECT_FALSE(read(path, options));
 }
 
 TEST(WholeFile, ThatBecameShorterIsAnError) {
