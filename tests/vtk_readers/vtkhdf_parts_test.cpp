@@ -291,5 +291,36 @@ TEST_F(ReadVtkhdfParts, LeavesUnwrittenFieldsOfImagesOut) {
     EXPECT_EQ(result->info.left_out[0].name, "q");
 }
 
+TEST_F(ReadVtkhdfParts, ImagesOfACollectionAreBlocks) {
+    {
+        Hdf5Writer file(folder_.file("a.vtkhdf"));
+        file.group("/VTKHDF");
+        file.attribute("/VTKHDF", "Version", Counts{2, 3});
+        file.attribute("/VTKHDF", "Type", "PartitionedDataSetCollection");
+        for (const std::int64_t at : {0, 1}) {
+            const std::string group = at == 0 ? "/VTKHDF/right" : "/VTKHDF/left"; // by Index, not by name
+            for (const char* part : {"", "/PointData", "/CellData"}) file.group(group + part);
+            file.attribute(group, "Type", "ImageData");
+            file.attribute(group, "Index", Counts{at});
+            file.attribute(group, "WholeExtent", Counts{0, 1, 0, 1, 0, 1});
+            file.real_attribute(group, "Origin", {static_cast<double>(at), 0, 0});
+            file.real_attribute(group, "Spacing", {1, 1, 1});
+            file.data<double>(group + "/CellData/c", {static_cast<double>(10 + at)}, {1, 1, 1});
+        }
+    }
+    const auto all = read(folder_.file("a.vtkhdf"));
+    ASSERT_TRUE(all) << all.error().message;
+    EXPECT_EQ(all->grid.cells.count(), 2u);
+    EXPECT_EQ(all->grid.points.tuples(), 12u) << "joined";
+    ASSERT_EQ(all->info.blocks.size(), 2u);
+    EXPECT_EQ(all->info.blocks[1].name, "left");
+    EXPECT_EQ(all->info.blocks[1].cells, 1u);
+    ReadOptions options;
+    options.blocks = {"left"};
+    const auto left = read(folder_.file("a.vtkhdf"), options);
+    ASSERT_TRUE(left) << left.error().message;
+    EXPECT_EQ(left->grid.cell_fields.at(0).values.at(0), 11);
+}
+
 } // namespace
 } // namespace isotet::test

@@ -2,6 +2,7 @@
 // VTKHDF: unstructured grids, versions 1 and 2, alone or in collections, images, and overlapping boxes on levels.
 #include <algorithm>
 #include <limits>
+#include <variant>
 
 #include <fmt/core.h>
 
@@ -37,21 +38,52 @@ Result<Loaded> load_grid(const std::string& path, const ReadOptions& options, De
     return loaded;
 }
 
-/// The unstructured grids of a collection, in its order.
-std::vector<std::string> grids_of(const std::string& path, FileInfo& info) {
+/// A grid of a collection.
+struct CollectedGrid {
+    std::string name;
+    std::variant<HdfGrid, HdfImage> grid;
+
+    Result<void> announce(FileInfo& info) const {
+        if (const auto* unstructured = std::get_if<HdfGrid>(&grid)) return unstructured->announce_all(info);
+        std::get<HdfImage>(grid).announce(info);
+        return {};
+    }
+    Result<std::uint64_t> count_cells(std::size_t step) const {
+        const auto* unstructured = std::get_if<HdfGrid>(&grid);
+        return unstructured ? unstructured->count_cells(step) : std::get<HdfImage>(grid).cells();
+    }
+    Result<void> load(const ReadOptions& options, Loaded& loaded) const {
+        if (const auto* unstructured = std::get_if<HdfGrid>(&grid))
+            return unstructured->load(options, loaded.step, name + ", ", loaded);
+        return std::get<HdfImage>(grid).load(options, name, loaded);
+    }
+};
+
+/// The unstructured grids and images of a collection, in its order.
+Result<std::vector<CollectedGrid>> grids_of_collection(const std::string& path, const Hdf5Rows& rows, FileInfo& info) {
     std::vector<std::pair<std::int64_t, std::string>> found;
     for (const std::string& name : groups_of(path, "/VTKHDF")) {
         const std::string type = text_attribute(path, "/VTKHDF/" + name, "Type");
         const auto index = integer_attribute(path, "/VTKHDF/" + name, "Index");
-        if (type == "UnstructuredGrid")
+        if (type == "UnstructuredGrid" || type == "ImageData")
             found.emplace_back(index.value_or(std::numeric_limits<std::int64_t>::max()), name);
         else if (!type.empty())
-            leave_out(info, {"block", name, fmt::format("it is of type {}, not UnstructuredGrid", escaped(type))});
+            leave_out(info,
+                      {"block", name, fmt::format("it is of type {}, not UnstructuredGrid or ImageData", escaped(type))});
     }
     std::ranges::sort(found);
-    std::vector<std::string> names;
-    for (auto& [index, name] : found) names.push_back(std::move(name));
-    return names;
+    std::vector<CollectedGrid> all;
+    for (const auto& [index, name] : found) {
+        const std::string group = "/VTKHDF/" + name;
+        if (text_attribute(path, group, "Type") == "UnstructuredGrid") {
+            all.push_back({name, HdfGrid(path, rows, group + "/")});
+            continue;
+        }
+        auto image = HdfImage::open(path, group);
+        if (!image) return image.error();
+        all.push_back({name, *std::move(image)});
+    }
+    return all;
 }
 
 /// A file of several grids, which are blocks.
@@ -59,26 +91,24 @@ Result<Loaded> load_collection(const std::string& path, const ReadOptions& optio
     const auto rows = Hdf5Rows::open(path);
     if (!rows) return rows.error();
     Loaded loaded;
-    const std::vector<std::string> names = grids_of(path, loaded.info);
-    std::vector<HdfGrid> grids;
-    for (const std::string& name : names) {
-        const HdfGrid& grid = grids.emplace_back(path, *rows, "/VTKHDF/" + name + "/");
-        if (auto done = grid.announce_all(loaded.info); !done) return done.error();
-    }
-    if (grids.empty()) return broken(path, "it has no unstructured grid");
+    const auto grids = grids_of_collection(path, *rows, loaded.info);
+    if (!grids) return grids.error();
+    for (const CollectedGrid& grid : *grids)
+        if (auto done = grid.announce(loaded.info); !done) return done.error();
+    if (grids->empty()) return broken(path, "it has no unstructured grid or image");
     const auto step = choose_step(loaded.info, options);
     if (!step) return step.error();
     loaded.step = *step;
-    for (std::size_t i = 0; i < grids.size(); ++i) {
-        const auto cells = grids[i].count_cells(loaded.step);
+    for (std::size_t i = 0; i < grids->size(); ++i) {
+        const auto cells = (*grids)[i].count_cells(loaded.step);
         if (!cells) return cells.error();
-        loaded.info.blocks.push_back({static_cast<std::int64_t>(i + 1), names[i], "data set", *cells});
+        loaded.info.blocks.push_back({static_cast<std::int64_t>(i + 1), (*grids)[i].name, "data set", *cells});
     }
     const auto chosen = chosen_blocks(loaded.info.blocks, options);
     if (!chosen) return chosen.error();
-    for (std::size_t i = 0; i < grids.size() && depth == Depth::arrays; ++i) {
+    for (std::size_t i = 0; i < grids->size() && depth == Depth::arrays; ++i) {
         if (!(*chosen)[i]) continue;
-        if (auto done = grids[i].load(options, loaded.step, names[i] + ", ", loaded); !done) return done.error();
+        if (auto done = (*grids)[i].load(options, loaded); !done) return done.error();
     }
     return loaded;
 }

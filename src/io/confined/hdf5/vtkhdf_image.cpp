@@ -14,36 +14,8 @@
 #include "io/vtk_xml/load.hpp"
 
 namespace isotet::io::confined {
-namespace {
-
-constexpr const char* root = "/VTKHDF";
-
-class HdfImage {
-public:
-    static Result<HdfImage> open(const std::string& path);
-
-    void announce(FileInfo& info) const;
-    Result<void> load(const ReadOptions& options, Loaded& loaded) const;
-
-private:
-    explicit HdfImage(const std::string& path) : path_(path) {}
-
-    std::string group(Association association) const {
-        return std::string(root) + (association == Association::point ? "/PointData" : "/CellData");
-    }
-    bool is_flat() const { return size_.x < 2 || size_.y < 2 || size_.z < 2; }
-    Result<Array> read_field(Association association, const std::string& name, std::size_t step, Depth depth) const;
-    Result<void> load_fields(Association association, const ReadOptions& options, Loaded& loaded, Piece& piece) const;
-
-    const std::string& path_;
-    vtk_xml::GridSize size_;
-    vtk_xml::ImagePoints points_;
-    std::vector<double> times_;
-    bool has_steps_ = false;
-};
-
-Result<HdfImage> HdfImage::open(const std::string& path) {
-    HdfImage image(path);
+Result<HdfImage> HdfImage::open(const std::string& path, const std::string& root) {
+    HdfImage image(path, root);
     const auto extent = numbers_attribute(path, root, "WholeExtent");
     const auto origin = numbers_attribute(path, root, "Origin"), spacing = numbers_attribute(path, root, "Spacing");
     auto direction = numbers_attribute(path, root, "Direction");
@@ -65,7 +37,7 @@ Result<HdfImage> HdfImage::open(const std::string& path) {
             image.points_.matrix[3 * row + axis] = direction[3 * row + axis] * spacing[axis];
     }
     image.size_ = {along[0], along[1], along[2]};
-    const std::string steps = std::string(root) + "/Steps";
+    const std::string steps = root + "/Steps";
     if (const auto times = read_hdf5_array(path, steps + "/Values", {}, Depth::arrays)) {
         image.has_steps_ = true;
         for (std::size_t i = 0; i < times->values.size(); ++i) image.times_.push_back(times->values.at(i));
@@ -105,7 +77,7 @@ Result<Array> HdfImage::read_field(Association association, const std::string& n
 }
 
 void HdfImage::announce(FileInfo& info) const {
-    info.times = times_;
+    if (info.times.empty()) info.times = times_;
     for (const Association association : {Association::point, Association::cell})
         for (const std::string& name : data_sets_of(path_, group(association))) {
             if (vtk_xml::is_ghost_array(name) || (association == Association::cell && is_flat())) continue;
@@ -129,8 +101,11 @@ Result<void> HdfImage::load_fields(Association association, const ReadOptions& o
     return {};
 }
 
-Result<void> HdfImage::load(const ReadOptions& options, Loaded& loaded) const {
+std::uint64_t HdfImage::cells() const { return is_flat() ? 0 : (size_.x - 1) * (size_.y - 1) * (size_.z - 1); }
+
+Result<void> HdfImage::load(const ReadOptions& options, const std::string& name, Loaded& loaded) const {
     Piece piece;
+    piece.name = name;
     auto points = vtk_xml::points_of(size_, points_);
     if (!points) return points.error();
     piece.grid.points = *std::move(points);
@@ -145,10 +120,8 @@ Result<void> HdfImage::load(const ReadOptions& options, Loaded& loaded) const {
     return {};
 }
 
-} // namespace
-
 Result<Loaded> load_vtkhdf_image(const std::string& path, const ReadOptions& options, Depth depth) {
-    const auto image = HdfImage::open(path);
+    const auto image = HdfImage::open(path, "/VTKHDF");
     if (!image) return image.error();
     Loaded loaded;
     image->announce(loaded.info);
@@ -156,7 +129,7 @@ Result<Loaded> load_vtkhdf_image(const std::string& path, const ReadOptions& opt
     if (!step) return step.error();
     loaded.step = *step;
     if (depth == Depth::description) return loaded;
-    if (auto done = image->load(options, loaded); !done) return done.error();
+    if (auto done = image->load(options, "", loaded); !done) return done.error();
     return loaded;
 }
 

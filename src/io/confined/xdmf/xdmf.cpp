@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // XDMF 2 and 3: the grids of a time step, one for each mesh.
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -7,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "io/amr/boxes_as_pieces.hpp"
 #include "io/confined/loaders.hpp"
 #include "io/confined/progress.hpp"
 #include "io/confined/xdmf/xdmf_blocks.hpp"
@@ -22,7 +24,7 @@ namespace {
 class XdmfLoader {
 public:
     XdmfLoader(const XdmfFile& file, const XdmfSteps& steps, const ReadOptions& options, Depth depth)
-        : file_(file), steps_(steps), options_(options), depth_(depth), fields_(file_, options) {}
+        : file_(file), steps_(steps), options_(options), depth_(depth), fields_(file_, field_options_) {}
 
     Result<Loaded> load() {
         for (const LeftOut& item : steps_.left_out) leave_out(loaded_.info, item);
@@ -36,6 +38,7 @@ public:
         if (!blocks) return blocks.error();
         blocks_ = std::move(blocks->blocks);
         for (LeftOut& item : blocks->left_out) leave_out(loaded_.info, std::move(item));
+        if (auto found = find_levels(); !found) return found.error();
         if (auto announced = announce_blocks(); !announced) return announced.error();
         if (auto read = read_blocks(); !read) return read.error();
         if (depth_ == Depth::arrays || !options_.step) announce_other_steps();
@@ -43,9 +46,34 @@ public:
     }
 
 private:
+    /// Where all blocks are read, and all are evenly spaced.
+    Result<void> find_levels() {
+        if (blocks_.size() < 2 || !options_.blocks.empty()) return {};
+        std::vector<XdmfImage> images;
+        for (const XdmfBlock& block : blocks_) {
+            const auto mesh = described(block.geometry, block.topology);
+            if (!mesh) return mesh.error();
+            if (!mesh->image) return {};
+            images.push_back(*mesh->image);
+        }
+        levels_ = levels_of(images);
+        if (levels_) field_options_ = amr::options_of_boxes(options_);
+        return {};
+    }
+    /// The boxes of the levels as pieces of one grid.
+    Result<void> join_levels() {
+        amr::announce_point_values(loaded_.info);
+        if (depth_ == Depth::description) return {};
+        std::vector<Piece> pieces;
+        for (const std::size_t i : levels_->order) pieces.push_back(std::move(loaded_.pieces[i]));
+        loaded_.pieces = std::move(pieces);
+        const auto joined = amr::boxes_as_pieces(levels_->hierarchy, options_, loaded_, {});
+        return joined ? Result<void>{} : in_file(file_.path, joined.error());
+    }
+
     /// Of several meshes.
     Result<void> announce_blocks() {
-        if (blocks_.size() > 1)
+        if (blocks_.size() > 1 && !levels_)
             for (std::size_t i = 0; i < blocks_.size(); ++i) {
                 const auto mesh = described(blocks_[i].geometry, blocks_[i].topology);
                 if (!mesh) return mesh.error();
@@ -53,7 +81,7 @@ private:
             }
         auto chosen = chosen_blocks(loaded_.info.blocks, options_);
         if (!chosen) return chosen.error();
-        chosen_ = blocks_.size() > 1 ? *std::move(chosen) : std::vector<bool>(blocks_.size(), true);
+        chosen_ = blocks_.size() > 1 && !levels_ ? *std::move(chosen) : std::vector<bool>(blocks_.size(), true);
         return {};
     }
     Result<XdmfMesh> described(pugi::xml_node geometry, pugi::xml_node topology) const {
@@ -74,12 +102,12 @@ private:
             }
             report_progress(static_cast<double>(i + 1) / static_cast<double>(blocks_.size()));
         }
-        take_fields_of_same_cells(pieces, loaded_.notes);
+        if (!levels_) take_fields_of_same_cells(pieces, loaded_.notes);
         for (NamedPiece& piece : pieces) {
             if (piece.edges) make_quadratic(piece.piece.grid, *piece.edges);
             loaded_.pieces.push_back(std::move(piece.piece));
         }
-        return {};
+        return levels_ ? join_levels() : Result<void>{};
     }
     Result<XdmfMesh> read_block(const XdmfBlock& block, Depth depth) {
         auto mesh = read_mesh(file_, block.geometry, block.topology, depth, loaded_.notes);
@@ -133,6 +161,8 @@ private:
     const XdmfFile file_;
     const XdmfSteps& steps_;
     const ReadOptions& options_;
+    ReadOptions field_options_ = options_;
+    std::optional<XdmfLevels> levels_; ///< where the blocks are boxes on levels
     Depth depth_;
     XdmfFieldReader fields_;
     std::vector<XdmfBlock> blocks_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -53,6 +54,24 @@ std::vector<double> doubles(const Array& values) {
     std::vector<double> out(values.size());
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = values.at(i);
     return out;
+}
+
+/// Nothing where some are not evenly spaced.
+std::optional<XdmfImage> image_of(const std::array<std::vector<double>, 3>& ticks) {
+    constexpr double uneven = 1e-4; // of a cell
+    XdmfImage image;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::vector<double>& along = ticks[axis];
+        if (along.size() < 2) return std::nullopt;
+        const double spacing = (along.back() - along.front()) / static_cast<double>(along.size() - 1);
+        for (std::size_t i = 0; i < along.size(); ++i)
+            if (!(std::abs(along[i] - along.front() - static_cast<double>(i) * spacing) <= uneven * spacing))
+                return std::nullopt;
+        image.origin[axis] = along.front();
+        image.spacing[axis] = spacing;
+        image.cells[axis] = along.size() - 1;
+    }
+    return image;
 }
 
 class MeshReader {
@@ -141,7 +160,7 @@ private:
         return {};
     }
     Result<void> along_axes() {
-        const auto all = columns(3, depth_);
+        const auto all = columns(3, Depth::arrays);
         if (!all) return all.error();
         const std::array<std::uint64_t, 3> size{size_->x, size_->y, size_->z};
         std::array<std::vector<double>, 3> ticks;
@@ -152,6 +171,7 @@ private:
             ticks[axis] = doubles((*all)[axis].values);
         }
         mesh_.points = points_of_size();
+        mesh_.image = image_of(ticks);
         return take_points([&] { return vtk_xml::points_of(*size_, ticks); });
     }
     /// Origin and spacing, slowest axis first.
@@ -167,6 +187,9 @@ private:
             image.matrix[4 * axis] = (*all)[1].values.at(2 - axis);
         }
         mesh_.points = points_of_size();
+        mesh_.image = XdmfImage{image.origin,
+                                {image.matrix[0], image.matrix[4], image.matrix[8]},
+                                {size_->x - 1, size_->y - 1, size_->z - 1}};
         return take_points([&] { return vtk_xml::points_of(*size_, image); });
     }
     template <class Make>

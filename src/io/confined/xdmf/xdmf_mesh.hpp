@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +15,7 @@
 #include <isotet/grid.hpp>
 #include <isotet/result.hpp>
 
+#include "io/confined/xdmf/xdmf_amr.hpp"
 #include "io/confined/xdmf/xdmf_data.hpp"
 #include "io/confined/xdmf/xdmf_document.hpp"
 #include "io/confined/xdmf/xdmf_quadratic.hpp"
@@ -35,6 +37,7 @@ struct XdmfMesh {
     std::uint64_t points = 0, cells = 0;
     Grid grid = {};
     std::map<std::string, pugi::xml_node> fields = {}; ///< those that were read, by association and name
+    std::optional<XdmfImage> image = {};               ///< where the points are evenly spaced, the axes those of space
     std::shared_ptr<const TetEdges> edges = nullptr;   ///< where fields have values on them, behind those at points
 };
 
