@@ -92,6 +92,14 @@ Result<std::optional<FieldChart>> make_chart(const InfoJob& job, const Grid& gri
     return std::optional(FieldChart{name, *std::move(spectrum)});
 }
 
+/// Which count of hanging points is right. What extraction closes is known exactly; by places alone points near edges that
+/// look at each other count, too, so these are taken where something stays open: faces that do not fit, doubled points.
+std::uint64_t count_of(const HangingReport& closed, std::uint64_t by_places, const GridReport& grid) {
+    if (closed.curved_points > 0) return closed.curved_points; // of the corners
+    const bool knows_all = closed.points > 0 && closed.open_faces == 0 && grid.duplicate_points == 0;
+    return knows_all ? closed.points : std::max(by_places, closed.points);
+}
+
 } // namespace
 
 Result<GridSummary> look_into(const InfoJob& job, Caller& caller) {
@@ -121,8 +129,7 @@ Result<GridSummary> look_into(const InfoJob& job, Caller& caller) {
         const Result<ClosedGrid> closed = close_hanging_points(*grid, caller.run());
         if (!closed) return closed.error();
         summary.hanging = closed->report;
-        const HangingReport& found = closed->report; // has more of warped faces, of curved cells the corners
-        summary.hanging_points = found.curved_points > 0 ? found.curved_points : std::max(*hanging, found.points);
+        summary.hanging_points = count_of(closed->report, *hanging, summary.report);
     }
     Result<std::vector<FieldSummary>> fields = summarize(*grid, caller.run());
     if (!fields) return fields.error();

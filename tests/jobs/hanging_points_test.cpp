@@ -12,6 +12,7 @@
 #include "jobs/listener.hpp"
 #include "support/quadratic_grid.hpp"
 #include "support/small_grid.hpp"
+#include "support/places.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace isotet::jobs {
@@ -139,6 +140,15 @@ TEST(HangingPointJobs, SaysNothingOfGridsWithoutThem) {
     const std::string out = folder.file("surface.vtp");
     ASSERT_TRUE(extract_files(job_for("make:mixed:4:sphere", out, HangingChoice::close), heard));
     EXPECT_FALSE(has_note(heard, "hang"));
+}
+
+TEST(HangingPointJobs, CountPointsOnEdgesAndFacesOfLargerCellsOnly) {
+    InfoJob job;
+    job.grid.file = test::source_folder().string() + "/data/vtk/mfem_levels_tet.vtk";
+    job.grid.merge_points = 0;
+    job.survey = true;
+    test::Listener heard;
+    EXPECT_EQ(look_into(job, heard).value().hanging_points, 116u) << "by a test of all points against all edges and faces";
 }
 
 TEST(HangingPointJobs, TellWhatIsClosed) {
