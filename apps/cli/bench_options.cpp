@@ -67,7 +67,7 @@ Command add_bench_command(const Command& program, BenchCommand& bench) {
         .needs(paper);
     add_field(command, bench.field, "The field to contour, or an expression such as mag(U); default: the one that info says is shown first")
         .excludes(paper);
-    add_isovalues(command, bench.isovalues).excludes(paper);
+    add_isovalues(command, bench.isovalues, bench.shares).excludes(paper);
     add_list(command, "--methods", bench.methods, all_bench_methods,
              "Methods, separated by commas; default: all that run on this machine");
     add_list(command, "--indexes", bench.indexes, all_search_indexes,

@@ -2,6 +2,7 @@
 #include <charconv>
 
 #include "command_options.hpp"
+#include "shape_text.hpp"
 
 namespace isotet::cli {
 

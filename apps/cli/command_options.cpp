@@ -415,7 +415,7 @@ void add_check(const Command& program, CheckCommand& check) {
     command.option("--cell-field").needs(grid);
     add_time(command, check.grid);
     command.add_flag("--split-cells", check.split_cells, "The surface was made with --split-cells").needs(grid);
-    add_isovalues(command, check.isovalues).needs(grid);
+    add_isovalues(command, check.isovalues, check.shares).needs(grid);
     add_refinement(command, check.refine, &check.refine_averaged);
     for (const char* name : {"--tolerance", "--distance", "--geometry-tolerance"}) command.option(name).needs(grid);
     command.add_flag("--strict", check.strict, "Fail for more: see below");
@@ -653,34 +653,12 @@ void add_out_and_more_files(const Command& command, GridOptions& grid, std::stri
         "FILES", std::string(more_files_text) + "; OUT is then the last name");
 }
 
-Option add_isovalues(const Command& command, std::vector<double>& isovalues) {
-    return command.add_numbers("-i,--isovalue", isovalues, "V[,W...]",
-                               "Isovalues, separated by commas, or @NAME: from that file, separated by blanks, commas "
-                               "or line ends, # begins a comment; may be repeated");
-}
-
 /// "0,2" as 0.2; nothing for other text.
 std::optional<double> with_decimal_comma(std::string text) {
     const std::size_t comma = text.find(',');
     if (comma == std::string::npos || text.find_first_not_of("-0123456789,") != std::string::npos) return {};
     text[comma] = '.';
     return parse_number(text);
-}
-
-std::optional<IsovalueShare> parse_share(std::string_view word) {
-    IsovalueShare share;
-    if (word.ends_with("%v")) {
-        word.remove_suffix(2);
-    } else if (word.starts_with('p')) {
-        word.remove_prefix(1);
-        share.of = IsovalueShare::Of::points;
-    } else {
-        return {};
-    }
-    const std::optional<double> percent = parse_number(word);
-    if (!percent || !(*percent >= 0 && *percent <= 100)) return {};
-    share.percent = *percent;
-    return share;
 }
 
 double parse_end(const std::string& option, std::string_view text) {

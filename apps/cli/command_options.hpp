@@ -18,8 +18,6 @@ void add_grid_and_surface(const Command& command, ExtractJob& job);
 /// What surfaces are like, and how they are made. `solids` is the help of --solid.
 void add_surface_options(const Command& command, ExtractJob& job, const std::string& solids);
 void add_common(const Command& command, CommonOptions& common);
-/// "90%v" and "p95"; nothing for other words.
-std::optional<IsovalueShare> parse_share(std::string_view word);
 /// A finite number.
 double parse_end(const std::string& option, std::string_view text);
 /// "0.1:0.5"; its ends may be shares.
@@ -44,8 +42,7 @@ void add_more_files(const Command& command, GridOptions& grid);
 /// The same, and OUT among them: the last name that is not one of a grid only. -o is there already.
 void add_out_and_more_files(const Command& command, GridOptions& grid, std::string& out, const std::string& what);
 
-Option add_isovalues(const Command& command, std::vector<double>& isovalues);
-/// Takes shares, too.
+/// `isovalues` are numbers, `shares` the others.
 ///
 /// `decimal_comma`   becomes what two isovalues are with a comma for a decimal sign; may be null
 Option add_isovalues(const Command& command, std::vector<double>& isovalues, std::vector<IsovalueShare>& shares,

@@ -56,6 +56,23 @@ PackJob pack_job_of(const ExportCommand& command, const std::string& out) {
     return job;
 }
 
+/// Those by share are of the first step.
+Result<std::vector<double>> isovalues_of(const ExportCommand& command, const std::string& field, Console& console) {
+    std::vector<double> isovalues = command.isovalues;
+    if (command.shares.empty()) return isovalues;
+    const auto source = GridSource::open(command.grid, console);
+    if (!source) return source.error();
+    const auto steps = choose_steps(source->info(), command.grid, Steps::one, console);
+    if (!steps) return steps.error();
+    Grid grid;
+    const auto values = read_field(*source, steps->front(), {field, command.field.cell_field}, {}, console, grid);
+    if (!values) return values.error();
+    const auto found = isovalues_at(grid, *values, command.shares, console.run());
+    if (!found) return found.error();
+    isovalues.insert(isovalues.end(), found->begin(), found->end());
+    return isovalues;
+}
+
 std::string bytes_of(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     std::ostringstream bytes;
@@ -95,8 +112,6 @@ Json grid_report(const ExportCommand& command, const PackNumbers& packed, std::s
 Result<ExitCode> run_export_grid(const ExportCommand& command) {
     Console console(command.common);
     if (ending_of(command.out) != ".html") return usage_error("OUT is '{}', but a page ends in .html", command.out);
-    if (!command.shares.empty())
-        return usage_error("--isovalue by share goes into pages of surfaces; that of a grid takes it in its own box");
     if (Result<void> checked = view::check_grid_pages(); !checked) return checked.error();
     if (Result<void> paths = check_output_paths({command.grid.file}, {command.out, command.common.json}); !paths)
         return paths.error();
@@ -110,7 +125,9 @@ Result<ExitCode> run_export_grid(const ExportCommand& command) {
     options.file = valid_utf8(std::filesystem::path(command.grid.file).filename().string());
     options.version = ISOTET_VERSION;
     options.state.field = packed->fields.front().name;
-    options.state.isovalues = command.isovalues;
+    const auto isovalues = isovalues_of(command, options.state.field, console);
+    if (!isovalues) return isovalues.error();
+    options.state.isovalues = *isovalues;
     options.state.color_by = command.color_by;
     options.notes = console.noted();
     const Result<std::string> html = view::grid_page(bytes_of(file), options);

@@ -223,6 +223,21 @@ void add_opacity(const Command& command, RenderCommand& render) {
                         "only drawn where --opacity is given");
 }
 
+/// Of the first two numbers each may be a share.
+Option add_sweep(const Command& command, RenderCommand& render) {
+    return command.add_numbers(
+        "--sweep", render.sweep, "A,B,N",
+        "N pictures, at isovalues from A to B: numbers, or shares such as 5%v or p95 (of the first step)",
+        {[&render](std::string_view word) {
+             const std::optional<IsovalueShare> share = parse_share(word);
+             if (!share || render.sweep.size() > 1) return false;
+             (render.sweep.empty() ? render.sweep_shares.lower : render.sweep_shares.upper) = share;
+             render.sweep.push_back(0); // until the grid is read
+             return true;
+         },
+         "finite numbers, of which the first two may be shares such as 90%v or p95"});
+}
+
 } // namespace
 
 Command add_render_command(const Command& program, RenderCommand& render) {
@@ -239,8 +254,7 @@ Command add_render_command(const Command& program, RenderCommand& render) {
             "--levels", {1, 100}, [&](std::uint64_t n) { render.levels = n; }, "N",
             "N isovalues at round numbers evenly inside the range of the field; default: 3")
         .excludes(isovalues);
-    const Option sweep = command.add_numbers("--sweep", render.sweep, "A,B,N", "N pictures, at isovalues from A to B")
-                             .excludes(isovalues);
+    const Option sweep = add_sweep(command, render).excludes(isovalues);
     sweep.excludes(command.option("--levels"));
     const Option orbit = command.add_count(
         "--orbit", {2, 100'000}, [&](std::uint64_t n) { render.orbit = n; }, "N",

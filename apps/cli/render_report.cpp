@@ -86,7 +86,7 @@ std::string render_table(const DrawJob& job, const DrawReport& drawn) {
     if (report.boundary_faces > 0) table.row({"boundary", grouped(report.boundary_faces) + " faces"});
     if (!job.sweep.empty())
         table.row({"isovalues",
-                   fmt::format("{}, {} to {}", picture.pictures, shortest(job.sweep[0]), shortest(job.sweep[1]))});
+                   fmt::format("{}, {} to {}", picture.pictures, shortest(input.sweep[0]), shortest(input.sweep[1]))});
     const std::vector<std::string> isovalues = isovalue_texts(*input.scene);
     for (std::size_t i = 0; i < isovalues.size() && job.sweep.empty(); ++i) {
         const ShownSurface& surface = input.scene->surfaces()[i];

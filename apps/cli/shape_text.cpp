@@ -10,16 +10,52 @@ namespace isotet::cli {
 
 namespace {
 
+/// Numbers and shares, separated by commas.
+struct Offsets {
+    std::vector<double> numbers;
+    std::vector<IsovalueShare> shares;
+};
+
+/// Nothing where one of them is neither.
+std::optional<Offsets> parse_offsets(std::string_view text) {
+    Offsets out;
+    for (std::size_t at = 0;;) {
+        const std::size_t end = text.find(',', at);
+        const std::string_view word = text.substr(at, end - at);
+        if (const auto share = parse_share(word)) out.shares.push_back(*share);
+        else if (const auto number = jobs::parse_number(word)) out.numbers.push_back(*number);
+        else return {};
+        if (end == std::string_view::npos) return out;
+        at = end + 1;
+    }
+}
+
 /// A place, and what follows it.
 struct PlaceText {
     std::array<double, 3> place{};
-    std::vector<double> rest;
+    Offsets rest;
 };
 
 std::optional<PlaceText> parse_place(std::string_view text) {
-    const std::vector<double> numbers = parse_numbers(text);
-    if (numbers.size() < 3) return {};
-    return PlaceText{{numbers[0], numbers[1], numbers[2]}, {numbers.begin() + 3, numbers.end()}};
+    std::size_t end = 0; // of the third number
+    for (int commas = 0; end < text.size(); ++end)
+        if (text[end] == ',' && ++commas == 3) break;
+    const std::vector<double> numbers = parse_numbers(text.substr(0, end));
+    if (numbers.size() != 3) return {};
+    PlaceText out{{numbers[0], numbers[1], numbers[2]}, {}};
+    if (end == text.size()) return out;
+    auto rest = parse_offsets(text.substr(end + 1));
+    if (!rest) return {};
+    out.rest = *std::move(rest);
+    return out;
+}
+
+/// With a shape of some size: that of the first number.
+ShapeText with_radii(SliceShape shape, Offsets radii) {
+    const double first = radii.numbers.empty() ? 1 : radii.numbers.front();
+    if (auto* sphere = std::get_if<Sphere>(&shape)) sphere->radius = first;
+    if (auto* cylinder = std::get_if<Cylinder>(&shape)) cylinder->radius = first;
+    return {shape, std::move(radii.numbers), std::move(radii.shares)};
 }
 
 std::optional<std::array<double, 3>> parse_axis(std::string_view text) {
@@ -34,6 +70,22 @@ std::optional<std::array<double, 3>> parse_axis(std::string_view text) {
 bool is_minus(const std::array<double, 3>& axis) { return axis[0] + axis[1] + axis[2] < 0; }
 
 } // namespace
+
+std::optional<IsovalueShare> parse_share(std::string_view word) {
+    IsovalueShare share;
+    if (word.ends_with("%v")) {
+        word.remove_suffix(2);
+    } else if (word.starts_with('p')) {
+        word.remove_prefix(1);
+        share.of = IsovalueShare::Of::points;
+    } else {
+        return {};
+    }
+    const std::optional<double> percent = jobs::parse_number(word);
+    if (!percent || !(*percent >= 0 && *percent <= 100)) return {};
+    share.percent = *percent;
+    return share;
+}
 
 std::vector<double> parse_numbers(std::string_view text) {
     std::vector<double> numbers;
@@ -57,7 +109,7 @@ std::optional<std::array<double, 3>> parse_direction(std::string_view text) {
 
 std::optional<Plane> parse_plane(const std::string& text) {
     const std::optional<ShapeText> planes = parse_planes(text);
-    if (!planes || planes->at.size() != 1 || text.find('@') != std::string::npos) return {};
+    if (!planes || planes->at.size() != 1 || !planes->shares.empty() || text.find('@') != std::string::npos) return {};
     return std::get<Plane>(planes->shape);
 }
 
@@ -72,14 +124,15 @@ std::optional<ShapeText> parse_planes(const std::string& text) {
                            after = std::string_view(text).substr(mark + 1);
     if (text[mark] == '=') {
         const auto axis = parse_axis(before);
-        std::vector<double> at = parse_numbers(after);
-        if (!axis || at.empty()) return {};
-        for (double& offset : at) offset = is_minus(*axis) ? -offset : offset;
-        return ShapeText{Plane{*axis, at.front()}, std::move(at)};
+        std::optional<Offsets> at = parse_offsets(after);
+        if (!axis || !at) return {};
+        for (double& offset : at->numbers) offset = is_minus(*axis) ? -offset : offset;
+        const double first = at->numbers.empty() ? 0 : at->numbers.front();
+        return ShapeText{Plane{*axis, first}, std::move(at->numbers), std::move(at->shares)};
     }
     const auto normal = parse_direction(before);
     const std::optional<PlaceText> place = parse_place(after);
-    if (!normal || !place || !place->rest.empty()) return {};
+    if (!normal || !place || std::ranges::count(after, ',') != 2) return {};
     const auto& [x, y, z] = place->place;
     const double offset = (*normal)[0] * x + (*normal)[1] * y + (*normal)[2] * z; // as slice_field() adds up
     return ShapeText{Plane{*normal, offset}, {offset}};
@@ -87,8 +140,8 @@ std::optional<ShapeText> parse_planes(const std::string& text) {
 
 std::optional<ShapeText> parse_spheres(const std::string& text) {
     std::optional<PlaceText> centre = parse_place(text);
-    if (!centre || centre->rest.empty()) return {};
-    return ShapeText{Sphere{centre->place, centre->rest.front()}, std::move(centre->rest)};
+    if (!centre || (centre->rest.numbers.empty() && centre->rest.shares.empty())) return {};
+    return with_radii(Sphere{centre->place, 1}, std::move(centre->rest));
 }
 
 std::optional<ShapeText> parse_cylinders(const std::string& text) {
@@ -96,8 +149,8 @@ std::optional<ShapeText> parse_cylinders(const std::string& text) {
     if (mark == std::string::npos) return {};
     const auto axis = parse_direction(std::string_view(text).substr(0, mark));
     std::optional<PlaceText> point = parse_place(std::string_view(text).substr(mark + 1));
-    if (!axis || !point || point->rest.empty()) return {};
-    return ShapeText{Cylinder{*axis, point->place, point->rest.front()}, std::move(point->rest)};
+    if (!axis || !point || (point->rest.numbers.empty() && point->rest.shares.empty())) return {};
+    return with_radii(Cylinder{*axis, point->place, 1}, std::move(point->rest));
 }
 
 } // namespace isotet::cli

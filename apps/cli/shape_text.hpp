@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include <isotet/isovalue_shares.hpp>
 #include <isotet/slice.hpp>
 
 namespace isotet::cli {
@@ -21,16 +22,20 @@ std::optional<Plane> parse_plane(const std::string& text);
 /// "x", "-x" (y and z alike) and "NX,NY,NZ".
 std::optional<std::array<double, 3>> parse_direction(std::string_view text);
 
-/// A shape, and all offsets or radii that were given.
+/// A shape, and all offsets or radii that were given, as numbers or as shares.
 struct ShapeText {
     SliceShape shape;
     std::vector<double> at;
+    std::vector<IsovalueShare> shares = {};
 };
 
-/// As parse_plane(), "x=0.1,0.2" and "DIRECTION@X,Y,Z".
+/// "90%v" and "p95"; nothing for other text.
+std::optional<IsovalueShare> parse_share(std::string_view word);
+
+/// As parse_plane(), "x=0.1,0.2", "x=50%v" and "DIRECTION@X,Y,Z".
 std::optional<ShapeText> parse_planes(const std::string& text);
 
-/// "X,Y,Z,R" and "X,Y,Z,R,R2".
+/// "X,Y,Z,R" and "X,Y,Z,R,R2"; each radius may be a share.
 std::optional<ShapeText> parse_spheres(const std::string& text);
 
 /// "DIRECTION@X,Y,Z,R" and "DIRECTION@X,Y,Z,R,R2".

@@ -7,7 +7,8 @@ namespace isotet::cli {
 namespace {
 
 constexpr const char* slice_details = R"(
-DIRECTION is x, y or z, with a minus for the other way, or three numbers NX,NY,NZ of any length.
+DIRECTION is x, y or z, with a minus for the other way, or three numbers NX,NY,NZ of any length. Where several offsets or
+radii may stand, each may be a share: 50%v has half of the grid's volume before it (or inside), p10 a tenth of the points.
 
 A slice is the isosurface of a field that is computed at the points in double precision: of planes the product of
 direction and point, of spheres the distance from the centre, of cylinders that from the axis. So it is welded, has the
@@ -22,6 +23,7 @@ to the square of the length of their edge.
 Examples:
   isotet slice grid.vtu cut.vtp --plane z=0.5
   isotet slice grid.vtu cut.vtp --plane 1,1,0@0.5,0.5,0.5
+  isotet slice grid.vtu halves.vtp --plane z=50%v
   isotet slice grid.vtu 'cut-{value}.vtp' --along z --count 20
   isotet slice run.pvd 'cut-{step}.vtp' --plane x=0.1,0.2,0.3 --all-steps
   isotet slice grid.vtu shell.vtp --cylinder z@0,0,0,0.4 --with pressure
@@ -39,6 +41,7 @@ Option add_shape(const Command& command, SliceCommand& slice, const std::string&
             if (!parsed) refuse_value(name, text, rule);
             slice.shape = parsed->shape;
             slice.at = std::move(parsed->at);
+            slice.shares = std::move(parsed->shares);
         },
         type, description);
 }

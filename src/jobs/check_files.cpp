@@ -70,14 +70,22 @@ bool is_default(const RefineOptions& options) {
            options.geometry_tolerance == none.geometry_tolerance && options.distance == none.distance;
 }
 
+bool names_isovalues(const CheckJob& job) { return !job.isovalues.empty() || !job.shares.empty(); }
+
 /// The grid with its curved cells refined as for the surface, where they were.
 Result<Origin> refined_origin(Origin origin, const CheckJob& job, const SurfaceFile& file, const Run& run) {
     if (!job.refine || !origin.field || !has_curved_cells(origin.grid.cells)) return origin;
     const std::optional<RefineOptions> recorded = find_refinement_record(file.field_data);
     if (origin.field->averaged && !job.refine_averaged && !recorded) return origin;
     RefineOptions options = recorded && is_default(*job.refine) ? *recorded : *job.refine;
-    if (!job.isovalues.empty()) options.isovalues = job.isovalues;
-    else options.isovalues = recorded ? recorded->isovalues : isovalues_of(file.surface);
+    if (names_isovalues(job)) {
+        const auto found = isovalues_at(origin.grid, *origin.field, job.shares, run);
+        if (!found) return found.error();
+        options.isovalues = job.isovalues;
+        options.isovalues.insert(options.isovalues.end(), found->begin(), found->end());
+    } else {
+        options.isovalues = recorded ? recorded->isovalues : isovalues_of(file.surface);
+    }
     if (options.isovalues.empty()) return origin;
     const auto linear = refine(origin.grid, *origin.field, options, run);
     if (!linear) return linear.error();
@@ -90,7 +98,7 @@ Result<Origin> refined_origin(Origin origin, const CheckJob& job, const SurfaceF
 
 /// Points that the grid does not have are of curved cells that were refined.
 Error with_advice(Error error, const CheckJob& job, bool curved) {
-    if (curved && error.code == ErrorCode::invalid_data && job.isovalues.empty())
+    if (curved && error.code == ErrorCode::invalid_data && !names_isovalues(job))
         error.message += "; where curved cells were refined, and the file does not say how, `isovalue` and `tolerance` "
                          "must be given as for extracting, so that the points are derived again";
     return error;
@@ -124,6 +132,18 @@ void blame_hanging_edges(SurfaceReport& report, bool on_curved_cells) {
     if (blamed == report.blamed_edges) return;
     report.blamed_edges = blamed;
     report.sound = report.clean = false;
+}
+
+/// Triangles back to back count as walls also where each has vertices of its own, as where points of the grid were doubled.
+Result<void> find_walls(const Surface& surface, SurfaceReport& report, const Run& run) {
+    if (!report.closed || report.coincident_vertices == 0) return {};
+    Surface bare;
+    bare.positions = surface.positions;
+    bare.triangles = surface.triangles;
+    const Result<SurfaceReport> joined = check(bare, {.weld = true}, run);
+    if (!joined) return joined.error();
+    report.double_sheets = std::max(report.double_sheets, joined->double_sheets);
+    return {};
 }
 
 Result<bool> has_hanging_points_on_curved_cells(const Grid& grid, const Run& run) {
@@ -165,6 +185,7 @@ Result<CheckedFiles> check_files(const CheckJob& job, Caller& caller) {
     }
     Result<SurfaceReport> report = check(file->surface, options, caller.run());
     if (!report) return with_advice(report.error(), job, curved);
+    if (auto found = find_walls(file->surface, *report, caller.run()); !found) return found.error();
     if (job.grid.hanging_points != HangingChoice::leave) blame_hanging_edges(*report, hangs);
     const bool passed = report->sound && (report->clean || !job.strict);
     return CheckedFiles{*std::move(report), file->format, passed};

@@ -205,7 +205,7 @@ Result<DrawReport> draw_files(const DrawJob& job, Caller& caller) {
     Result<DrawInput> input = source->read(0, drawer->device(), caller);
     if (!input) return input.error();
     report.input = *std::move(input);
-    const Result<std::vector<Frame>> frames = frames_of(job, report.input.isovalues, source->steps());
+    const Result<std::vector<Frame>> frames = frames_of(job, report.input, source->steps());
     if (!frames) return frames.error();
     report.pictures.file = files->out();
     report.pictures.pictures = frames->size();

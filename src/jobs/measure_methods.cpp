@@ -31,6 +31,7 @@ public:
 private:
     Result<void> open_device();
     Result<void> choose_pairs();
+    Result<void> choose_isovalues(const Grid& grid, const PointField& field);
     Result<void> run_file();
     Result<void> run_paper();
     Result<void> measure_all(const std::string& name, const Grid& grid, const PointField& field);
@@ -88,6 +89,20 @@ Result<void> BenchRun::measure_all(const std::string& name, const Grid& grid, co
     return {};
 }
 
+Result<void> BenchRun::choose_isovalues(const Grid& grid, const PointField& field) {
+    if (job_.isovalues.empty() && job_.shares.empty()) {
+        const ValueRange range = typical_range(field.values);
+        numbers_.isovalues =
+            evenly_spaced_levels(range.lower, range.upper, default_levels, LevelRounding::short_decimals);
+        return {};
+    }
+    const auto found = isovalues_at(grid, field, job_.shares, caller_.run());
+    if (!found) return found.error();
+    numbers_.isovalues = job_.isovalues;
+    numbers_.isovalues.insert(numbers_.isovalues.end(), found->begin(), found->end());
+    return {};
+}
+
 Result<void> BenchRun::run_file() {
     GridOptions options = job_.grid;
     options.hanging_points = HangingChoice::not_sought; // polyhedra are not measured
@@ -100,10 +115,7 @@ Result<void> BenchRun::run_file() {
     const Result<PointField> field = read_field(*source, steps->front(), job_.field, {}, caller_, grid);
     if (!field) return field.error();
     numbers_.field = field->name;
-    const ValueRange range = typical_range(field->values);
-    numbers_.isovalues = job_.isovalues.empty() ? evenly_spaced_levels(range.lower, range.upper, default_levels,
-                                                                       LevelRounding::short_decimals)
-                                                : job_.isovalues;
+    if (auto chosen = choose_isovalues(grid, *field); !chosen) return chosen;
     if (numbers_.isovalues.empty())
         return Error{ErrorCode::invalid_data,
                      fmt::format("field '{}' has no finite value: there is nothing to contour", field->name)};

@@ -35,16 +35,16 @@ Result<std::size_t> count_frames(const DrawJob& job, std::size_t steps) {
     return static_cast<std::size_t>(count);
 }
 
-Result<std::vector<Frame>> frames_of(const DrawJob& job, const std::vector<double>& isovalues, std::size_t steps) {
+Result<std::vector<Frame>> frames_of(const DrawJob& job, const DrawInput& input, std::size_t steps) {
     const Result<std::size_t> count = count_frames(job, steps);
     if (!count) return count.error();
-    std::vector<Frame> frames(*count, {isovalues, 0, 0});
+    std::vector<Frame> frames(*count, {input.isovalues, 0, 0});
     for (std::size_t i = 0; i < frames.size(); ++i) {
         if (job.orbit > 0) frames[i].azimuth = 360 * static_cast<double>(i) / static_cast<double>(frames.size());
         if (steps > 1) frames[i].step = i;
         if (job.sweep.empty()) continue;
         const double part = static_cast<double>(i) / static_cast<double>(frames.size() - 1);
-        frames[i].isovalues = {(1 - part) * job.sweep[0] + part * job.sweep[1]};
+        frames[i].isovalues = {(1 - part) * input.sweep[0] + part * input.sweep[1]};
     }
     return frames;
 }

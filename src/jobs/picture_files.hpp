@@ -23,7 +23,7 @@ struct Frame {
 
 /// With `sweep` a picture for each isovalue, with `orbit` one from each side, else one for each step.
 /// Errors   invalid_argument when `sweep` does not make sense
-Result<std::vector<Frame>> frames_of(const DrawJob& job, const std::vector<double>& isovalues, std::size_t steps);
+Result<std::vector<Frame>> frames_of(const DrawJob& job, const DrawInput& input, std::size_t steps);
 
 /// How many those will be.
 Result<std::size_t> count_frames(const DrawJob& job, std::size_t steps);

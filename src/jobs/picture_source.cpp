@@ -356,6 +356,18 @@ Result<void> PictureSource::take_volume(Contents& contents, Caller& caller) {
     return {};
 }
 
+/// Shares of a sweep become isovalues, which all steps have.
+Result<void> PictureSource::find_sweep(const Contents& contents, Caller& caller) {
+    for (const auto& [share, end] : {std::pair(&job_.sweep_shares.lower, 0U), std::pair(&job_.sweep_shares.upper, 1U)}) {
+        if (!*share || !contents.field) continue;
+        const auto found = isovalues_at(contents.grid, *contents.field, {&**share, 1}, caller.run());
+        if (!found) return found.error();
+        job_.sweep[end] = found->front();
+        share->reset();
+    }
+    return {};
+}
+
 Result<void> PictureSource::choose_isovalues(const Contents& contents, DrawInput& input, Caller& caller) {
     if (job_.isovalues.empty() && job_.shares.empty()) {
         const Result<ValueRange> range = typical_range_of_steps(*contents.field, caller);
@@ -381,6 +393,8 @@ Result<DrawInput> PictureSource::read(std::size_t which, const std::optional<Dev
     Result<Contents> contents = read_contents(step, caller);
     if (!contents) return contents.error();
     input.read_seconds = reading.seconds();
+    if (auto found = find_sweep(*contents, caller); !found) return found.error();
+    input.sweep = job_.sweep;
     if (which + 1 < steps_.size() && caller.run().threads != 1) read_ahead(steps_[which + 1], caller);
     input.format = source_->info().format;
     input.time = time_of(source_->info(), step);

@@ -41,6 +41,7 @@ private:
     Result<void> keep_steps_with_fields(Caller& caller);
     Result<Contents> read_contents(std::size_t step, Caller& caller);
     Result<void> take_volume(Contents& contents, Caller& caller);
+    Result<void> find_sweep(const Contents& contents, Caller& caller);
     Result<void> choose_isovalues(const Contents& contents, DrawInput& input, Caller& caller);
     Result<void> widen_range(const std::string& color, Caller& caller);
     Result<ValueRange> typical_range_of_steps(const PointField& first, Caller& caller);

@@ -25,10 +25,10 @@ Result<void> check_slice(const SliceJob& job) {
     if (!job.shape) return refusal("nothing says where to cut: `plane`, `along`, `sphere` or `cylinder` does");
     if (job.count > 0 && !std::holds_alternative<Plane>(*job.shape))
         return refusal("`count` is {}, but only planes `along` a direction are counted", job.count);
-    if (job.count > 0 && !job.at.empty())
-        return refusal("`count` is {}, but {} places were given, too", job.count, job.at.size());
+    const std::size_t places = job.at.size() + job.shares.size();
+    if (job.count > 0 && places > 0) return refusal("`count` is {}, but {} places were given, too", job.count, places);
     const bool solids = job.solid && job.solid->kind == SolidChoice::Kind::between;
-    if (solids && !job.at.empty()) return refusal("`solid` has its own two ends, but other places were given");
+    if (solids && places > 0) return refusal("`solid` has its own two ends, but other places were given");
     if (auto ok = check_shape(*job.shape); !ok) return ok;
     for (const double at : job.at)
         if (auto ok = check_shape(moved_to(*job.shape, at)); !ok) return ok;
@@ -43,11 +43,10 @@ Result<ExtractNumbers> slice_files(const SliceJob& job, Caller& caller) {
     extract.field = {};
     extract.field.shape = job.shape;
     extract.snap = false;
-    extract.shares.clear();
     const bool between = job.solid && job.solid->kind == SolidChoice::Kind::between;
     extract.levels = between ? 0 : job.count;
     extract.isovalues = job.at;
-    if (job.count == 0 && job.at.empty() && !between) extract.isovalues = {slice_isovalue(*job.shape)};
+    if (job.count == 0 && job.at.empty() && job.shares.empty() && !between) extract.isovalues = {slice_isovalue(*job.shape)};
     return extract_files(extract, caller);
 }
 

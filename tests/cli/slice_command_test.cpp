@@ -48,6 +48,15 @@ TEST_F(Program, SliceTellsItsCommandAndField) {
     EXPECT_NE(table.out.find("z, -1 to 1"), std::string::npos) << table.out;
 }
 
+TEST_F(Program, SliceTakesSharesForOffsetsAndRadii) {
+    for (const std::vector<std::string>& shape : {std::vector<std::string>{"--plane", "-z=50%v,0.25"},
+                                                  {"--sphere", "0,0,0,0.5,10%v"},
+                                                  {"--cylinder", "z@0,0,0,p20"}}) {
+        const json report = json_of({"slice", "make:hex:4:sphere", shape[0], shape[1]});
+        EXPECT_EQ(report["surfaces"].size(), shape[0] == "--cylinder" ? 1u : 2u);
+    }
+}
+
 TEST_F(Program, SliceRefusesWhatIsNoShape) {
     const auto refused = [&](std::vector<std::string> shape) {
         std::vector<std::string> words{"slice", "make:kuhn:2:sphere"};
@@ -56,7 +65,8 @@ TEST_F(Program, SliceRefusesWhatIsNoShape) {
         EXPECT_EQ(run.status, 2) << run.err;
         return run.err;
     };
-    for (const char* plane : {"", "z", "z=", "w=1", "0,0,0,1", "1,2,3", "z@1,2", "0,0,0@1,2,3", "z=1,b"})
+    for (const char* plane : {"", "z", "z=", "w=1", "0,0,0,1", "1,2,3", "z@1,2", "z@1,2,50%v", "0,0,0@1,2,3", "z=1,b",
+                              "z=101%v"})
         EXPECT_NE(refused({"--plane", plane}).find("--plane got '" + std::string(plane) + "', but it takes"),
                   std::string::npos)
             << plane;

@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <isotet/jobs/check_files.hpp>
 #include <isotet/jobs/extract_files.hpp>
+#include <isotet/write.hpp>
 
 #include <gtest/gtest.h>
 
@@ -67,6 +68,40 @@ TEST(CheckFiles, TheFileSaysHowCurvedCellsWereRefined) {
         const auto other = check_files(job, listener);
         EXPECT_FALSE(other && other->passed) << "what is asked for counts";
     }
+}
+
+TEST(CheckFiles, TakesIsovaluesByShareAsExtractDoes) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    ExtractJob extract;
+    extract.grid.file = "make:tet10:3:sphere";
+    extract.out = folder.file("half.vtp");
+    extract.shares = {{IsovalueShare::Of::volume, 50}};
+    extract.edge_ends = true;
+    CheckJob job;
+    job.surface = extract_files(extract, listener).value().surfaces[0].file;
+    job.grid.file = extract.grid.file;
+    job.shares = extract.shares;
+    EXPECT_TRUE(check_files(job, listener).value().passed);
+    job.shares[0].percent = 20;
+    const auto other = check_files(job, listener);
+    EXPECT_FALSE(other && other->passed);
+}
+
+TEST(CheckFiles, FindsWallsAlsoWhereTheirTrianglesHavePointsOfTheirOwn) {
+    const test::TemporaryFolder folder;
+    Surface walls; // two tetrahedra with a face back to back, on points of their own
+    walls.positions = Array::own(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, -1}, 3);
+    walls.triangles = Array::own(
+        std::vector<std::uint32_t>{0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3, 4, 5, 6, 5, 4, 7, 6, 5, 7, 4, 6, 7}, 3);
+    ASSERT_TRUE(write_surface(walls, folder.file("walls.ply")));
+    Listener listener;
+    CheckJob job;
+    job.surface = folder.file("walls.ply");
+    job.closed = true;
+    const CheckedFiles checked = check_files(job, listener).value();
+    EXPECT_TRUE(checked.report.closed);
+    EXPECT_EQ(checked.report.double_sheets, 1u);
 }
 
 TEST(CheckFiles, JudgesAgainstTheGrid) {

@@ -68,6 +68,17 @@ TEST(DrawFiles, NumbersThePicturesOfASweep) {
     EXPECT_NE(listener.noted[0].find("p%02d.png"), std::string::npos) << listener.noted[0];
 }
 
+TEST(DrawFiles, SweepsBetweenShares) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    DrawJob job = small_picture("make:kuhn:4:plane", folder.file("p{frame}.png"));
+    job.sweep = {0, 0.5, 3};
+    job.sweep_shares.lower = IsovalueShare{IsovalueShare::Of::volume, 50};
+    const DrawReport report = draw_files(job, listener).value();
+    EXPECT_NEAR(report.input.sweep[0], 0, 1e-6);
+    EXPECT_EQ(report.input.sweep[1], 0.5);
+}
+
 TEST(DrawFiles, RefusesNamesThatDoNotFitThePictures) {
     const test::TemporaryFolder folder;
     Listener listener;

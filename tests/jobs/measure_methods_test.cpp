@@ -1,6 +1,8 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <isotet/jobs/measure_methods.hpp>
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "jobs/listener.hpp"
@@ -27,6 +29,20 @@ TEST(MeasureMethods, MeasuresWhatNeedsNoDevice) {
     EXPECT_EQ(numbers.rows[0].outcome.triangles, numbers.rows[1].outcome.triangles);
     EXPECT_EQ(numbers.isovalues.size(), 3u);
     EXPECT_EQ(numbers.field, "sphere");
+}
+
+TEST(MeasureMethods, TakesIsovaluesByShareAfterOthers) {
+    Listener listener;
+    BenchJob job = without_device();
+    job.grid.file = "make:kuhn:4:plane";
+    job.methods = {BenchMethod::direct};
+    job.isovalues = {0.5};
+    job.shares = {{IsovalueShare::Of::volume, 50}, {IsovalueShare::Of::points, 100}};
+    const BenchNumbers numbers = measure_methods(job, listener).value();
+    ASSERT_EQ(numbers.isovalues.size(), 3u);
+    EXPECT_EQ(numbers.isovalues[0], 0.5);
+    EXPECT_NEAR(numbers.isovalues[1], 0, 1e-6);
+    EXPECT_NEAR(numbers.isovalues[2], 6 / std::sqrt(14), 1e-6);
 }
 
 TEST(MeasureMethods, TakesThePapersGridsUpToASize) {

@@ -39,6 +39,19 @@ const Array& values_of(const std::vector<Field>& fields, const std::string& name
     return std::ranges::find(fields, name, &Field::name)->values;
 }
 
+TEST(SliceFiles, CutsWhereAShareOfTheVolumeIsBefore) {
+    Listener listener;
+    SliceJob job = slice_of_file("make:hex:4:gyroid", "", Plane{{0, 0, 1}, 0});
+    job.shares = {{IsovalueShare::Of::volume, 25}};
+    job.at = {0.75};
+    const ExtractNumbers numbers = slice_files(job, listener).value();
+    ASSERT_EQ(numbers.surfaces.size(), 2u);
+    EXPECT_EQ(numbers.surfaces[0].isovalue, 0.75);
+    EXPECT_NEAR(numbers.surfaces[1].isovalue, -0.5, 1e-9);
+    job.count = 2;
+    EXPECT_EQ(slice_files(job, listener).error().code, ErrorCode::invalid_argument);
+}
+
 TEST(SliceFiles, CarriesAllPointAndCellFields) {
     const test::TemporaryFolder folder;
     ASSERT_TRUE(write_grid(numbered_grid("mixed", 5), folder.file("grid.vtu")));

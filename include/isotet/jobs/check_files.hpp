@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <isotet/check.hpp>
+#include <isotet/isovalue_shares.hpp>
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
 #include <isotet/refine.hpp>
@@ -29,6 +30,7 @@ struct CheckJob {
     /// All that were extracted together; empty: those of the cell field `isovalue` of a file with several, else the cells
     /// are taken at their nodes.
     std::vector<double> isovalues;
+    std::vector<IsovalueShare> shares = {}; ///< more of them
 };
 
 struct CheckedFiles {

@@ -14,6 +14,7 @@
 #include <isotet/jobs/device_choice.hpp>
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
+#include <isotet/jobs/range_shares.hpp>
 #include <isotet/render.hpp>
 #include <isotet/search.hpp>
 
@@ -75,6 +76,7 @@ struct DrawJob {
     DrawHow method;
     std::optional<SearchIndex> index; ///< nothing: none was given
     std::vector<double> sweep;        ///< first and last isovalue, and how many; or none
+    RangeShares sweep_shares = {};    ///< of the first step: in place of both isovalues
     std::uint64_t orbit = 0;          ///< pictures around; 0: one
     double frames_per_second = 12;
     std::string reference;    ///< a picture to compare with; empty: none
@@ -92,6 +94,7 @@ struct DrawInput {
     std::optional<double> time;      ///< of the step
     std::optional<std::size_t> step; ///< where there are several
     std::vector<double> isovalues;
+    std::vector<double> sweep = {};   ///< DrawJob::sweep, with its shares
     std::optional<ColorField> colors; ///< of whatever is coloured
     std::optional<VolumeLook> volume;
     std::uint64_t cells = 0;          ///< of the grid

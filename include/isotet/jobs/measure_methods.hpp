@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <isotet/grid_bench.hpp>
+#include <isotet/isovalue_shares.hpp>
 #include <isotet/jobs/device_choice.hpp>
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
@@ -18,7 +19,8 @@ struct BenchJob {
     GridOptions grid;                       ///< `file` is empty with `paper`
     std::vector<std::string> other_outputs; ///< of the caller: no file of the grid may be one
     FieldChoice field;
-    std::vector<double> isovalues; ///< none: three
+    std::vector<double> isovalues; ///< these and `shares` none: three
+    std::vector<IsovalueShare> shares = {}; ///< more isovalues, after the others
     bool paper = false;
     std::uint64_t max_tets = 5'000'000;
     std::vector<BenchMethod> methods; ///< none: all that can be

@@ -11,11 +11,11 @@
 
 namespace isotet::jobs {
 
-/// The options of extract_files() for the surfaces, but for field, isovalues, shares, levels and snap: `shape` is in place of
-/// these.
+/// The options of extract_files() for the surfaces, but for field, isovalues, levels and snap: `shape` is in place of these.
+/// Shares are of the grid's part before the plane or inside the shape.
 struct SliceJob : ExtractJob {
     std::optional<SliceShape> shape;
-    std::vector<double> at; ///< offsets of planes, radii; {value} in OUT. Empty: `count`, else where `shape` is
+    std::vector<double> at; ///< offsets of planes, radii; {value} in OUT. Empty, as `shares`: `count`, else where `shape` is
     std::uint64_t count = 0; ///< so many planes along the normal: min + k (max - min) / (count + 1), k = 1..count, of the
                              ///< grid's extent at each time step
 };
