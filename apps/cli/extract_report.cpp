@@ -69,6 +69,23 @@ std::string solid_text(const SolidRange& range) {
     return fmt::format("{} to {}", shortest(range.lower), shortest(range.upper));
 }
 
+Json patches_json(const std::vector<SolidPatch>& patches) {
+    Json all = Json::array();
+    for (const SolidPatch& patch : patches)
+        all.push_back({{"number", patch.number},
+                       {"name", json_text(patch.name)},
+                       {"triangles", patch.triangles},
+                       {"area", patch.area}});
+    return all;
+}
+
+/// The numbers of patches are those of the cell field "patch"; areas are of the one solid that there is.
+void add_patches(const ExtractNumbers& numbers, Table& table) {
+    for (const SolidPatch& patch : numbers.surfaces.back().solid->patches)
+        table.row({"patch", fmt::format("{} {}{}", patch.number, patch.name,
+                                        numbers.surfaces.size() > 1 ? "" : ", area " + rounded(patch.area))});
+}
+
 Json solid_json(const SolidNumbers& solid) {
     const auto end = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
     return {{"range", Json::array({end(solid.range.lower), end(solid.range.upper)})},
@@ -77,7 +94,9 @@ Json solid_json(const SolidNumbers& solid) {
             {"isosurface_area", solid.isosurface_area},
             {"boundary_area", solid.boundary_area},
             {"open_edges", solid.open_edges},
-            {"seam_edges", solid.seam_edges}};
+            {"seam_edges", solid.seam_edges},
+            {"unfit_edges", solid.unfit_edges},
+            {"patches", patches_json(solid.patches)}};
 }
 
 std::string time_text(const ExtractNumbers& numbers) {
@@ -107,8 +126,10 @@ std::string facts_table(const ExtractNumbers& numbers, bool verbose) {
     table.row({"grid", fmt::format("{} ({}), {}", numbers.grid, numbers.format, counted(numbers.cells, "cell"))});
     if (numbers.cells_left_out > 0) table.row({"", fmt::format("{} cells left out", grouped(numbers.cells_left_out))});
     table.row({"field", field_text(numbers)});
-    if (!numbers.surfaces.empty() && numbers.surfaces.back().solid)
+    if (!numbers.surfaces.empty() && numbers.surfaces.back().solid) {
         table.row({"", fmt::format("volume of the grid {}", rounded(numbers.surfaces.back().solid->grid_volume))});
+        add_patches(numbers, table);
+    }
     if (!numbers.collection.empty()) table.row({"series", numbers.collection});
     if (!numbers.parts_table.empty()) table.row({"parts", numbers.parts_table});
     if (!verbose) return table.text();

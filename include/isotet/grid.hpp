@@ -47,6 +47,27 @@ struct ISOTET_API Cells {
     std::size_t count() const noexcept;
 };
 
+/// What a number of BoundaryPatches stands for.
+struct PatchName {
+    std::int64_t number = 0;
+    std::string name;
+};
+
+/// Parts of the boundary that a file names (patches, side sets, boundary conditions), as faces with a number each. A face of
+/// a cell is of the first patch that has all its points.
+///
+/// `points`   int64, the points of all faces one after another, in any order; those of a set of points are one face
+/// `offsets`  int64, one more than there are faces, ascending from 0
+/// `numbers`  int64, one a face: not negative
+struct BoundaryPatches {
+    Array points;
+    Array offsets;
+    Array numbers;
+    std::vector<PatchName> names = {};
+
+    std::size_t count() const noexcept { return numbers.tuples(); }
+};
+
 /// Points, cells and fields, as the user has them: any order, any numeric type. Arrays are shared, never copied.
 ///
 /// `points`        float32 or float64, 3 components
@@ -55,12 +76,14 @@ struct ISOTET_API Cells {
 ///                 (how cells are split, how quadrilaterals of a tet are cut), these count instead of the indices. For
 ///                 pieces of a grid: the numbers in the whole grid (pieces.hpp). Costs a copy of cells and points while
 ///                 packing or extracting directly
+/// `patches`       empty, or the parts of the boundary that the file names: solids tell which triangle is of which
 struct Grid {
     Array points;
     Cells cells;
     std::vector<Field> point_fields;
     std::vector<Field> cell_fields;
     Array point_numbers = {};
+    BoundaryPatches patches = {};
 };
 
 /// What a grid holds and what is odd about it. Nothing here is an error: errors are returned by survey() itself.

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include <isotet/contour.hpp>
 #include <isotet/export.hpp>
@@ -26,13 +28,22 @@ struct SolidRange {
 /// What a triangle of a solid is part of: values of its cell field "boundary".
 enum class SolidPart : std::uint8_t { isosurface = 0, boundary = 1 };
 
+/// A named part of the boundary (Grid::patches), and what of it is on a solid.
+struct SolidPatch {
+    std::int64_t number = 0;
+    std::string name;
+    std::uint64_t triangles = 0;
+    double area = 0;
+};
+
 /// A solid and what is told of it.
 ///
 /// `surface`   triangles face outwards: those of the isosurfaces first, as extract() gives them, then the boundary. Its
-///             last cell field is "boundary", uint8, a SolidPart. Where 2D cells of a grid of linear cells lie on its
-///             boundary, "patch_cell" is their number there, else -1, and "patch_NAME" what they have of each carried cell
-///             field NAME of whole numbers. Vertices: those of the isosurfaces, then points of the grid
-///             (both edge ends are the point), then vertices inside faces that are not flat (both are -1)
+///             last cell field is "boundary", uint8, a SolidPart. Where the grid has patches, "patch" is their number on the
+///             boundary, else -1. Where 2D cells of the grid lie on its boundary, "patch_cell" is the number of the first
+///             one, and "patch_NAME" what it has of each carried cell field NAME of whole numbers. Vertices: those of the
+///             isosurfaces, then points of the grid (both edge ends are the point), then vertices inside faces that are
+///             not flat (both are -1)
 struct Solid {
     Surface surface;
     std::uint64_t isosurface_triangles = 0;
@@ -42,6 +53,8 @@ struct Solid {
     std::uint64_t open_edges = 0; ///< edges at the boundary not used equally often in both directions; 0: closed
     std::uint64_t seam_edges = 0; ///< where isosurfaces end inside the grid, at faces that lie back to back as their points
                                   ///< are doubled: the solid has walls there, and is no clean body
+    std::uint64_t unfit_edges = 0; ///< the same at faces that lie on smaller ones, which do not cover them, and at these
+    std::vector<SolidPatch> patches; ///< of the grid, by number; those that are not on the solid have no triangles
     ContourResult contour;        ///< of the isosurfaces; its surfaces are empty
 };
 
@@ -59,11 +72,23 @@ class ISOTET_API Solids {
 public:
     /// Finds the boundary, once for all isovalues.
     ///
-    /// `options`   as of a session. Ties are merged; no frame, exact vertices or gradient normals. Vertex normals are of
-    ///             the isosurface and the boundary together
+    /// `options`   as of a session. Ties are merged; no frame (create_piece() takes one), exact vertices or gradient
+    ///             normals. Vertex normals are of the isosurface and the boundary together
     /// Cost        a session, two passes over the cells and 8 bytes a point
     /// Errors      as Contour::create(), linearize(), refine() and boundary_of(); invalid_argument for other options
     static Result<Solids> create(ContourInput input, const ContourOptions& options = {}, const Run& run = {});
+
+    /// The same of a piece of a grid: solids of all pieces are together those of the whole, closed and bit for bit. The faces
+    /// at which the piece meets others are no boundary; so it comes with the cells of other pieces at them.
+    ///
+    /// Solid::volume and grid_volume() are shares of the whole's: their sums over all pieces. Open edges are not counted.
+    ///
+    /// `piece`     cells of the piece and, at least, those that share faces with them; as input of create()
+    /// `ghosts`    one integer a cell: not 0 for those of other pieces, which give nothing
+    /// `options`   with the frame of the whole
+    /// Errors      as create(); invalid_argument without a frame, or with marks that do not fit
+    static Result<Solids> create_piece(ContourInput piece, const Array& ghosts, const ContourOptions& options,
+                                       const Run& run = {});
 
     Solids(Solids&&) noexcept;
     Solids& operator=(Solids&&) noexcept;
@@ -92,6 +117,7 @@ public:
 private:
     struct Data;
     explicit Solids(std::unique_ptr<Data> data);
+    static Result<Solids> make(ContourInput given, const Array* ghosts, const ContourOptions& options, const Run& run);
     std::unique_ptr<Data> data_;
 };
 

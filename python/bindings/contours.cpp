@@ -306,6 +306,17 @@ nb::dict solid_out(const Solid& solid, double grid_volume) {
     out["isosurface_triangles"] = solid.isosurface_triangles;
     out["open_edges"] = solid.open_edges;
     out["seam_edges"] = solid.seam_edges;
+    out["unfit_edges"] = solid.unfit_edges;
+    nb::list patches;
+    for (const SolidPatch& patch : solid.patches) {
+        nb::dict told;
+        told["number"] = patch.number;
+        told["name"] = patch.name;
+        told["triangles"] = patch.triangles;
+        told["area"] = patch.area;
+        patches.append(told);
+    }
+    out["patches"] = patches;
     return out;
 }
 

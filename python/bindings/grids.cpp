@@ -257,6 +257,7 @@ void add_grids(nb::module_& module) {
                 self->step = step;
                 self->merge_pieces_by_coordinates = merge_pieces;
                 self->allow_outside = allow_outside;
+                self->patches = true;
                 self->displace = displace;
                 self->blocks = blocks;
             },

@@ -127,7 +127,9 @@ class Surface:
     @property
     def solid(self) -> dict[str, Any] | None:
         """None, or of a solid: "volume", "grid_volume", "isosurface_area", "boundary_area", "isosurface_triangles" (the first
-        ones), "open_edges" (0: closed) and "seam_edges" (of the isosurface inside the grid, where points are doubled)."""
+        ones), "open_edges" (0: closed), "seam_edges" (of the isosurface inside the grid, where points are doubled),
+        "unfit_edges" (where cells of different sizes do not fit), and "patches": of those that the file names number, name,
+        triangles and area; the cell field "patch" has the numbers."""
         return self._how.get("solid")
 
     @property

@@ -17,6 +17,7 @@
 #include "grid/cell/linear_names.hpp"
 #include "grid/cell_faces.hpp"
 #include "grid/cells.hpp"
+#include "grid/patches.hpp"
 #include "io/files/text_scanner.hpp"
 #include "io/formats.hpp"
 #include "io/pieces/region_choice.hpp"
@@ -116,6 +117,7 @@ Result<void> check_grid(const Grid& grid, const Progress& progress) {
     const auto cells = core::CellReader::open(grid);
     if (!cells) return cells.error();
     if (auto sound = core::check_cells(grid, *cells, progress); !sound) return sound;
+    if (auto sound = core::check_patches(grid); !sound) return sound;
     return core::check_faces(grid, *cells, progress);
 }
 

@@ -48,6 +48,7 @@ private:
     Result<Contour> start(ContourInput input);
     Result<void> set(ContourInput input);
     Result<void> take_piece_of(ContourInput& input);
+    Result<void> mark_other_pieces(const ContourInput& input);
     bool goes_into_one_file() const {
         return !plan_.names.none() && !plan_.names.by_value();
     } ///< of a step, all surfaces
@@ -81,6 +82,7 @@ private:
     SolidChoice solid_;                            ///< of ExtractJob::solid, with the shares of its range
     std::vector<double> isovalues_;                ///< of the step at hand: levels follow its range
     std::uint64_t first_cell_ = 0;                 ///< of the piece
+    Array other_pieces_;                           ///< 1 for cells of other pieces, where solids of one are made
     std::uint64_t coarse_tets_ = 0;                ///< of the step at hand, with direct extraction
     std::optional<std::uint64_t> resident_before_; ///< with the grid of the first step
     std::vector<CollectionEntry> series_;          ///< files so far
@@ -122,6 +124,7 @@ Result<void> ExtractRun::open() {
         if (auto writable = check_writable(job_.parts_table); !writable) return writable;
     if (Result<void> opened = open_device(); !opened) return opened;
     caller_.detail("looking at " + job_.grid.file);
+    job_.grid.patches = job_.solid.has_value();
     Result<GridSource> source = GridSource::open(job_.grid, caller_);
     if (!source) return source.error();
     source_ = *std::move(source);
@@ -182,6 +185,18 @@ Result<void> ExtractRun::take_piece_of(ContourInput& input) {
     return {};
 }
 
+/// The frame of the whole, and which of its cells are of other pieces.
+Result<void> ExtractRun::mark_other_pieces(const ContourInput& input) {
+    Result<FramedPiece> piece = take_piece(input, *job_.piece, {job_.split_cells}, caller_.run());
+    if (!piece) return piece.error();
+    plan_.contour.frame = piece->frame;
+    const std::size_t first = piece->first_cell, count = piece->input.grid.cells.count();
+    std::vector<std::uint8_t> others(input.grid.cells.count(), 1);
+    std::fill_n(others.begin() + static_cast<std::ptrdiff_t>(first), count, std::uint8_t{0});
+    other_pieces_ = Array::own(std::move(others));
+    return {};
+}
+
 /// Reads one step. Returns how many cells there are where only active ones were kept.
 Result<std::optional<std::uint64_t>> ExtractRun::read_grid(std::size_t step) {
     if (plan_.active_cells && !device_) {
@@ -200,7 +215,9 @@ Result<std::optional<std::uint64_t>> ExtractRun::read_grid(std::size_t step) {
 Result<void> ExtractRun::set(ContourInput input) {
     if (job_.solid) {
         caller_.detail("finding the boundary");
-        Result<Solids> started = Solids::create(std::move(input), plan_.contour, caller_.run());
+        Result<Solids> started =
+            job_.piece ? Solids::create_piece(std::move(input), other_pieces_, plan_.contour, caller_.run())
+                       : Solids::create(std::move(input), plan_.contour, caller_.run());
         if (!started) return started.error();
         solids_ = *std::move(started);
         numbers_.why = "solids";
@@ -298,7 +315,9 @@ Result<bool> ExtractRun::load(std::size_t step) {
         };
     if (job_.piece && has_curved_cells(input.grid.cells))
         return refusal("`piece` takes grids without quadratic cells only");
-    if (job_.piece)
+    if (job_.piece && job_.solid)
+        if (Result<void> marked = mark_other_pieces(input); !marked) return marked.error();
+    if (job_.piece && !job_.solid)
         if (Result<void> taken = take_piece_of(input); !taken) return taken.error();
     if (Result<void> taken = set(std::move(input)); !taken) return taken.error();
     if (contour_ && contour_->method() == Method::clusters) caller_.detail("packing");
@@ -544,7 +563,9 @@ Result<std::vector<Surface>> ExtractRun::extract_solid(double isovalue, std::siz
                                  made->isosurface_area,
                                  made->boundary_area,
                                  made->open_edges,
-                                 made->seam_edges};
+                                 made->seam_edges,
+                                 made->unfit_edges,
+                                 std::move(made->patches)};
     if (numbers.triangles == 0 && job_.fail_if_empty)
         return Error{ErrorCode::invalid_data, "`fail_if_empty`: the solid is empty"};
     note_what_a_solid_is(numbers_, numbers, caller_);

@@ -55,6 +55,11 @@ void note_what_a_solid_is(const ExtractNumbers& numbers, const SurfaceNumbers& s
         caller.note(fmt::format("the grid's boundary is open to itself: points are doubled, so the isosurface has {} open edges "
                                 "inside the grid, and walls close the solid there; `merge_points` 0 makes it one body",
                                 grouped(surface.solid->seam_edges)));
+    if (surface.solid->unfit_edges > 0)
+        caller.note(fmt::format("the grid's boundary is open to itself: cells of different sizes do not fit together, so the "
+                                "isosurface has {} open edges inside the grid, and walls close the solid there; hanging points "
+                                "that cover the larger face are joined by `hanging_points` close, others need another mesh",
+                                grouped(surface.solid->unfit_edges)));
     if (surface.solid->open_edges > 0)
         caller.note(fmt::format("the solid is open at {} edges, as where cells are repeated: isotet info `survey` counts "
                                 "these",

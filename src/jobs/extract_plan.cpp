@@ -95,8 +95,7 @@ bool names_isovalues(const ExtractJob& job) {
 Result<void> check_solid(const ExtractJob& job) {
     if (!job.solid) return {};
     const bool device = job.engine == EngineChoice::vulkan || (!job.device.name.empty() && job.device.name != "none");
-    for (const auto& [asked, option] : {std::pair{job.piece.has_value(), "`piece`"},
-                                        {job.exact_vertices, "`exact_vertices`"},
+    for (const auto& [asked, option] : {std::pair{job.exact_vertices, "`exact_vertices`"},
                                         {job.keep_degenerate, "`keep_degenerate`"},
                                         {job.normals == Normals::gradient, "`normals` gradient"},
                                         {device, "a device"}})

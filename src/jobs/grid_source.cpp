@@ -207,6 +207,7 @@ Result<GridSource> GridSource::open(const GridOptions& options, Caller& caller) 
     read_options.format = options.format;
     read_options.merge_pieces_by_coordinates = !options.keep_pieces;
     read_options.allow_outside = options.allow_outside;
+    read_options.patches = options.patches;
     read_options.displace = options.displace;
     read_options.blocks = options.blocks;
     read_options.more_files = options.more_files;

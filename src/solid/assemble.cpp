@@ -140,44 +140,57 @@ bool is_whole_number(const Field& field) {
     return field.values.components() == 1 && type != ScalarType::float32 && type != ScalarType::float64;
 }
 
-/// Of the cap's triangles, by the 2D cells on them: their numbers, and what they have of fields of whole numbers.
-void add_patches(const Cap& cap, std::size_t isosurface, const std::vector<Field>& fields, Surface& out) {
+/// Of the cap's triangles: the numbers of their patches, those of the 2D cells on them, and what these cells have of fields
+/// of whole numbers.
+void add_marks(const Cap& cap, std::size_t isosurface, const std::vector<Field>& fields, Surface& out) {
     const auto add = [&](std::string name, const auto& value) {
-        std::vector<std::int64_t> values(isosurface + cap.patches.size(), -1);
-        for (std::size_t i = 0; i < cap.patches.size(); ++i)
-            if (cap.patches[i] >= 0) values[isosurface + i] = value(static_cast<std::size_t>(cap.patches[i]));
+        std::vector<std::int64_t> values(isosurface + cap.marks.size(), -1);
+        for (std::size_t i = 0; i < cap.marks.size(); ++i) values[isosurface + i] = value(cap.marks[i]);
+        std::erase_if(out.cell_fields, [&](const Field& field) { return field.name == name; });
         out.cell_fields.push_back({std::move(name), Array::own(std::move(values))});
     };
-    add("patch_cell", [](std::size_t cell) { return static_cast<std::int64_t>(cell); });
+    if (std::ranges::any_of(cap.marks, [](const FaceMark& mark) { return mark.patch >= 0; }))
+        add("patch", [](const FaceMark& mark) { return mark.patch; });
+    if (std::ranges::none_of(cap.marks, [](const FaceMark& mark) { return mark.cell >= 0; })) return;
+    add("patch_cell", [](const FaceMark& mark) { return mark.cell; });
     for (const Field& field : fields)
         if (is_whole_number(field))
             field.values.visit([&](auto numbers) {
-                add("patch_" + field.name, [&](std::size_t cell) { return static_cast<std::int64_t>(numbers[cell]); });
+                add("patch_" + field.name, [&](const FaceMark& mark) {
+                    return mark.cell < 0 ? std::int64_t{-1}
+                                         : static_cast<std::int64_t>(numbers[static_cast<std::size_t>(mark.cell)]);
+                });
             });
 }
 
 using Vector = std::array<double, 3>;
 
-/// Calls f(a, b, c) with the corners of a triangle.
-template <class F>
-double sum_over(const Surface& surface, std::size_t first, std::size_t last, const F& f) {
-    if (first >= last) return 0;
+/// Calls use(i, range, f(a, b, c)) for the triangles i of [first, last) with their corners, ranges beside each other.
+template <class F, class Use>
+void for_triangles(const Surface& surface, std::size_t first, std::size_t last, const F& f, const Use& use) {
+    if (first >= last) return;
     const auto triangles = surface.triangles.as<std::uint32_t>();
-    return surface.positions.visit([&](auto positions) {
+    surface.positions.visit([&](auto positions) {
         const auto at = [&](std::uint32_t vertex) -> Vector {
             return {static_cast<double>(positions[3 * vertex]), static_cast<double>(positions[3 * vertex + 1]),
                     static_cast<double>(positions[3 * vertex + 2])};
         };
-        std::vector<double> sums((last - first + at_once - 1) / at_once);
-        core::parallel_each(sums.size(), 1, [&](std::size_t range) {
+        core::parallel_each((last - first + at_once - 1) / at_once, 1, [&](std::size_t range) {
             const std::size_t begin = first + range * at_once, end = std::min(last, begin + at_once);
             for (std::size_t i = begin; i < end; ++i)
-                sums[range] += f(at(triangles[3 * i]), at(triangles[3 * i + 1]), at(triangles[3 * i + 2]));
+                use(i, range, f(at(triangles[3 * i]), at(triangles[3 * i + 1]), at(triangles[3 * i + 2])));
         });
-        double sum = 0;
-        for (const double some : sums) sum += some;
-        return sum;
     });
+}
+
+/// In a fixed order.
+template <class F>
+double sum_over(const Surface& surface, std::size_t first, std::size_t last, const F& f) {
+    std::vector<double> sums((last - first + at_once - 1) / at_once);
+    for_triangles(surface, first, last, f, [&](std::size_t, std::size_t range, double value) { sums[range] += value; });
+    double sum = 0;
+    for (const double some : sums) sum += some;
+    return sum;
 }
 
 Vector difference(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
@@ -185,11 +198,15 @@ Vector cross_product(const Vector& a, const Vector& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 double dot_product(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+double twice_the_area(const Vector& a, const Vector& b, const Vector& c) {
+    const Vector normal = cross_product(difference(b, a), difference(c, a));
+    return std::sqrt(dot_product(normal, normal));
+}
 
 } // namespace
 
 Surface assemble(std::span<const Shell> shells, const Cap& cap, const ContourInput& input,
-                 const ContourOptions& options) {
+                 const std::vector<Field>& user_cell_fields, const ContourOptions& options) {
     Surface out;
     const auto positions = arrays_of(shells, [](const Surface& s) { return s.positions; });
     out.positions = with_positions(joined_of_points(positions, input.grid.points, cap.points, options.precision), cap);
@@ -204,7 +221,7 @@ Surface assemble(std::span<const Shell> shells, const Cap& cap, const ContourInp
         out.cell_fields.push_back({field.name, joined_of_cells(heads, field.values, cap.cells)});
     }
     const std::size_t isosurface = out.triangles.tuples() - cap.triangles.size();
-    if (!cap.patches.empty()) add_patches(cap, isosurface, input.cell_fields, out);
+    if (!cap.marks.empty()) add_marks(cap, isosurface, user_cell_fields, out);
     out.cell_fields.push_back({"boundary", part_numbers(isosurface, cap.triangles.size())});
     if (options.edge_ends) {
         const auto ends = arrays_of(shells, [](const Surface& s) { return s.edge_ends; });
@@ -230,6 +247,10 @@ double enclosed_volume(const Surface& surface) {
     Vector middle; // a vertex near all others
     for (std::size_t axis = 0; axis < 3; ++axis)
         middle[axis] = surface.positions.at(surface.triangles.as<std::uint32_t>()[0], axis);
+    return enclosed_volume(surface, middle);
+}
+
+double enclosed_volume(const Surface& surface, const std::array<double, 3>& middle) {
     return sum_over(surface, 0, surface.triangle_count(),
                     [&](const Vector& a, const Vector& b, const Vector& c) {
                         return dot_product(difference(a, middle),
@@ -239,12 +260,14 @@ double enclosed_volume(const Surface& surface) {
 }
 
 double area_of(const Surface& surface, std::size_t first, std::size_t last) {
-    return sum_over(surface, first, last,
-                    [](const Vector& a, const Vector& b, const Vector& c) {
-                        const Vector normal = cross_product(difference(b, a), difference(c, a));
-                        return std::sqrt(dot_product(normal, normal));
-                    }) /
-           2;
+    return sum_over(surface, first, last, twice_the_area) / 2;
+}
+
+std::vector<double> areas_of(const Surface& surface, std::size_t first, std::size_t last) {
+    std::vector<double> areas(last - first);
+    for_triangles(surface, first, last, twice_the_area,
+                  [&](std::size_t i, std::size_t, double value) { areas[i - first] = value / 2; });
+    return areas;
 }
 
 } // namespace isotet::solid

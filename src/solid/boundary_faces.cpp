@@ -3,10 +3,8 @@
 
 #include <algorithm>
 #include <atomic>
-#include <map>
 #include <mutex>
 #include <numeric>
-#include <optional>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -19,6 +17,8 @@
 #include "grid/cell/native_cells.hpp"
 #include "grid/cells.hpp"
 #include "grid/orientation.hpp"
+#include "linear/hanging/covers.hpp"
+#include "linear/hanging/open_faces.hpp"
 #include "numbers/point_hash.hpp"
 #include "numbers/storage.hpp"
 
@@ -195,7 +195,7 @@ std::vector<std::uint32_t> first_at_place(const BoundaryFaces& boundary, const c
 }
 
 /// Faces that would cancel each other if points with the same coordinates were one.
-std::vector<std::uint8_t> walls_of(const BoundaryFaces& boundary, const core::PointReader& points) {
+std::vector<Wall> walls_of(const BoundaryFaces& boundary, const core::PointReader& points) {
     const std::vector<std::uint32_t> first = first_at_place(boundary, points);
     if (first.empty()) return {};
     std::vector<DirectedFace> faces(boundary.faces.size()); // their numbers in place of cells
@@ -206,52 +206,32 @@ std::vector<std::uint8_t> walls_of(const BoundaryFaces& boundary, const core::Po
         faces[i] = directed(std::span(corners).first(all.size()), i);
     });
     tbb::parallel_sort(faces.begin(), faces.end());
-    std::vector<std::uint8_t> walls(faces.size(), 1);
-    for (const DirectedFace& face : surplus_of(faces)) walls[face.cell] = 0;
-    if (std::ranges::find(walls, 1) == walls.end()) walls.clear();
+    std::vector<Wall> walls(faces.size(), Wall::doubled);
+    for (const DirectedFace& face : surplus_of(faces)) walls[face.cell] = Wall::none;
+    if (std::ranges::find(walls, Wall::doubled) == walls.end()) walls.clear();
     return walls;
 }
 
-constexpr std::uint8_t triangle_type = 5, pixel_type = 8, quad_type = 9; // VTK's
-
-/// The place of a point of the grid; nothing where the boundary has it not.
-std::optional<std::uint64_t> place_of(const BoundaryFaces& boundary, std::uint64_t point) {
-    const auto found = std::ranges::lower_bound(boundary.points, point);
-    if (found == boundary.points.end() || *found != point) return std::nullopt;
-    return static_cast<std::uint64_t>(found - boundary.points.begin());
-}
-
-/// The corners of a 2D cell, ascending, a triangle's last no_point; nothing where it is on no face.
-std::optional<std::array<std::uint64_t, 4>> sorted_corners(const core::CellReader& cells, std::size_t cell,
-                                                           const BoundaryFaces& boundary) {
-    const std::uint8_t type = cells.type(cell);
-    if (type != triangle_type && type != pixel_type && type != quad_type) return std::nullopt;
-    std::array<std::uint64_t, 4> corners{no_point, no_point, no_point, no_point};
-    for (std::size_t k = 0; k < (type == triangle_type ? 3U : 4U); ++k) {
-        const auto place = place_of(boundary, cells.corner(cells.first(cell) + k));
-        if (!place) return std::nullopt;
-        corners[k] = *place;
+/// Marks faces that lie on smaller ones, whether these cover them or not, and these.
+Result<void> find_unfit_faces(const core::CellReader& cells, const core::PointReader& points, const Progress& progress,
+                              BoundaryFaces& boundary) {
+    linear::OpenFaces faces;
+    faces.reserve(boundary.faces.size(), 4 * boundary.faces.size());
+    for (std::size_t i = 0; i < boundary.faces.size(); ++i) {
+        const BoundaryFace& face = boundary.faces[i];
+        std::array<std::uint64_t, 4> loop{};
+        for (std::size_t k = 0; k < face.count; ++k) loop[k] = boundary.points[face.places[k]];
+        faces.add({face.cell, static_cast<std::uint32_t>(i)}, std::span(loop).first(face.count));
     }
-    std::ranges::sort(corners);
-    return corners;
-}
-
-/// Finds the 2D cells that lie on faces, as the boundary's elements of finite-element meshes do.
-void find_patches(const core::CellReader& cells, BoundaryFaces& boundary) {
-    if (!cells.has_types()) return;
-    std::map<std::array<std::uint64_t, 4>, std::int64_t> patches;
-    for (std::size_t cell = 0; cell < cells.count(); ++cell)
-        if (const auto corners = sorted_corners(cells, cell, boundary))
-            patches.emplace(*corners, static_cast<std::int64_t>(cell));
-    if (patches.empty()) return;
-    core::parallel_each(boundary.faces.size(), 1 << 12, [&](std::size_t i) {
-        BoundaryFace& face = boundary.faces[i];
-        std::array<std::uint64_t, 4> corners{no_point, no_point, no_point, no_point};
-        std::ranges::copy(face.all(), corners.begin());
-        std::ranges::sort(corners);
-        const auto found = patches.find(corners);
-        if (found != patches.end()) face.patch = found->second;
-    });
+    const auto covers = linear::find_covers(faces, cells, points, progress);
+    if (!covers) return covers.error();
+    for (const std::vector<linear::Cover>* some : {&covers->whole, &covers->open})
+        for (const linear::Cover& cover : *some) {
+            boundary.walls.resize(boundary.faces.size(), Wall::none);
+            boundary.walls[cover.face] = Wall::unfit;
+            for (const linear::Cover::Part& part : cover.by) boundary.walls[part.face] = Wall::unfit;
+        }
+    return {};
 }
 
 } // namespace
@@ -281,9 +261,15 @@ Result<BoundaryFaces> find_boundary_faces(const Grid& grid, const Array& values,
         return invalid_data(fmt::format("the boundary has {} faces, but must have at most {}", surplus.size(),
                                         std::numeric_limits<std::uint32_t>::max() / 4));
     BoundaryFaces boundary = with_places(surplus);
-    find_patches(*cells, boundary);
-    boundary.walls = walls_of(boundary, core::PointReader(grid.points));
     return boundary;
+}
+
+Result<void> find_walls(const Grid& grid, BoundaryFaces& boundary, const Progress& progress) {
+    const auto cells = core::CellReader::open(grid);
+    if (!cells) return cells.error();
+    const core::PointReader points(grid.points);
+    boundary.walls = walls_of(boundary, points);
+    return find_unfit_faces(*cells, points, progress, boundary);
 }
 
 } // namespace isotet::solid

@@ -15,21 +15,35 @@
 
 namespace isotet::solid {
 
+/// What of the grid lies on a face of the boundary; -1: nothing (patches.hpp).
+struct FaceMark {
+    std::int64_t patch = -1; ///< of Grid::patches
+    std::int64_t cell = -1;  ///< the first 2D cell
+
+    bool any() const { return patch >= 0 || cell >= 0; }
+};
+
 /// A face by places in BoundaryFaces::points, counter-clockwise seen from outside.
 struct BoundaryFace {
     std::array<std::uint32_t, 4> places{};
     std::uint32_t count = 0; ///< 3 or 4
     std::uint64_t cell = 0;  ///< of the grid
-    std::int64_t patch = -1; ///< the 2D cell of the grid that lies on the face, the first one; -1: none
+    FaceMark mark = {};
 
     std::span<const std::uint32_t> all() const { return {places.data(), count}; }
+};
+
+/// A face inside the grid: cells beside each other do not share it.
+enum class Wall : std::uint8_t {
+    none,
+    doubled, ///< back to back on another one, by its coordinates: points are doubled
+    unfit    ///< on smaller ones, or on a larger one
 };
 
 struct BoundaryFaces {
     std::vector<BoundaryFace> faces;
     std::vector<std::uint64_t> points; ///< numbers in the grid, ascending
-    std::vector<std::uint8_t> walls; ///< 1 for a face that lies back to back on another one, by its coordinates, where points
-                                     ///< are doubled; empty: none does
+    std::vector<Wall> walls;           ///< one a face; empty: none is one
 };
 
 enum class CellMode : std::uint8_t {
@@ -47,5 +61,12 @@ enum class CellMode : std::uint8_t {
 /// Errors     invalid_data as survey(); out_of_memory; cancelled
 Result<BoundaryFaces> find_boundary_faces(const Grid& grid, const Array& values, CellMode mode,
                                           const Progress& progress);
+
+/// Finds BoundaryFaces::walls.
+///
+/// `grid`   that of the boundary
+/// Cost     O(n log n) in the faces of the boundary
+/// Errors   cancelled
+Result<void> find_walls(const Grid& grid, BoundaryFaces& boundary, const Progress& progress);
 
 } // namespace isotet::solid

@@ -37,7 +37,7 @@ struct RawApex {
 struct RawCap {
     std::vector<RawTriangle> triangles;
     std::vector<RawApex> apexes;
-    std::uint64_t seam_edges = 0;
+    std::uint64_t seam_edges = 0, unfit_edges = 0;
 };
 
 template <class Real>
@@ -62,7 +62,8 @@ public:
         for (std::size_t k = 0; k < face.count; ++k) all_sides[k] = side_of(face.places[k]);
         const auto sides = std::span<const Side>(all_sides).first(face.count);
         const bool is_cut = std::ranges::any_of(sides, [&](Side side) { return side != sides[0]; });
-        if (is_cut && is_wall(face)) out.seam_edges += edges_across(sides);
+        if (is_cut && wall_of(face) == Wall::doubled) out.seam_edges += edges_across(sides);
+        if (is_cut && wall_of(face) == Wall::unfit) out.unfit_edges += edges_across(sides);
         if (is_cut && is_warped(face)) return add_warped(face, sides, out);
         for_parts(sides, [&](std::span<const PartVertex> part) {
             std::array<Corner, 16> polygon;
@@ -83,8 +84,8 @@ private:
         return static_cast<std::uint32_t>(&face - boundary_.faces.data());
     }
 
-    bool is_wall(const BoundaryFace& face) const {
-        return !boundary_.walls.empty() && boundary_.walls[number_of(face)] != 0;
+    Wall wall_of(const BoundaryFace& face) const {
+        return boundary_.walls.empty() ? Wall::none : boundary_.walls[number_of(face)];
     }
 
     /// Edges of isosurfaces across a face with corners on these sides.
@@ -266,6 +267,7 @@ RawCap raw_cap(const BoundaryFaces& boundary, const CapMaker<Real>& maker) {
         }
         std::ranges::move(some.apexes, std::back_inserter(all.apexes));
         all.seam_edges += some.seam_edges;
+        all.unfit_edges += some.unfit_edges;
     }
     return all;
 }
@@ -290,6 +292,7 @@ Cap make_cap(const BoundaryFaces& boundary, const Array& points, const Array& va
             if (corner & point_bit) numbers[static_cast<std::uint32_t>(corner)] = 0;
     Cap cap;
     cap.seam_edges = raw.seam_edges;
+    cap.unfit_edges = raw.unfit_edges;
     for (std::size_t place = 0; place < numbers.size(); ++place) {
         if (numbers[place] == Rim::no_vertex) continue;
         numbers[place] = cuts.vertices + static_cast<std::uint32_t>(cap.points.size());
@@ -306,10 +309,10 @@ Cap make_cap(const BoundaryFaces& boundary, const Array& points, const Array& va
         for (std::size_t k = 0; k < 3; ++k) cap.triangles[i][k] = vertex_of(raw.triangles[i].corners[k]);
         cap.cells[i] = boundary.faces[raw.triangles[i].face].cell;
     });
-    if (std::ranges::any_of(boundary.faces, [](const BoundaryFace& face) { return face.patch >= 0; })) {
-        cap.patches.resize(raw.triangles.size());
-        for (std::size_t i = 0; i < cap.patches.size(); ++i)
-            cap.patches[i] = boundary.faces[raw.triangles[i].face].patch;
+    if (std::ranges::any_of(boundary.faces, [](const BoundaryFace& face) { return face.mark.any(); })) {
+        cap.marks.resize(raw.triangles.size());
+        for (std::size_t i = 0; i < cap.marks.size(); ++i)
+            cap.marks[i] = boundary.faces[raw.triangles[i].face].mark;
     }
     cap.apexes.resize(raw.apexes.size());
     core::parallel_each(raw.apexes.size(), 1 << 12, [&](std::size_t i) {

@@ -42,10 +42,11 @@ struct Apex {
 struct Cap {
     std::vector<std::array<std::uint32_t, 3>> triangles; ///< vertices of the solid; outwards
     std::vector<std::uint64_t> cells;                    ///< of the grid, one a triangle
-    std::vector<std::int64_t> patches;                   ///< BoundaryFace::patch, one a triangle; empty: no face has one
+    std::vector<FaceMark> marks;                         ///< of the faces, one a triangle; empty: no face has one
     std::vector<std::uint64_t> points; ///< of the grid: vertices behind those of the isosurfaces, ascending
     std::vector<Apex> apexes;          ///< vertices behind these
-    std::uint64_t seam_edges = 0;      ///< where isosurfaces end in BoundaryFaces::walls
+    std::uint64_t seam_edges = 0;      ///< where isosurfaces end in doubled walls
+    std::uint64_t unfit_edges = 0;     ///< where they end in unfit ones
 };
 
 /// `points`   of the grid

@@ -119,7 +119,6 @@ Result<WarpedFaces> find_warped(const Grid& grid, const Array& values, const Pro
         return !solid::is_warped(corners,
                                  solid::rounding_of(grid.points.type()) * solid::largest_coordinate(corners));
     });
-    all->walls.clear(); // of all faces
     std::ranges::stable_sort(all->faces, {}, &solid::BoundaryFace::cell);
     out.boundary = *std::move(all);
     out.points = solid::BoundaryPoints(out.boundary, grid.points.tuples());

@@ -19,8 +19,10 @@ namespace isotet::solid {
 
 namespace {
 
-Result<void> check_options(const ContourInput& input, const ContourOptions& options) {
-    if (options.frame) return invalid_argument("solids are made of whole grids, but the grid is a piece with a frame");
+Result<void> check_options(const ContourInput& input, const ContourOptions& options, bool is_piece) {
+    if (options.frame && !is_piece)
+        return invalid_argument("solids are made of whole grids, but the grid is a piece with a frame");
+    if (!options.frame && is_piece) return invalid_argument("solids of a piece need the frame of the whole grid");
     if (options.exact_vertices)
         return invalid_argument("solids have vertices on the edges of linear cells: not exact ones");
     if (options.ties == Ties::keep) return invalid_argument("solids merge ties, but `ties` keeps them");
@@ -48,15 +50,18 @@ Result<std::shared_ptr<const LinearGrid>> linear_of(const ContourInput& input, c
 
 } // namespace
 
-Result<SolidInput> take_input(ContourInput given, const ContourOptions& options, const Run& run) {
+Result<SolidInput> take_input(ContourInput given, const ContourOptions& options, const Run& run, bool is_piece) {
     if (given.all_cells) {
         Result<ContourInput> all = given.all_cells(run);
         if (!all) return all.error();
         given = *std::move(all);
     }
-    if (auto ok = check_options(given, options); !ok) return ok.error();
+    if (auto ok = check_options(given, options, is_piece); !ok) return ok.error();
     given.grid.cells = core::with_linear_names(std::move(given.grid.cells));
     SolidInput out;
+    out.user_grid = given.grid;
+    out.user_grid.point_fields = {};
+    out.user_grid.cell_fields = given.cell_fields;
     auto linear = linear_of(given, options, run);
     if (!linear) return linear.error();
     out.linear = *std::move(linear);

@@ -14,14 +14,16 @@ namespace isotet::solid {
 
 struct SolidInput {
     ContourInput input;                       ///< with linear cells
+    Grid user_grid;                           ///< before: without point fields
     std::shared_ptr<const LinearGrid> linear; ///< null where all were linear
     std::vector<std::string> notes;           ///< on making cells linear
 };
 
 /// The input with all its cells, linear ones; curved ones refined for all isovalues.
 ///
-/// Errors   invalid_argument for options that make no sense here; as linearize() and refine()
-Result<SolidInput> take_input(ContourInput given, const ContourOptions& options, const Run& run);
+/// `is_piece`   it must have a frame, which else it must not
+/// Errors       invalid_argument for options that make no sense here; as linearize() and refine()
+Result<SolidInput> take_input(ContourInput given, const ContourOptions& options, const Run& run, bool is_piece = false);
 
 /// A session for the isosurfaces of an input, with edge ends.
 Result<Contour> contour_of(ContourInput input, const ContourOptions& options, const Run& run);

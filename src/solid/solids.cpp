@@ -1,7 +1,10 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <isotet/solid.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -10,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <isotet/linear_cells.hpp>
+#include <isotet/pieces.hpp>
 
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
@@ -19,6 +23,7 @@
 #include "solid/assemble.hpp"
 #include "solid/boundary_faces.hpp"
 #include "solid/cap.hpp"
+#include "solid/patches.hpp"
 #include "solid/rim.hpp"
 #include "solid/solid_input.hpp"
 
@@ -31,8 +36,16 @@ struct Solids::Data {
     std::optional<Contour> contour; ///< of the linear cells, with edge ends
     solid::BoundaryFaces boundary;
     solid::BoundaryPoints points;
+    std::vector<Field> user_cell_fields;   ///< of the user's cells
+    std::vector<PatchName> patch_names;
     double grid_volume = 0;
     std::vector<std::string> notes; ///< of making cells linear, told once
+    std::optional<std::array<double, 3>> origin; ///< of volumes of a piece
+    std::uint64_t ghosts = 0;                    ///< cells of other pieces
+
+    double volume_of(const Surface& surface) const {
+        return origin ? solid::enclosed_volume(surface, *origin) : solid::enclosed_volume(surface);
+    }
 };
 
 namespace {
@@ -61,6 +74,25 @@ std::uint64_t bytes_to_close(const ContourInput& input, const solid::BoundaryFac
     return vertices * a_vertex + boundary.faces.size() * triangles_per_face * (a_triangle + while_working);
 }
 
+/// Of the triangles of the boundary, which follow those of the isosurfaces.
+std::vector<SolidPatch> patches_of(const solid::Cap& cap, const Solid& solid, const std::vector<PatchName>& names) {
+    std::map<std::int64_t, SolidPatch> found;
+    for (const PatchName& name : names) found[name.number] = {name.number, name.name, 0, 0};
+    const std::size_t first = solid.isosurface_triangles;
+    const std::vector<double> areas = solid::areas_of(solid.surface, first, first + cap.marks.size());
+    for (std::size_t i = 0; i < cap.marks.size(); ++i) {
+        const std::int64_t number = cap.marks[i].patch;
+        if (number < 0) continue;
+        SolidPatch& patch = found[number];
+        patch.number = number;
+        ++patch.triangles;
+        patch.area += areas[i];
+    }
+    std::vector<SolidPatch> out;
+    for (auto& [number, patch] : found) out.push_back(std::move(patch));
+    return out;
+}
+
 Result<void> add_normals(Normals kind, Surface& surface, const Run& run) {
     if (kind == Normals::none) return {};
     Result<Array> made = kind == Normals::face ? face_normals(surface, run) : vertex_normals(surface, run);
@@ -77,30 +109,85 @@ Solids::Solids(Solids&&) noexcept = default;
 Solids& Solids::operator=(Solids&&) noexcept = default;
 Solids::~Solids() = default;
 
+namespace {
+
+/// Of linear cells.
+Result<Array> marks_of_linear_cells(const Array& ghosts, const ContourInput& given, const solid::SolidInput& taken,
+                                    const Run& run) {
+    if (ghosts.tuples() != given.grid.cells.count() || ghosts.components() != 1)
+        return invalid_argument(fmt::format("there are {} marks of {} cells, but must be one a cell", ghosts.tuples(),
+                                            given.grid.cells.count()));
+    return taken.linear ? taken.linear->of_cells(ghosts, run) : Result<Array>(ghosts);
+}
+
+void drop_faces_of_ghosts(const Array& ghosts, solid::BoundaryFaces& boundary) {
+    std::vector<solid::BoundaryFace> faces;
+    std::vector<solid::Wall> walls;
+    for (std::size_t i = 0; i < boundary.faces.size(); ++i) {
+        if (ghosts.at(boundary.faces[i].cell) != 0) continue;
+        faces.push_back(boundary.faces[i]);
+        if (!boundary.walls.empty()) walls.push_back(boundary.walls[i]);
+    }
+    boundary.faces = std::move(faces);
+    boundary.walls = std::move(walls);
+}
+
+} // namespace
+
 Result<Solids> Solids::create(ContourInput given, const ContourOptions& options, const Run& run) {
+    return make(std::move(given), nullptr, options, run);
+}
+
+Result<Solids> Solids::create_piece(ContourInput piece, const Array& ghosts, const ContourOptions& options,
+                                    const Run& run) {
+    return make(std::move(piece), &ghosts, options, run);
+}
+
+Result<Solids> Solids::make(ContourInput given, const Array* ghosts, const ContourOptions& options, const Run& run) {
     return core::carry_out("starting to make solids", run, [&](const Progress& progress) -> Result<Solids> {
         const Run inside{core::threads_here(), progress};
-        Result<solid::SolidInput> taken = solid::take_input(std::move(given), options, inside);
+        const ContourInput user = ghosts ? given : ContourInput{};
+        Result<solid::SolidInput> taken = solid::take_input(std::move(given), options, inside, ghosts != nullptr);
         if (!taken) return taken.error();
+        Array marks;
+        if (ghosts) {
+            Result<Array> found = marks_of_linear_cells(*ghosts, user, *taken, inside);
+            if (!found) return found.error();
+            marks = *std::move(found);
+        }
         auto data = std::make_unique<Data>();
         data->linear = std::move(taken->linear);
         data->input = std::move(taken->input);
         data->notes = std::move(taken->notes);
         data->options = options;
-        Result<Contour> contour = solid::contour_of(data->input, options, {});
-        if (!contour) return contour.error();
-        data->contour = *std::move(contour);
+        if (ghosts) data->origin = options.frame->whole.lower;
         auto boundary = solid::find_boundary_faces(
             data->input.grid, data->input.field.values,
             options.split_cells ? solid::CellMode::split : solid::CellMode::native, progress);
         if (!boundary) return boundary.error();
         data->boundary = *std::move(boundary);
+        if (auto found = solid::find_walls(data->input.grid, data->boundary, progress); !found) return found.error();
+        if (ghosts) {
+            drop_faces_of_ghosts(marks, data->boundary);
+            for (std::size_t cell = 0; cell < marks.tuples(); ++cell) data->ghosts += marks.at(cell) != 0;
+            Result<Grid> own = leave_out_cells(data->input.grid, marks, ~std::uint64_t{0}, inside);
+            if (!own) return own.error();
+            data->input.grid = *std::move(own);
+        }
+        Result<Contour> contour = solid::contour_of(data->input, options, {});
+        if (!contour) return contour.error();
+        data->contour = *std::move(contour);
+        const auto patches = solid::PatchFaces::of(taken->user_grid);
+        if (!patches) return patches.error();
+        patches->match(data->linear.get(), data->boundary);
+        data->user_cell_fields = std::move(taken->user_grid.cell_fields);
+        data->patch_names = std::move(taken->user_grid.patches.names);
         data->points = solid::BoundaryPoints(data->boundary, data->input.grid.points.tuples());
         ContourInput bare = data->input;
         bare.point_fields = {};
         bare.cell_fields = {};
         const solid::Cap all = solid::make_cap<double>(data->boundary, bare.grid.points, bare.field.values, {});
-        data->grid_volume = solid::enclosed_volume(solid::assemble({}, all, bare, {.precision = Precision::float64}));
+        data->grid_volume = data->volume_of(solid::assemble({}, all, bare, {}, {.precision = Precision::float64}));
         return Solids(std::move(data));
     });
 }
@@ -116,6 +203,7 @@ Result<Solid> Solids::extract(const SolidRange& range, const Run& run) {
         Result<ContourResult> result = data.contour->extract(isovalues, inside);
         if (!result) return result.error();
         out.contour = *std::move(result);
+        out.contour.cells_left_out -= std::min(out.contour.cells_left_out, data.ghosts);
         std::vector<solid::Shell> shells;
         std::uint64_t vertices = data.boundary.points.size() + 2 * data.boundary.faces.size(); // with apexes
         for (std::size_t i = 0; i < isovalues.size(); ++i) {
@@ -132,14 +220,17 @@ Result<Solid> Solids::extract(const SolidRange& range, const Run& run) {
             data.options.precision == Precision::float32
                 ? cap_of<float>(data.boundary, data.points, data.input, out.contour.field, range, shells)
                 : cap_of<double>(data.boundary, data.points, data.input, out.contour.field, range, shells);
-        out.surface = solid::assemble(shells, cap, data.input, data.options);
+        out.surface = solid::assemble(shells, cap, data.input, data.user_cell_fields, data.options);
         if (auto made = add_normals(data.options.normals, out.surface, inside); !made) return made.error();
         out.isosurface_triangles = out.surface.triangle_count() - cap.triangles.size();
         const auto triangles = out.surface.triangles.as<std::uint32_t>();
-        out.open_edges = solid::count_open_edges(cap, triangles.first(3 * out.isosurface_triangles),
-                                                 static_cast<std::uint32_t>(out.surface.vertex_count()));
+        if (!data.origin) // what is open where pieces meet is closed by the others
+            out.open_edges = solid::count_open_edges(cap, triangles.first(3 * out.isosurface_triangles),
+                                                     static_cast<std::uint32_t>(out.surface.vertex_count()));
         out.seam_edges = cap.seam_edges;
-        out.volume = solid::enclosed_volume(out.surface);
+        out.unfit_edges = cap.unfit_edges;
+        out.patches = patches_of(cap, out, data.patch_names);
+        out.volume = data.volume_of(out.surface);
         out.isosurface_area = solid::area_of(out.surface, 0, out.isosurface_triangles);
         out.boundary_area = solid::area_of(out.surface, out.isosurface_triangles, out.surface.triangle_count());
         if (data.linear) {

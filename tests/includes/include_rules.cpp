@@ -36,7 +36,7 @@ const std::vector<FolderRule>& folder_rules() {
         {"src/api/", {"api/", "reference/", "cpu/", "ops/", "packed/", "grid/", "numbers/", "base/"}},
         {"src/device/", {"device/", "api/", "vulkan/", "ops/", "packed/", "numbers/", "base/"}},
         {"src/session/", {"session/", "linear/", "packed/", "grid/", "numbers/", "base/"}},
-        {"src/solid/", {"solid/", "session/", "grid/", "numbers/", "base/"}},
+        {"src/solid/", {"solid/", "session/", "linear/", "grid/", "numbers/", "base/"}},
         {"src/scene/", {"scene/", "numbers/", "base/"}},
         {"src/jobs/", {"jobs/", "grid/", "base/"}},
         {"src/view/", {"view/"}},

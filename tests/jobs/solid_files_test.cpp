@@ -4,12 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <vector>
+
+#include <fmt/format.h>
 
 #include <isotet/check.hpp>
 #include <isotet/read.hpp>
 #include <isotet/write.hpp>
 
 #include "jobs/listener.hpp"
+#include "support/places.hpp"
 #include "support/small_grid.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -131,10 +135,45 @@ TEST(SolidFiles, MarkTheirBoundaryByRegionAndPatch) {
     EXPECT_EQ(read_surface(job.out).value().surface.point_fields.size(), 0u);
 }
 
+TEST(SolidFiles, TellThePatchesThatAFileNames) {
+    Listener listener;
+    ExtractJob job = solid_job(test::source_folder().string() + "/data/msh/inclusions_v22_ascii.msh", "",
+                              SolidChoice::Kind::above);
+    job.field.name = "x";
+    job.isovalues = {0.25};
+    const SolidNumbers solid = *extract_files(job, listener).value().surfaces[0].solid;
+    ASSERT_EQ(solid.patches.size(), 1u);
+    EXPECT_EQ(solid.patches[0].number, 3);
+    EXPECT_EQ(solid.patches[0].name, "boundary");
+    EXPECT_NEAR(solid.patches[0].area, 4, 1e-5) << "of the unit cube, cut off at a quarter";
+}
+
+TEST(SolidFiles, OfPiecesAreTogetherThatOfTheWhole) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    ExtractJob job = solid_job("make:mixed:4:gyroid", "", SolidChoice::Kind::below);
+    job.isovalues = {0.3};
+    const SolidNumbers whole = *extract_files(job, listener).value().surfaces[0].solid;
+    double volume = 0, area = 0;
+    std::vector<Surface> parts;
+    for (std::uint64_t k = 0; k < 3; ++k) {
+        job.piece = PieceOf{k, 3};
+        job.out = folder.file(fmt::format("{}.stl", k));
+        const SolidNumbers part = *extract_files(job, listener).value().surfaces[0].solid;
+        volume += part.volume;
+        area += part.boundary_area;
+        parts.push_back(read_surface(job.out).value().surface);
+    }
+    EXPECT_NEAR(volume, whole.volume, 1e-6);
+    EXPECT_NEAR(area, whole.boundary_area, 1e-6);
+    EXPECT_TRUE(check(join(parts, {}), {.closed = true, .weld = true}).value().sound);
+}
+
 TEST(SolidFiles, RefuseWhatDoesNotGoTogether) {
     Listener listener;
-    ExtractJob piece = solid_job("make:kuhn:4:gyroid", "", SolidChoice::Kind::above);
+    ExtractJob piece = solid_job("make:tet10:2:sphere", "", SolidChoice::Kind::above);
     piece.piece = PieceOf{0, 2};
+    piece.isovalues = {0.5};
     ExtractJob gradient = solid_job("make:kuhn:4:gyroid", "", SolidChoice::Kind::above);
     gradient.normals = Normals::gradient;
     ExtractJob other = solid_job("make:kuhn:4:gyroid", "", SolidChoice::Kind::between);

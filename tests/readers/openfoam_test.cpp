@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // OpenFOAM cases: every encoding, polyhedra, decomposed cases, values on patches, and files that are broken.
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <random>
@@ -71,6 +72,23 @@ protected:
     TemporaryFolder folder_;
     FoamBox box_ = foam_box(3, in_the_middle);
 };
+
+TEST_F(ReadOpenfoamCase, HasThePatchesOfTheWholeAlsoWhenItIsDecomposed) {
+    ReadOptions options = last_step();
+    options.patches = true;
+    for (const int processors : {0, 3}) {
+        const TemporaryFolder folder;
+        write_case(folder, foam_case(box_, wave, {}, processors));
+        const BoundaryPatches patches = read(folder.file(""), options).value().grid.patches;
+        ASSERT_EQ(patches.names.size(), 2u);
+        for (const FoamBox::Patch& patch : box_.patches) {
+            const auto name = std::ranges::find(patches.names, patch.name, &PatchName::name);
+            ASSERT_NE(name, patches.names.end());
+            EXPECT_EQ(std::ranges::count(patches.numbers.as<std::int64_t>(), name->number),
+                      static_cast<std::ptrdiff_t>(patch.count));
+        }
+    }
+}
 
 TEST_F(ReadOpenfoamCase, HasHexahedraAndTransitionsAsPolyhedra) {
     write_case(folder_, foam_case(box_, wave, {}));

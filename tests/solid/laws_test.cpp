@@ -11,6 +11,7 @@
 
 #include <isotet/check.hpp>
 #include <isotet/contour_spectrum.hpp>
+#include <isotet/hanging_points.hpp>
 #include <isotet/solid.hpp>
 
 #include "support/mixed_grid.hpp"
@@ -170,19 +171,32 @@ Grid taken_apart(const Grid& grid) {
     return out;
 }
 
+/// A ball of the field "sphere".
+Solid ball_of(const Grid& grid) {
+    return Solids::create({grid, point_field(grid), {}, {}}).value().extract(SolidRange::below(0.73)).value();
+}
+
+/// Of the isosurface alone.
+std::size_t open_edges(const Solid& solid) {
+    Surface surface = solid.surface;
+    const auto triangles = surface.triangles.as<std::uint32_t>().first(3 * solid.isosurface_triangles);
+    surface.triangles = Array::own(std::vector<std::uint32_t>(triangles.begin(), triangles.end()), 3);
+    return unbalanced_edges(surface);
+}
+
+TEST(Solid, OfCellsThatDoNotFitCountsTheEdgesWhereItsIsosurfaceIsOpenInside) {
+    const Grid grid = made_grid("octree", 4, {"sphere"});
+    const Solid left = ball_of(grid), closed = ball_of(close_hanging_points(grid).value().grid);
+    EXPECT_EQ(left.unfit_edges, open_edges(left));
+    EXPECT_GT(left.unfit_edges, 20u);
+    EXPECT_EQ(left.open_edges, 0u);
+    EXPECT_EQ(closed.unfit_edges, 0u);
+}
+
 TEST(Solid, OfDoubledPointsCountsTheEdgesWhereItsIsosurfaceIsOpenInside) {
     for (const char* shape : {"kuhn", "hex"}) {
         const Grid whole = made_grid(shape, 4, {"sphere"});
-        const auto solid_of = [](const Grid& grid) {
-            return Solids::create({grid, point_field(grid), {}, {}}).value().extract(SolidRange::below(0.73)).value();
-        };
-        const auto open_edges = [](const Solid& solid) { // of the isosurface alone
-            Surface surface = solid.surface;
-            const auto triangles = surface.triangles.as<std::uint32_t>().first(3 * solid.isosurface_triangles);
-            surface.triangles = Array::own(std::vector<std::uint32_t>(triangles.begin(), triangles.end()), 3);
-            return unbalanced_edges(surface);
-        };
-        const Solid one = solid_of(whole), apart = solid_of(taken_apart(whole));
+        const Solid one = ball_of(whole), apart = ball_of(taken_apart(whole));
         EXPECT_EQ(one.seam_edges, 0u);
         EXPECT_EQ(apart.seam_edges, open_edges(apart) - open_edges(one));
         EXPECT_GT(apart.seam_edges, 100u);

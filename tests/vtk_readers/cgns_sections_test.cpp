@@ -126,6 +126,40 @@ void expect_cells(const std::string& path) {
     EXPECT_TRUE(result->info.times.empty());
 }
 
+TEST(CgnsSections, BoundaryConditionsArePatches) {
+    const TemporaryFolder folder;
+    CgnsWriter file(folder.file("patches.cgns"));
+    file.mixed(1, boundary, true);
+    file.section("Hexahedra", CG_HEXA_8, 4, 5, all_of({volume[0], volume[1]}));
+    file.section("Wedge", CG_PENTA_6, 6, 6, volume[2]);
+    file.section("Tetrahedron", CG_TETRA_4, 7, 7, volume[3]);
+    const Points bottom{1, 2}, whole_range{1, 7}, top{5, 6, 7, 8};
+    const auto condition = [&](const char* name, CG_PointSetType_t kind, const Points& points, CG_GridLocation_t location) {
+        int number = 0;
+        EXPECT_EQ(cg_boco_write(file.file, file.base, file.zone, name, CG_BCWall, kind,
+                                static_cast<cgsize_t>(points.size()), points.data(), &number),
+                  0)
+            << cg_get_error();
+        cg_boco_gridlocation_write(file.file, file.base, file.zone, number, location);
+    };
+    condition("faces", CG_PointRange, bottom, CG_FaceCenter);
+    condition("points", CG_PointList, top, CG_Vertex);
+    condition("with cells", CG_PointRange, whole_range, CG_FaceCenter);
+    file.close();
+    ReadOptions options;
+    options.patches = true;
+    const auto result = read(folder.file("patches.cgns"), options);
+    ASSERT_TRUE(result) << result.error().message;
+    const BoundaryPatches& patches = result->grid.patches;
+    ASSERT_EQ(patches.names.size(), 3u);
+    EXPECT_EQ(patches.names[1].name, "points");
+    const auto numbers = patches.numbers.as<std::int64_t>(), offsets = patches.offsets.as<std::int64_t>();
+    EXPECT_EQ(std::vector<std::int64_t>(numbers.begin(), numbers.end()), (std::vector<std::int64_t>{0, 0, 1, 2, 2, 2}));
+    EXPECT_EQ(std::vector<std::int64_t>(offsets.begin(), offsets.end()),
+              (std::vector<std::int64_t>{0, 4, 8, 12, 16, 20, 23}));
+    EXPECT_EQ(patches.points.at(8), 4);
+}
+
 TEST(CgnsSections, MayStandInAnyOrderAndNumberTheBoundaryFirst) {
     const TemporaryFolder folder;
     const Points hexahedra = all_of({volume[0], volume[1]}), quads = all_of({boundary[0], boundary[1]});

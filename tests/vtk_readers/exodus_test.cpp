@@ -6,13 +6,40 @@
 #include <vtk_exodusII.h>
 
 #include <isotet/read.hpp>
+#include <isotet/solid.hpp>
 
+#include "support/places.hpp"
 #include "vtk_readers/sample_exodus.hpp"
 #include "vtk_readers/sample_grid.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace isotet::test {
 namespace {
+
+TEST(ExodusSideSets, AreFacesOfTheBoundary) {
+    ReadOptions options;
+    options.patches = true;
+    const auto result = read(source_folder().string() + "/data/exodus/tension_tets_stress_3steps.e", options);
+    ASSERT_TRUE(result) << result.error().message;
+    const Grid& grid = result->grid;
+    ASSERT_EQ(grid.patches.names.size(), 4u);
+    EXPECT_EQ(grid.patches.names[3].name, "surface_4");
+    EXPECT_EQ(grid.patches.count(), 234u + 234u + 46u + 50u);
+    Solids solids = Solids::create({grid, find_field(grid, "x").value(), {}, {}}).value();
+    const Solid whole = solids.extract(SolidRange::above(-1e30)).value();
+    ASSERT_EQ(whole.patches.size(), 4u);
+    EXPECT_EQ(whole.patches[2].triangles, 46u);
+    EXPECT_EQ(whole.patches[3].triangles, 50u);
+}
+
+TEST(ExodusSideSets, OfMixedAndQuadraticBlocksAreFacesOfTheBoundary) {
+    ReadOptions options;
+    options.patches = true;
+    const auto result = read(source_folder().string() + "/data/exodus/mixed_blocks_hdf5.exo", options);
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(result->grid.patches.names.size(), 13u);
+    EXPECT_TRUE(result->info.left_out.empty());
+}
 
 class ReadExodus : public testing::TestWithParam<int> {
 protected:

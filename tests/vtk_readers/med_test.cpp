@@ -50,6 +50,25 @@ bool has_note(const ReadResult& result, std::string_view part) {
     return std::ranges::any_of(result.notes, [&](const std::string& note) { return note.find(part) != note.npos; });
 }
 
+TEST_F(ReadMed, FacesInGroupsArePatches) {
+    ReadOptions options;
+    options.patches = true;
+    const auto result = read_with(
+        [](MedWriter& file) {
+            file.cells("TR3", 3, {1, 2, 3, 1, 2, 4, 2, 3, 5}, {-1, 0, -2});
+            file.family("m", "F1", -1, {"inlet", "all"});
+            file.family("m", "F2", -2, {"outlet"});
+        },
+        options);
+    ASSERT_TRUE(result) << result.error().message;
+    const BoundaryPatches& patches = result->grid.patches;
+    EXPECT_EQ(numbers_of(patches.points), (std::vector<double>{0, 1, 2, 1, 2, 4}));
+    EXPECT_EQ(numbers_of(patches.numbers), (std::vector<double>{0, 1}));
+    ASSERT_EQ(patches.names.size(), 2u);
+    EXPECT_EQ(patches.names[0].name, "inlet");
+    EXPECT_EQ(patches.names[1].name, "outlet");
+}
+
 TEST_F(ReadMed, CellsAreTurnedToVtksOrientation) {
     const auto result = read_with([](MedWriter&) {});
     ASSERT_TRUE(result) << result.error().message;

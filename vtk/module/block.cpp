@@ -75,6 +75,9 @@ std::vector<std::string> notes_of(const isotet::Solid& solid) {
     if (solid.seam_edges > 0)
         notes.push_back("the isosurface of the solid has " + std::to_string(solid.seam_edges) +
                         " open edges inside the grid, where points are doubled: vtkStaticCleanUnstructuredGrid joins them");
+    if (solid.unfit_edges > 0)
+        notes.push_back("the isosurface of the solid has " + std::to_string(solid.unfit_edges) +
+                        " open edges inside the grid, where cells of different sizes do not fit together");
     return notes;
 }
 

@@ -87,7 +87,8 @@ struct SolidNumbers {
     SolidRange range;
     double volume = 0, grid_volume = 0;
     double isosurface_area = 0, boundary_area = 0;
-    std::uint64_t open_edges = 0, seam_edges = 0;
+    std::uint64_t open_edges = 0, seam_edges = 0, unfit_edges = 0;
+    std::vector<SolidPatch> patches; ///< Solid::patches
 };
 
 /// Where the field is below an isovalue, and where it is not, as contour_spectrum() measures it.

@@ -37,6 +37,7 @@ struct GridOptions {
     HangingChoice hanging_points = HangingChoice::close;
     bool keep_pieces = false;
     bool allow_outside = false;
+    bool patches = false; ///< ReadOptions::patches
     std::string displace;
     std::vector<std::string> blocks;       ///< names or numbers; empty: all
     std::vector<std::string> more_files;   ///< of further time steps

@@ -18,6 +18,7 @@
 #include "grid/cells.hpp"
 #include "grid/fields/merged_values.hpp"
 #include "grid/orientation.hpp"
+#include "grid/patches.hpp"
 #include "grid/points/close_points.hpp"
 #include "grid/points/same_place.hpp"
 
@@ -150,6 +151,7 @@ Result<MergedPoints> merge(const Grid& grid, const MergeOptions& options, const 
     if (!cells) return cells.error();
     if (auto sound = core::check_cells(grid, *cells, progress); !sound) return sound.error();
     if (auto sound = check_other_cells(grid, *cells, progress); !sound) return sound.error();
+    if (auto sound = core::check_patches(grid); !sound) return sound.error();
     progress("merge points", 0.2);
     const std::vector<std::uint8_t> used = used_points(*cells);
     std::vector<std::uint64_t> lowest;
@@ -177,6 +179,8 @@ Result<MergedPoints> merge(const Grid& grid, const MergeOptions& options, const 
                                      tolerance, cells_hit.contoured)};
         result.collapsed_cells = cells_hit.collapsed;
         result.grid.cells.connectivity = replaced(grid.cells.connectivity, *cells, lowest);
+        result.grid.patches = core::renumbered(
+            grid.patches, [&](std::uint64_t point) { return static_cast<std::int64_t>(lowest[point]); });
         if (!grid.cells.faces.empty()) result.grid.cells.faces = replaced_faces(grid.cells, *cells, lowest);
     }
     for (Field& field : result.grid.point_fields) {

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "grid/patches.hpp"
 #include "io/files/escape.hpp"
 #include "io/files/text_scanner.hpp"
 #include "io/foam/case_layout.hpp"
@@ -236,8 +237,27 @@ Array point_array(foam::Mesh& mesh) {
     return Array::own(std::move(narrow), 3);
 }
 
+/// Patches with faces, but those between processors. Those of regions have their names in front.
+void add_patches(const foam::WholeMesh& whole, const std::string& prefix, core::PatchList& numbers, Grid& grid) {
+    core::PatchList list;
+    for (const foam::Part& part : whole.parts)
+        for (const foam::Patch& patch : part.patches) {
+            if (patch.type.starts_with("processor")) continue;
+            const std::string name = prefix + patch.name;
+            const std::int64_t number = numbers.number_of(name);
+            list.name(number, name);
+            const foam::Faces& faces = whole.mesh.faces;
+            for (std::size_t face = patch.first; face < patch.first + patch.count; ++face) {
+                for (std::uint64_t i = faces.begins[face]; i < faces.begins[face + 1]; ++i) list.point(faces.points[i]);
+                list.end_face(number);
+            }
+        }
+    grid.patches = list.finish();
+}
+
 Result<Piece> read_region(const CaseFiles& files, const CaseLayout& layout, const std::string& region, std::size_t step,
-                          const RegionChoice& choice, const ReadOptions& options, std::vector<std::string>& notes) {
+                          const RegionChoice& choice, const ReadOptions& options, core::PatchList& patch_numbers,
+                          std::vector<std::string>& notes) {
     const auto places = places_of(files, layout, region, step);
     if (!places) return places.error();
     std::vector<foam::Mesh> meshes;
@@ -254,6 +274,9 @@ Result<Piece> read_region(const CaseFiles& files, const CaseLayout& layout, cons
     piece.name = region;
     piece.grid.cells = foam::cells_of(whole->mesh);
     if (auto read = read_fields(files, layout, region, step, options, *whole, piece, notes); !read) return read.error();
+    if (options.patches)
+        add_patches(*whole, layout.has_several_regions() && !region.empty() ? region + "/" : "", patch_numbers,
+                    piece.grid);
     piece.grid.points = point_array(whole->mesh);
     if (choice.whole) return piece;
     auto outside = foam::cells_outside(choice.zones, files, *places, *whole);
@@ -332,9 +355,11 @@ Result<Loaded> load_openfoam_case(const CaseFiles& case_files, const ReadOptions
         return announced.error();
     if (depth == Depth::description) return loaded;
     loaded.notes = layout->notes;
+    core::PatchList patch_numbers;
     for (std::size_t i = 0; i < chosen->size(); ++i) {
         if ((*chosen)[i].empty()) continue;
-        auto piece = read_region(files, *layout, layout->regions[i], loaded.step, (*chosen)[i], options, loaded.notes);
+        auto piece = read_region(files, *layout, layout->regions[i], loaded.step, (*chosen)[i], options, patch_numbers,
+                                 loaded.notes);
         if (!piece) return piece.error();
         if (chosen->size() > 1 && (*chosen)[i].whole) loaded.info.blocks[i].cells = piece->grid.cells.count();
         loaded.pieces.push_back(std::move(*piece));

@@ -12,6 +12,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "grid/cells.hpp"
+#include "grid/patches.hpp"
 #include "io/gmsh/read_gmsh_parts.hpp"
 #include "io/pieces/join.hpp"
 #include "io/pieces/loaded.hpp"
@@ -166,7 +168,7 @@ Result<Contents> open_contents(std::string_view bytes) {
     if (!tags) return tags.error();
     contents.tags = *tags;
     if (contents.tags.physical) {
-        auto names = names_of_volumes(contents.file, physical_name);
+        auto names = names_of_groups(contents.file, 3, physical_name);
         if (!names) return names.error();
         contents.info.regions = *std::move(names);
     }
@@ -237,6 +239,23 @@ Result<void> add_data_field(const Contents& contents, const FieldInfo& info, std
     return {};
 }
 
+/// Elements of physical surfaces.
+Result<BoundaryPatches> physical_surfaces(const File& file, const Grid& grid, const std::vector<std::int32_t>& physical) {
+    const auto names = names_of_groups(file, 2, physical_name);
+    if (!names) return names.error();
+    core::PatchList list;
+    for (const RegionName& name : *names) list.name(name.number, name.name);
+    const auto cells = core::CellReader::open(grid);
+    if (!cells) return cells.error();
+    for (std::size_t cell = 0; cell < cells->count(); ++cell) {
+        if (!core::is_flat_cell(cells->type(cell)) || physical[cell] <= 0) continue;
+        for (std::uint64_t k = 0; k < cells->corners(cell); ++k)
+            list.point(static_cast<std::int64_t>(cells->corner(cells->first(cell) + k)));
+        list.end_face(physical[cell]);
+    }
+    return list.finish();
+}
+
 /// A file of one partition may have a layer of elements of others.
 Result<ReadResult> without_ghosts(ReadResult result, std::vector<std::uint8_t> ghosts) {
     Loaded loaded;
@@ -266,6 +285,8 @@ Result<ReadResult> parse_gmsh(std::string_view bytes, const ReadOptions& options
 
     Wants wants;
     wants.physical = contents->tags.physical && wanted(options, Association::cell, physical_name);
+    const bool wants_patches = options.patches && contents->tags.physical, wants_physical = wants.physical;
+    wants.physical = wants.physical || wants_patches;
     wants.geometrical = contents->tags.geometrical && wanted(options, Association::cell, geometrical_name);
     wants.partition = contents->tags.partition && wanted(options, Association::cell, partition_name);
     for (const DataSection& data : contents->data) {
@@ -291,7 +312,12 @@ Result<ReadResult> parse_gmsh(std::string_view bytes, const ReadOptions& options
     const auto add_tags = [&](bool is_wanted, std::string_view name, std::vector<std::int32_t>& tags) {
         if (is_wanted) grid.cell_fields.push_back({std::string(name), Array::own(std::move(tags))});
     };
-    add_tags(wants.physical, physical_name, mesh->physical);
+    if (wants_patches) {
+        auto patches = physical_surfaces(contents->file, grid, mesh->physical);
+        if (!patches) return patches.error();
+        grid.patches = *std::move(patches);
+    }
+    add_tags(wants_physical, physical_name, mesh->physical);
     add_tags(wants.geometrical, geometrical_name, mesh->geometrical);
     add_tags(wants.partition, partition_name, mesh->partition);
     return mesh->ghosts.empty() ? std::move(result) : without_ghosts(std::move(result), std::move(mesh->ghosts));

@@ -19,7 +19,7 @@ std::optional<std::string> quoted_rest(TextScanner& scanner) {
 
 } // namespace
 
-Result<std::vector<RegionName>> names_of_volumes(const File& file, std::string_view field) {
+Result<std::vector<RegionName>> names_of_groups(const File& file, std::int32_t of_dimension, std::string_view field) {
     std::vector<RegionName> names;
     const Section* const section = file.find("PhysicalNames");
     if (!section) return names;
@@ -35,7 +35,7 @@ Result<std::vector<RegionName>> names_of_volumes(const File& file, std::string_v
             return broken(*section,
                           fmt::format("should have {} names, but {} is none: {}", count, i + 1, scanner.where()));
         scanner.next_line();
-        if (dimension == 3) names.push_back({std::string(field), number, *std::move(name)});
+        if (dimension == of_dimension) names.push_back({std::string(field), number, *std::move(name)});
     }
     return names;
 }

@@ -111,8 +111,8 @@ struct Mesh {
     }
 };
 
-/// The names of the physical groups of volumes, numbers of the cell field `field`.
-Result<std::vector<RegionName>> names_of_volumes(const File& file, std::string_view field);
+/// The names of the physical groups of volumes or surfaces (3 or 2), numbers of the cell field `field`.
+Result<std::vector<RegionName>> names_of_groups(const File& file, std::int32_t of_dimension, std::string_view field);
 
 /// Which of `gmsh:physical`, `gmsh:geometrical` and `gmsh:partition` the file has.
 Result<Wants> tags_of(const File& file);

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "grid/cell_faces.hpp"
+#include "grid/patches.hpp"
 #include "io/files/escape.hpp"
 #include "io/pieces/join.hpp"
 
@@ -116,6 +117,8 @@ void drop_unused_points(Piece& piece) {
     for (std::int64_t& corner : corners)
         if (static_cast<std::size_t>(corner) < count) corner = place[static_cast<std::size_t>(corner)];
         else corner = next; // still no point: the checks of what was read say so
+    grid.patches = core::renumbered(grid.patches,
+                                    [&](std::uint64_t point) { return point < count ? place[point] : std::int64_t{-1}; });
     const auto kept = static_cast<std::size_t>(next);
     renumber_faces(grid.cells, [&](std::uint64_t point) { return point < count ? place[point] : next; });
     grid.cells.connectivity = Array::own(std::move(corners));

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/parallel.hpp"
+#include "grid/patches.hpp"
 #include "io/files/first_error.hpp"
 #include "io/pieces/join_active.hpp"
 #include "io/pieces/joined_cells.hpp"
@@ -44,11 +45,22 @@ Result<void> read_cells_of(std::vector<Piece>& pieces) {
     return failed.result();
 }
 
+/// Those of all pieces, in the order of the file. Each numbers its patches as the others do.
+BoundaryPatches join_patches(const OrderedPieces& all, const PointNumbers& numbers) {
+    core::PatchList list;
+    for (const std::size_t p : all.order_of_file())
+        core::append_patches(
+            all.pieces[p].grid.patches,
+            [&](std::uint64_t point) { return static_cast<std::int64_t>(numbers.pieces[p](point)); }, list);
+    return list.finish();
+}
+
 Result<void> join_arrays(OrderedPieces& all, const PointNumbers& numbers, const Seams& seams, ReadResult& result,
                          const Progress& progress) {
     auto cells = join_cells(all.pieces, all.order_of_file(), numbers, progress);
     if (!cells) return cells.error();
     result.grid.cells = std::move(cells->cells);
+    result.grid.patches = join_patches(all, numbers);
     auto cell_fields = join_cell_fields(all.pieces, cells->first, cells->kept, cells->count, result, progress);
     if (!cell_fields) return cell_fields.error();
     result.grid.cell_fields = *std::move(cell_fields);

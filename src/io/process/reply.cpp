@@ -20,7 +20,7 @@
 namespace isotet::io::confined {
 namespace {
 
-constexpr std::uint64_t magic = 0x3430795f74657469; // "itet_y04", and the byte order with it
+constexpr std::uint64_t magic = 0x3530795f74657469; // "itet_y05", and the byte order with it
 constexpr std::uint64_t alignment = 64;
 
 struct Header {
@@ -117,7 +117,7 @@ public:
     }
     void describe(ReadResult& result) {
         [[maybe_unused]] const auto& [whole, info, step, cells_in_file, notes] = result;
-        [[maybe_unused]] const auto& [points, cells, point_fields, cell_fields, point_numbers] = result.grid;
+        [[maybe_unused]] const auto& [points, cells, point_fields, cell_fields, point_numbers, patches] = result.grid;
         [[maybe_unused]] const auto& [connectivity, offsets, types, uniform_type, faces, face_offsets] = result.grid.cells;
         describe(result.info);
         out_.number<std::uint64_t>(result.step);
@@ -135,6 +135,13 @@ public:
         fields(grid.point_fields);
         fields(grid.cell_fields);
         array(grid.point_numbers);
+        array(grid.patches.points);
+        array(grid.patches.offsets);
+        array(grid.patches.numbers);
+        out_.list(grid.patches.names, [&](const PatchName& patch) {
+            out_.number(patch.number);
+            out_.text(patch.name);
+        });
     }
 
 private:
@@ -227,6 +234,14 @@ public:
         grid.point_fields = fields();
         grid.cell_fields = fields();
         grid.point_numbers = array();
+        grid.patches.points = array();
+        grid.patches.offsets = array();
+        grid.patches.numbers = array();
+        in_.list([&] {
+            PatchName& patch = grid.patches.names.emplace_back();
+            patch.number = in_.number<decltype(patch.number)>();
+            patch.name = in_.text();
+        });
         return result;
     }
 

@@ -11,7 +11,7 @@
 namespace isotet::io::confined {
 namespace {
 
-constexpr std::uint32_t request_version = 0x69730005;
+constexpr std::uint32_t request_version = 0x69730006;
 
 using Names = std::optional<std::vector<std::string>>;
 
@@ -104,6 +104,7 @@ std::string encode(const Request& request) {
     out.number<std::uint64_t>(options.step.value_or(0));
     out.number<std::uint8_t>(options.merge_pieces_by_coordinates);
     out.number<std::uint8_t>(options.allow_outside);
+    out.number<std::uint8_t>(options.patches);
     out.text(options.displace);
     out.number(options.memory_limit);
     out.list(options.blocks, [&](const std::string& block) { out.text(block); });
@@ -127,6 +128,7 @@ Result<Request> decode_request(std::string_view bytes) {
     if (has_step) options.step = step;
     options.merge_pieces_by_coordinates = in.number<std::uint8_t>() != 0;
     options.allow_outside = in.number<std::uint8_t>() != 0;
+    options.patches = in.number<std::uint8_t>() != 0;
     options.displace = in.text();
     options.memory_limit = in.number<std::uint64_t>();
     in.list([&] { options.blocks.push_back(in.text()); });

@@ -89,7 +89,7 @@ Result<ClosedGrid> close_hanging(const Grid& grid, const Progress& progress) {
     const core::PointReader points(grid.points);
     const auto covers = find_covers(all->open, all->cells, points, progress);
     if (!covers) return covers.error();
-    out.report.open_faces = covers->open;
+    out.report.open_faces = covers->open.size();
     if (covers->whole.empty()) return out;
     describe_hanging(all->open, *covers, points, grid.points.type() == ScalarType::float32, out);
     const std::vector<ListedCell> listed = list_cells(all->cells, all->faces, all->open, *covers, progress);

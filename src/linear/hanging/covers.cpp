@@ -347,7 +347,7 @@ bool take_whole(Search& search, double farthest, Covers& out) {
 
 Result<Covers> find_covers(const OpenFaces& faces, const core::CellReader& cells, const core::PointReader& points,
                            const Progress& progress) {
-    Covers out{{}, SplitEdges(points), 0};
+    Covers out{{}, SplitEdges(points)};
     const std::vector<std::uint32_t> larger = larger_ones(faces, cells.points(), points);
     if (larger.empty()) return out;
     const FaceShapes shapes(faces, cells, points);
@@ -361,8 +361,8 @@ Result<Covers> find_covers(const OpenFaces& faces, const core::CellReader& cells
         out.edges.add(points_of_others(out.whole, faces, out.edges));
         if (out.edges.size() == before) break;
     }
-    out.open = static_cast<std::uint64_t>(
-        std::ranges::count_if(search.waiting, [&](const Cover& cover) { return looks_covered(cover, faces); }));
+    for (Cover& cover : search.waiting)
+        if (looks_covered(cover, faces)) out.open.push_back(std::move(cover));
     std::ranges::sort(out.whole, {}, &Cover::face);
     return out;
 }

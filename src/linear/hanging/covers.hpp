@@ -35,7 +35,7 @@ struct Cover {
 struct Covers {
     std::vector<Cover> whole; ///< by ascending face
     SplitEdges edges;
-    std::uint64_t open = 0; ///< faces on which smaller ones lie that do not cover them
+    std::vector<Cover> open = {}; ///< faces on which smaller ones lie that do not cover them
 };
 
 /// A face is covered by smaller open faces of other cells that face the other way, whose middles are over it, and whose

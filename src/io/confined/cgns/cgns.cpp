@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "io/confined/cgns/cgns_patches.hpp"
 #include "io/confined/cgns/cgns_solutions.hpp"
 #include "io/confined/cgns/cgns_zone.hpp"
 #include "io/confined/hdf5/hdf5_walk.hpp"
@@ -63,7 +64,8 @@ public:
 private:
     Result<void> describe(Loaded& loaded);
     Result<Piece> read_zone(std::size_t at, const ReadOptions& options, std::size_t step,
-                            Loaded& loaded) const;
+                            core::PatchList& patch_numbers, Loaded& loaded) const;
+    Result<void> read_patches(const CgnsZone& zone, core::PatchList& numbers, Loaded& loaded, Grid& grid) const;
     bool is_there(const CgnsZone& zone, std::size_t step) const;
     std::size_t step_of(const CgnsZone& zone, std::size_t step) const {
         return std::min(step, std::max<std::size_t>(bases_[zone.base].times.size(), 1) - 1);
@@ -114,8 +116,17 @@ bool CgnsFile::is_there(const CgnsZone& zone, std::size_t step) const {
     return is_named(names) || std::ranges::none_of(base.zones, is_named);
 }
 
+/// Those that are broken are left out.
+Result<void> CgnsFile::read_patches(const CgnsZone& zone, core::PatchList& numbers, Loaded& loaded, Grid& grid) const {
+    auto patches = cgns_patches(tree_, zone, numbers);
+    if (patches) grid.patches = *std::move(patches);
+    else if (patches.error().code != ErrorCode::invalid_data) return patches.error();
+    else leave_out(loaded.info, {"patch", "boundary conditions of " + zone.name, patches.error().message});
+    return {};
+}
+
 Result<Piece> CgnsFile::read_zone(std::size_t at, const ReadOptions& options, std::size_t step,
-                                  Loaded& loaded) const {
+                                  core::PatchList& patch_numbers, Loaded& loaded) const {
     const CgnsZone& zone = zones_[at];
     const CgnsSolutions& solutions = solutions_[at];
     Piece piece;
@@ -136,6 +147,8 @@ Result<Piece> CgnsFile::read_zone(std::size_t at, const ReadOptions& options, st
         cells = *std::move(read);
         piece.grid.cells = cells.cells;
     }
+    if (options.patches)
+        if (auto read = read_patches(zone, patch_numbers, loaded, piece.grid); !read) return read.error();
     solutions.read(options, step_of(zone, step), cells, piece.grid, loaded.info);
     return piece;
 }
@@ -156,10 +169,11 @@ Result<Loaded> CgnsFile::load(const ReadOptions& options, Depth depth) {
             fmt::format("only the first of {} bases is read, '{}': --block NAME (ReadOptions::blocks) reads {}",
                         bases_.size(), escaped(bases_[0].name), fmt::join(others, ", ")));
     }
+    core::PatchList patch_numbers;
     for (std::size_t i = 0; i < zones_.size(); ++i) {
         // Bases are grids of their own, often in the same place: without a choice only the first is read.
         if (!(*chosen)[i] || (options.blocks.empty() && zones_[i].base > 0) || !is_there(zones_[i], *step)) continue;
-        auto piece = read_zone(i, options, *step, loaded);
+        auto piece = read_zone(i, options, *step, patch_numbers, loaded);
         if (!piece) return piece.error();
         loaded.pieces.push_back(*std::move(piece));
         report_progress(static_cast<double>(i + 1) / static_cast<double>(zones_.size()));

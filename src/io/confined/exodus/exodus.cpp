@@ -14,6 +14,7 @@
 #include "io/pieces/shared_faces.hpp"
 #include "io/confined/exodus/exodus_file.hpp"
 #include "io/confined/exodus/exodus_parts.hpp"
+#include "io/confined/exodus/exodus_sides.hpp"
 #include "io/confined/hdf5/hdf5_walk.hpp"
 #include "io/confined/length_check.hpp"
 #include "io/confined/loaders.hpp"
@@ -185,6 +186,16 @@ Result<void> read_fields(ExodusFile& file, const ReadOptions& options, Loaded& l
     return {};
 }
 
+/// Those that are broken are left out.
+Result<void> read_side_sets(const ExodusFile& file, const ReadOptions& options, Loaded& loaded, Grid& grid) {
+    if (!options.patches) return {};
+    auto patches = exodus_side_sets(file, grid);
+    if (patches) grid.patches = *std::move(patches);
+    else if (patches.error().code != ErrorCode::invalid_data) return patches.error();
+    else leave_out(loaded.info, {"patch", "side sets", patches.error().message});
+    return {};
+}
+
 /// Elements of which not all nodes are read, and those of which nothing is.
 void say_what_is_read(const ExodusFile& file, Loaded& loaded) {
     std::map<std::string, std::uint64_t> shorter;
@@ -279,6 +290,7 @@ Result<Piece> read_piece(ExodusFile& file, const std::string& path, const ReadOp
         return cells.error().message.starts_with(escaped(path)) ? cells.error() : broken(path, cells.error().message);
     piece.grid.cells = std::move(*cells);
     say_what_is_read(file, loaded);
+    if (auto read = read_side_sets(file, options, loaded, piece.grid); !read) return read.error();
     if (auto read = read_fields(file, options, loaded, piece.grid); !read) return read.error();
     if (!with_ids) return piece;
     auto point_ids = file.point_ids();

@@ -145,6 +145,38 @@ Result<std::vector<std::int64_t>> ExodusFile::cells_of(const Set& set) const {
     return *std::move(cells);
 }
 
+Result<std::vector<ExodusFile::SideSet>> ExodusFile::side_sets() const {
+    const std::uint64_t count = file_->dimension("num_side_sets").value_or(0);
+    if (count > max_blocks) return failed(fmt::format("a list of {} side sets", count));
+    const auto ids = ids_of(*file_, "ss_prop1", count);
+    const auto names = file_->texts("ss_names");
+    const EntryMarks marks(*file_, "ss_status");
+    std::vector<SideSet> sets;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (!marks.has_entries(i) || ids[i] < 0) continue;
+        auto cells = file_->numbers<std::int64_t>(fmt::format("elem_ss{}", i + 1));
+        auto sides = file_->numbers<std::int64_t>(fmt::format("side_ss{}", i + 1));
+        if (!cells || !sides || cells->size() != sides->size()) return failed(fmt::format("the sides of side set {}", ids[i]));
+        const bool named = i < names.size() && !names[i].empty();
+        sets.push_back({ids[i], i + 1, named ? names[i] : fmt::format("side set {}", ids[i]), *std::move(cells),
+                        *std::move(sides)});
+    }
+    return sets;
+}
+
+std::optional<std::uint64_t> ExodusFile::place_of(std::int64_t element) const {
+    if (element < 1) return std::nullopt;
+    const auto from_0 = static_cast<std::uint64_t>(element) - 1;
+    if (all_blocks_.empty()) return from_0 < cells_ ? std::optional(from_0) : std::nullopt;
+    std::uint64_t before = 0, chosen_before = 0;
+    for (const auto& [cells, chosen] : all_blocks_) {
+        if (from_0 < before + cells) return chosen ? chosen_before + from_0 - before : not_read;
+        before += cells;
+        chosen_before += chosen ? cells : 0;
+    }
+    return std::nullopt;
+}
+
 void ExodusFile::choose(const std::vector<bool>& chosen) {
     std::vector<Block> kept;
     cells_ = 0;

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,6 +39,14 @@ public:
         std::uint64_t cells = 0;
     };
 
+    /// Sides of elements of any blocks.
+    struct SideSet {
+        std::int64_t id = 0;
+        std::size_t number = 0; ///< as that of blocks
+        std::string name; ///< "side set 3" where it has none
+        std::vector<std::int64_t> cells, sides = {}; ///< from 1, cells through all blocks of the file
+    };
+
     static Result<ExodusFile> open(const std::string& path);
 
     std::uint64_t points() const noexcept { return points_; }
@@ -68,6 +77,11 @@ public:
     Result<Ragged> faces_of(const Block& block);
     /// The elements of a set, counted from 0 through all blocks of the file.
     Result<std::vector<std::int64_t>> cells_of(const Set& set) const;
+    static constexpr std::uint64_t not_read = ~std::uint64_t{0};
+    /// Which cell of the chosen blocks an element of the file is, from 1 through all blocks; nothing: there is no such element.
+    std::optional<std::uint64_t> place_of(std::int64_t element) const;
+    /// Errors   invalid_data: sides that are not one for each element
+    Result<std::vector<SideSet>> side_sets() const;
     Result<Array> point_variable(std::size_t variable, std::size_t step);
     /// One value a cell of all blocks; NaN in blocks that do not have the variable, which are counted.
     Result<Array> cell_variable(std::size_t variable, std::size_t step, std::size_t& blocks_without);

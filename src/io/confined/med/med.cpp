@@ -41,12 +41,14 @@ private:
     Result<void> find_groups(Placed& placed);
     void announce_blocks();
     Result<std::vector<bool>> chosen();
+    Result<void> read_patches(const Placed& placed, Grid& grid);
     Result<Piece> read_mesh(std::size_t at, const std::vector<bool>& chosen, std::size_t first_group);
 
     const MedFile& file_;
     const ReadOptions& options_;
     MedFields fields_;
     std::vector<Placed> meshes_;
+    core::PatchList patch_numbers_; ///< of all meshes
     Loaded loaded_;
 };
 
@@ -130,6 +132,17 @@ Result<std::vector<bool>> MedLoader::chosen() {
     return only;
 }
 
+/// Those that are broken are left out.
+Result<void> MedLoader::read_patches(const Placed& placed, Grid& grid) {
+    if (!options_.patches) return {};
+    core::PatchList list;
+    if (const auto added = placed.mesh.add_patches(placed.place, patch_numbers_, list); added)
+        grid.patches = list.finish();
+    else if (added.error().code != ErrorCode::invalid_data) return added.error();
+    else leave_out(loaded_.info, {"patch", "groups of faces of " + placed.mesh.name(), added.error().message});
+    return {};
+}
+
 Result<Piece> MedLoader::read_mesh(std::size_t at, const std::vector<bool>& chosen, std::size_t first_group) {
     Placed& placed = meshes_[at];
     Piece piece;
@@ -142,6 +155,7 @@ Result<Piece> MedLoader::read_mesh(std::size_t at, const std::vector<bool>& chos
     piece.grid.cells = *std::move(cells);
     if (auto done = fields_.read(options_, loaded_.step, placed.mesh, placed.place, piece.grid, loaded_); !done)
         return done.error();
+    if (auto read = read_patches(placed, piece.grid); !read) return read.error();
     const bool whole = meshes_.size() > 1 ? chosen[at] : options_.blocks.empty();
     if (!whole) {
         std::vector<std::int64_t> families;

@@ -43,6 +43,11 @@ const MedElement* med_element(std::string_view name) {
     return found == med_solids.end() ? nullptr : found;
 }
 
+std::uint32_t nodes_of_med_face(std::string_view name) {
+    if (name.size() != 3 || !(name.starts_with("TR") || name.starts_with("QU"))) return 0;
+    return is_flat_med_element(name) ? static_cast<std::uint32_t>(name.back() - '0') : 0;
+}
+
 bool is_flat_med_element(std::string_view name) {
     static constexpr std::array<std::string_view, 13> flat{"PO1", "SE2", "SE3", "SE4", "TR3", "TR6", "TR7",
                                                            "QU4", "QU8", "QU9", "POG", "PO2", "PG2"};

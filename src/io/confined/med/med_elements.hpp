@@ -20,6 +20,9 @@ inline constexpr std::uint8_t med_polyhedron_type = 42;
 /// Cells with a volume; null for all others.
 const MedElement* med_element(std::string_view name);
 
+/// Of a triangle or quadrilateral; 0 for all others.
+std::uint32_t nodes_of_med_face(std::string_view name);
+
 /// Points, lines and faces, of which nothing is read.
 bool is_flat_med_element(std::string_view name);
 

@@ -116,6 +116,7 @@ Result<MedMeshPlace> MedMesh::place_at(std::int64_t number, std::int64_t iterati
         if (file_.has(step->group + "/NOE/COO")) place.coordinates = step->group + "/NOE/COO";
         if (!file_.groups(step->group + "/MAI").empty()) cells = step->group + "/MAI";
     }
+    place.elements = cells;
     const auto shape = file_.shape(place.coordinates);
     if (!shape || shape->columns != 1 || !is_floating(shape->type) || shape->rows % space_axes != 0)
         return file_.wrong(fmt::format("mesh \"{}\" has no table of coordinates", escaped(name_)));
@@ -215,6 +216,37 @@ Result<Cells> MedMesh::cells(const MedMeshPlace& place) const {
     if (auto done = add_polyhedra(place, cells); !done) return done.error();
     vtk_xml::simplify(cells);
     return cells;
+}
+
+Result<void> MedMesh::add_faces(const std::string& group, std::uint32_t nodes, std::uint64_t points,
+                                const std::map<std::int64_t, std::vector<std::string>>& groups, core::PatchList& numbers,
+                                core::PatchList& list) const {
+    const auto shape = file_.shape(group + "/NOD");
+    if (!shape || !file_.has(group + "/FAM") || shape->columns != 1 || is_floating(shape->type) || shape->rows % nodes != 0)
+        return {};
+    const MedElement element{"", nodes, 0, {}};
+    const auto corners = nodes_of({&element, group, 0, shape->rows / nodes}, points);
+    if (!corners) return corners.error();
+    const auto families = file_.numbers(group + "/FAM", shape->rows / nodes);
+    if (!families) return families.error();
+    for (std::size_t face = 0; face < families->size(); ++face) {
+        const auto in = groups.find(static_cast<std::int64_t>(families->at(face)));
+        if (in == groups.end() || in->second.empty()) continue;
+        const std::int64_t number = numbers.number_of(in->second.front());
+        list.name(number, in->second.front());
+        for (std::uint32_t k = 0; k < nodes; ++k) list.point((*corners)[face * nodes + k]);
+        list.end_face(number);
+    }
+    return {};
+}
+
+Result<void> MedMesh::add_patches(const MedMeshPlace& place, core::PatchList& numbers, core::PatchList& list) const {
+    const auto groups = groups_of_families();
+    for (const std::string& type : file_.groups(place.elements))
+        if (const std::uint32_t nodes = nodes_of_med_face(type))
+            if (auto added = add_faces(place.elements + "/" + type, nodes, place.points, groups, numbers, list); !added)
+                return added;
+    return {};
 }
 
 bool MedMesh::has_families(const MedMeshPlace& place) const {

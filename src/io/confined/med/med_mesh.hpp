@@ -11,6 +11,7 @@
 #include <isotet/grid.hpp>
 #include <isotet/result.hpp>
 
+#include "grid/patches.hpp"
 #include "io/confined/med/med_elements.hpp"
 #include "io/confined/med/med_file.hpp"
 
@@ -26,6 +27,7 @@ struct MedCellRun {
 /// Where the parts of a mesh are at one of its steps.
 struct MedMeshPlace {
     std::string coordinates; ///< a data set
+    std::string elements;    ///< a group
     std::uint64_t points = 0;
     std::vector<MedCellRun> runs;
     std::uint64_t cells = 0;
@@ -59,6 +61,11 @@ public:
     /// Errors   invalid_data: nodes that are not there
     Result<std::vector<std::int64_t>> nodes_of(const MedCellRun& run, std::uint64_t points) const;
 
+    /// Faces that are in groups, each by the first one. Their numbers are those of `groups`.
+    ///
+    /// Errors   invalid_data: nodes that are not there
+    Result<void> add_patches(const MedMeshPlace& place, core::PatchList& numbers, core::PatchList& list) const;
+
     bool has_families(const MedMeshPlace& place) const;
     /// A number for each cell; 0 in runs without any.
     Result<std::vector<std::int64_t>> families(const MedMeshPlace& place) const;
@@ -70,6 +77,9 @@ private:
     Result<MedCellRun> run_of(const MedElement& element, const std::string& group) const;
     template <class Index>
     Result<Array> connectivity(const MedMeshPlace& place) const;
+    Result<void> add_faces(const std::string& group, std::uint32_t nodes, std::uint64_t points,
+                           const std::map<std::int64_t, std::vector<std::string>>& groups, core::PatchList& numbers,
+                           core::PatchList& list) const;
     Result<void> add_polyhedra(const MedMeshPlace& place, Cells& cells) const;
 
     const MedFile& file_;
