@@ -15,9 +15,6 @@ namespace isotet::bench {
 
 #define ISOTET_NULL_CALLS(X)                                                                                           \
     X(vkDestroyInstance)                                                                                               \
-    X(vkEnumeratePhysicalDevices)                                                                                      \
-    X(vkGetPhysicalDeviceProperties)                                                                                   \
-    X(vkCreateDevice)                                                                                                  \
     X(vkDestroyDevice)                                                                                                 \
     X(vkCreatePipelineLayout)                                                                                          \
     X(vkDestroyPipelineLayout)                                                                                         \
@@ -30,6 +27,7 @@ namespace isotet::bench {
     X(vkGetPipelineExecutableStatisticsKHR)
 
 struct NullDevice::Calls {
+    vulkan::InstanceFunctions instance;
 #define ISOTET_DECLARE(name) PFN_##name name = nullptr;
     ISOTET_NULL_CALLS(ISOTET_DECLARE)
 #undef ISOTET_DECLARE
@@ -74,6 +72,14 @@ void add_figure(Figures& figures, std::string_view name, std::uint64_t value) {
         if (one.name == name) figures.*one.member = value;
 }
 
+double number_of(const VkPipelineExecutableStatisticKHR& one) {
+    switch (one.format) {
+    case VK_PIPELINE_EXECUTABLE_STATISTIC_FORMAT_INT64_KHR: return static_cast<double>(one.value.i64);
+    case VK_PIPELINE_EXECUTABLE_STATISTIC_FORMAT_FLOAT64_KHR: return one.value.f64;
+    default: return static_cast<double>(one.value.u64);
+    }
+}
+
 } // namespace
 
 Result<std::string> driver_beside_software_device() {
@@ -89,13 +95,27 @@ Result<std::string> driver_beside_software_device() {
 }
 
 Result<std::unique_ptr<NullDevice>> NullDevice::open(const std::string& driver, const std::string& family) {
-    const Result<Driver> opened = open_driver(driver);
-    if (!opened) return opened.error();
-    const auto find = opened->find;
     setenv("RADV_FORCE_FAMILY", family.c_str(), 1);
+    Result<std::unique_ptr<NullDevice>> null = open(driver);
+    if (!null) return no_device(fmt::format("{}: {}", family, null.error().message));
+    return null;
+}
+
+Result<std::unique_ptr<NullDevice>> NullDevice::open(const std::string& driver) {
     setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
     std::unique_ptr<NullDevice> null(new NullDevice);
     null->call_ = std::make_unique<Calls>();
+    if (Result<void> made = null->make_instance(driver); !made) return made.error();
+    if (Result<void> found = null->find_device(); !found) return found.error();
+    if (Result<void> made = null->make_device(); !made) return made.error();
+    if (Result<void> made = null->make_layout(); !made) return made.error();
+    return null;
+}
+
+Result<void> NullDevice::make_instance(const std::string& driver) {
+    const Result<Driver> opened = open_driver(driver);
+    if (!opened) return opened.error();
+    const auto find = opened->find;
     VkApplicationInfo application{};
     application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
     application.apiVersion = VK_API_VERSION_1_3;
@@ -103,62 +123,70 @@ Result<std::unique_ptr<NullDevice>> NullDevice::open(const std::string& driver, 
     create.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
     create.pApplicationInfo = &application;
     const auto make = reinterpret_cast<PFN_vkCreateInstance>(find(VK_NULL_HANDLE, "vkCreateInstance"));
-    if (const VkResult made = make(&create, nullptr, &null->instance_); made != VK_SUCCESS)
-        return failed("opening radv", made);
+    if (const VkResult made = make(&create, nullptr, &instance_); made != VK_SUCCESS)
+        return failed("starting the driver", made);
 #define ISOTET_FIND(name)                                                                                              \
-    null->call_->name = reinterpret_cast<PFN_##name>(find(null->instance_, #name));                                    \
-    if (!null->call_->name) return no_device("the driver lacks " #name);
+    call_->name = reinterpret_cast<PFN_##name>(find(instance_, #name));                                                \
+    if (!call_->name) return no_device("the driver lacks " #name);
     ISOTET_NULL_CALLS(ISOTET_FIND)
 #undef ISOTET_FIND
-    if (Result<void> made = null->make_device(family); !made) return made.error();
-    return null;
+#define ISOTET_FIND(name) call_->instance.name = reinterpret_cast<PFN_##name>(find(instance_, #name));
+    ISOTET_VULKAN_INSTANCE_FUNCTIONS(ISOTET_FIND)
+#undef ISOTET_FIND
+    return {};
 }
 
-Result<void> NullDevice::make_device(const std::string& family) {
+Result<void> NullDevice::find_device() {
     std::uint32_t count = 1;
-    VkPhysicalDevice physical = VK_NULL_HANDLE;
-    if (const VkResult found = call_->vkEnumeratePhysicalDevices(instance_, &count, &physical);
-        found != VK_SUCCESS || count != 1)
-        return failed(fmt::format("looking for the null device {}", family), found);
+    const VkResult found = call_->instance.vkEnumeratePhysicalDevices(instance_, &count, &physical_);
+    if (found != VK_SUCCESS || count != 1) return failed("looking for the device", found);
+    capabilities_ = vulkan::ask(call_->instance, physical_, vulkan::whole_version);
+    return {};
+}
 
+Result<void> NullDevice::make_device() {
     VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR figures{};
     figures.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR;
     figures.pipelineExecutableInfo = VK_TRUE;
-    VkPhysicalDeviceVulkan13Features features13{};
-    features13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
-    features13.pNext = &figures;
-    features13.dynamicRendering = VK_TRUE;
-    VkPhysicalDeviceVulkan12Features features12{};
-    features12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
-    features12.pNext = &features13;
-    features12.bufferDeviceAddress = features12.scalarBlockLayout = VK_TRUE;
+    VkPhysicalDeviceDynamicRenderingFeatures rendering{};
+    rendering.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DYNAMIC_RENDERING_FEATURES;
+    rendering.pNext = &figures;
+    rendering.dynamicRendering = VK_TRUE;
+    VkPhysicalDeviceBufferDeviceAddressFeatures addresses{};
+    addresses.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_BUFFER_DEVICE_ADDRESS_FEATURES;
+    addresses.pNext = &rendering;
+    addresses.bufferDeviceAddress = VK_TRUE;
+    VkPhysicalDeviceScalarBlockLayoutFeatures layout{};
+    layout.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SCALAR_BLOCK_LAYOUT_FEATURES;
+    layout.pNext = &addresses;
+    layout.scalarBlockLayout = VK_TRUE;
+    VkPhysicalDeviceMeshShaderFeaturesEXT mesh{};
+    mesh.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MESH_SHADER_FEATURES_EXT;
+    mesh.meshShader = VK_TRUE;
+    if (capabilities_.mesh_shaders) figures.pNext = &mesh;
     VkPhysicalDeviceFeatures features{};
-    features.fragmentStoresAndAtomics = VK_TRUE;
+    features.fragmentStoresAndAtomics = capabilities_.features.fragmentStoresAndAtomics;
     const float priority = 1;
     VkDeviceQueueCreateInfo queue{};
     queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
     queue.queueCount = 1;
     queue.pQueuePriorities = &priority;
-    std::vector<const char*> extensions{VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME};
-    VkPhysicalDeviceMeshShaderFeaturesEXT mesh{};
-    mesh.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MESH_SHADER_FEATURES_EXT;
-    mesh.meshShader = VK_TRUE;
-    if (!family.starts_with("vega")) {
-        figures.pNext = &mesh;
-        extensions.push_back(VK_EXT_MESH_SHADER_EXTENSION_NAME);
-    }
-    has_mesh_ = figures.pNext != nullptr;
+    std::vector<const char*> extensions = capabilities_.extensions;
+    extensions.push_back(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
     VkDeviceCreateInfo create{};
     create.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
-    create.pNext = &features12;
+    create.pNext = &layout;
     create.queueCreateInfoCount = 1;
     create.pQueueCreateInfos = &queue;
     create.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
     create.ppEnabledExtensionNames = extensions.data();
     create.pEnabledFeatures = &features;
-    if (const VkResult made = call_->vkCreateDevice(physical, &create, nullptr, &device_); made != VK_SUCCESS)
-        return failed(fmt::format("opening the null device {}", family), made);
+    if (const VkResult made = call_->instance.vkCreateDevice(physical_, &create, nullptr, &device_); made != VK_SUCCESS)
+        return failed("opening the device", made);
+    return {};
+}
 
+Result<void> NullDevice::make_layout() {
     const VkPushConstantRange push{VK_SHADER_STAGE_ALL, 0, 128};
     VkPipelineLayoutCreateInfo layout{};
     layout.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
@@ -176,7 +204,8 @@ NullDevice::~NullDevice() {
 }
 
 bool NullDevice::takes(const Pipeline& pipeline) const {
-    return has_mesh_ || pipeline.stages.front().stage != VK_SHADER_STAGE_MESH_BIT_EXT;
+    if (pipeline.draws() && !vulkan::why_unable_to_draw(capabilities_).empty()) return false;
+    return capabilities_.mesh_shaders || pipeline.stages.front().stage != VK_SHADER_STAGE_MESH_BIT_EXT;
 }
 
 Result<std::vector<Figures>> NullDevice::compile(const Pipeline& pipeline) {
@@ -186,10 +215,12 @@ Result<std::vector<Figures>> NullDevice::compile(const Pipeline& pipeline) {
                                               pipeline.constants.size() * 4, pipeline.constants.data()};
     std::vector<VkPipelineShaderStageCreateInfo> stages;
     VkResult result = VK_SUCCESS;
+    const vulkan::FloatControls controls{capabilities_.floats.shaderRoundingModeRTEFloat32 == VK_TRUE,
+                                         capabilities_.floats.shaderSignedZeroInfNanPreserveFloat32 == VK_TRUE};
     for (const Stage& stage : pipeline.stages) {
         const std::vector<std::uint32_t> words = pipeline.draws()
                                                      ? std::vector(stage.code->words.begin(), stage.code->words.end())
-                                                     : vulkan::with_float_controls(stage.code->words, {true, true});
+                                                     : vulkan::with_float_controls(stage.code->words, controls);
         VkShaderModuleCreateInfo create{};
         create.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
         create.codeSize = words.size() * 4;
@@ -310,9 +341,13 @@ Result<std::vector<Figures>> NullDevice::figures_of(const Pipeline& pipeline, Vk
         nothing.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_STATISTIC_KHR;
         std::vector<VkPipelineExecutableStatisticKHR> statistics(found, nothing);
         call_->vkGetPipelineExecutableStatisticsKHR(device_, &which, &found, statistics.data());
-        for (const auto& one : statistics) add_figure(figures, one.name, one.value.u64);
+        figures.subgroup = executables[i].subgroupSize;
+        for (const auto& one : statistics) {
+            add_figure(figures, one.name, one.value.u64);
+            figures.all.emplace_back(one.name, number_of(one));
+        }
     }
-    if (all.size() != pipeline.stages.size() || all.front().instructions == 0)
+    if (all.size() < pipeline.stages.size() || all.front().all.empty())
         return no_device(fmt::format("the driver tells nothing about {}", pipeline.name));
     return all;
 }
