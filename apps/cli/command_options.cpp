@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "command_options.hpp"
+#include "shape_text.hpp"
 
 #include <algorithm>
 #include <charconv>
