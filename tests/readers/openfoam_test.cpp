@@ -179,6 +179,29 @@ TEST_F(ReadOpenfoamCase, PatchesWithoutValuesOfTheirOwnAreLeftOut) {
     }
 }
 
+TEST_F(ReadOpenfoamCase, ValuesOfAPatchThatDoNotFitAreNotUsed) {
+    FoamFiles files = foam_case(box_, wave, {});
+    std::string& field = files["0.5/T"];
+    const std::size_t value = field.find("value");
+    ASSERT_NE(value, std::string::npos);
+    field.replace(value, field.find(';', value) - value, "value nonuniform List<scalar> 0()");
+    write_case(folder_, files);
+    const auto result = read(folder_.file(""), last_step());
+    ASSERT_TRUE(result) << result.error().message;
+    ASSERT_FALSE(result->notes.empty());
+    EXPECT_EQ(result->notes.back(), "the value of patch 'heated' in T has 0 values, but 9 are wanted: it is not used");
+}
+
+TEST_F(ReadOpenfoamCase, HeadersMayHaveDictionaries) {
+    FoamFiles files = foam_case(box_, wave, {});
+    for (const char* name : {"constant/polyMesh/points", "0.5/T"}) {
+        std::string& text = files[name];
+        text.insert(text.find('}'), "meta { names (a b); inner { c 1; } }\n");
+    }
+    write_case(folder_, files);
+    EXPECT_EQ(read_whole(folder_.file("")).cells.count(), box_.centres.size());
+}
+
 TEST_F(ReadOpenfoamCase, UnderstandsPatternsGroupsAndMacros) {
     FoamFiles files = foam_case(box_, wave, {});
     const auto wall_value = [&](const std::string& body) {
@@ -303,6 +326,27 @@ TEST_F(DecomposedCase, WithoutGlobalNumbersIsJoinedByCoordinates) {
     EXPECT_EQ(report->points, whole->points);
     EXPECT_EQ(report->cells_by_type, whole->cells_by_type);
     EXPECT_EQ(report->boundary_faces, whole->boundary_faces);
+}
+
+TEST_F(DecomposedCase, MayHaveProcessorsWithoutCells) {
+    write_case(folder_, foam_case(box_, wave, {}));
+    const Grid whole = read_whole(folder_.file(""));
+    const FoamBox nothing = part_of(box_, std::vector<int>(box_.centres.size(), 0), 1);
+    for (const bool addressing : {true, false}) {
+        const FoamStyle style{false, 32, 64, addressing};
+        FoamFiles files = foam_case(box_, wave, style, 2);
+        add_mesh(files, "processor2/", nothing, style);
+        for (const char* time : {"0/", "0.5/"}) add_fields(files, std::string("processor2/") + time, nothing, wave, style);
+        for (const char* name : {"pointProcAddressing", "cellProcAddressing"})
+            if (addressing)
+                files[std::string("processor2/constant/polyMesh/") + name] =
+                    "FoamFile { version 2.0; format ascii; class labelList; }\n0()\n";
+        const TemporaryFolder folder;
+        write_case(folder, files);
+        const Grid grid = read_whole(folder.file(""));
+        if (addressing) expect_same_grid(grid, whole);
+        EXPECT_EQ(grid.cells.count(), whole.cells.count());
+    }
 }
 
 Surface surface_of(const ContourInput& input, double isovalue, const ContourOptions& options) {

@@ -73,6 +73,7 @@ public:
             if (auto added = add(part); !added) return added.error();
         CaseField out;
         out.unread = std::move(unread_);
+        out.misfits = std::move(misfits_);
         if (of_points_) {
             out.points = array_of(std::move(values_));
             return out;
@@ -99,47 +100,49 @@ private:
         single_ = single_ && file->header.single;
         unread_.merge(file->unread);
         if (auto placed = place(part, *file); !placed) return placed;
-        if (!of_points_ && request_.points) return keep_patches(part, *file);
+        if (!of_points_ && request_.points) keep_patches(part, *file);
         return {};
     }
 
-    Result<void> check_length(const FieldFile& file, const Values& values, std::size_t wanted,
-                              const std::string& what) const {
+    /// What is wrong with a number of values; empty: nothing.
+    std::string misfit(const Values& values, std::size_t wanted, const std::string& what) const {
         const std::size_t tuples = values.values.size() / components_;
         if (values.uniform || tuples == wanted) return {};
-        return broken(file.path, fmt::format("{} has {} values, but {} are wanted", what, tuples, wanted));
+        return fmt::format("{} has {} values, but {} are wanted", what, tuples, wanted);
     }
 
     Result<void> place(const Part& part, FieldFile& file) {
         Values& inside = *file.inside;
         const std::size_t count = of_points_ ? part.points : part.cells;
-        if (auto fits = check_length(file, inside, count, "internalField"); !fits) return fits;
+        if (const std::string wrong = misfit(inside, count, "internalField"); !wrong.empty())
+            return broken(file.path, wrong);
         order_as_vtk(components_, inside.values);
-        const auto& numbers = of_points_ ? part.point_numbers : part.cell_numbers;
-        if (numbers.empty() && !inside.uniform) {
+        const bool is_whole = whole_.parts.size() == 1;
+        if (is_whole && !inside.uniform) {
             values_ = std::move(inside.values);
             return {};
         }
+        const auto& numbers = of_points_ ? part.point_numbers : part.cell_numbers;
         for (std::size_t i = 0; i < count; ++i) {
-            const std::size_t to = numbers.empty() ? i : static_cast<std::size_t>(numbers[i]);
+            const std::size_t to = is_whole ? i : static_cast<std::size_t>(numbers[i]);
             std::copy_n(inside.values.data() + (inside.uniform ? 0 : i * components_), components_,
                         values_.data() + to * components_);
         }
         return {};
     }
 
-    Result<void> keep_patches(const Part& part, const FieldFile& file) {
+    void keep_patches(const Part& part, const FieldFile& file) {
         for (const Patch& patch : part.patches) {
             auto values = known_values(file, patch);
             if (!values || patch.count == 0) continue;
-            if (auto fits = check_length(file, *values, patch.count,
-                                         fmt::format("the value of patch {}", in_quotes(patch.name)));
-                !fits)
-                return fits;
+            const std::string what = fmt::format("the value of patch {} in {}", in_quotes(patch.name), request_.name);
+            if (std::string wrong = misfit(*values, patch.count, what); !wrong.empty()) {
+                misfits_.insert(std::move(wrong));
+                continue;
+            }
             order_as_vtk(components_, values->values);
             patches_.emplace_back(&patch, std::move(*values));
         }
-        return {};
     }
 
     PointMeans means_of_patches() const {
@@ -206,7 +209,7 @@ private:
     std::string type_;
     std::size_t components_ = 1;
     bool of_points_ = false, single_ = true;
-    std::set<std::string> unread_;
+    std::set<std::string> unread_, misfits_;
     std::vector<double> values_;
     std::vector<std::pair<const Patch*, Values>> patches_;
 };

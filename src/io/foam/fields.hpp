@@ -24,6 +24,7 @@ struct FieldRequest {
 struct CaseField {
     Array cells, points;
     std::set<std::string> unread; ///< files of an OpenFOAM installation that its files include
+    std::set<std::string> misfits; ///< values of patches that do not fit and are not used: what is wrong with them
 };
 
 /// Reads a field of all parts. A point of a patch with known values has the mean of these over the faces around it,

@@ -46,7 +46,7 @@ struct Part {
     std::string prefix;         ///< "processor3/", or empty
     std::vector<Patch> patches; ///< faces of the whole
     std::size_t points = 0, cells = 0;
-    std::vector<std::int32_t> point_numbers, cell_numbers; ///< empty: the own ones
+    std::vector<std::int32_t> point_numbers, cell_numbers; ///< of the whole; empty where this is the only part
 };
 
 struct WholeMesh {

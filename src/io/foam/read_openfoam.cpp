@@ -219,6 +219,7 @@ Result<void> read_fields(const CaseFiles& files, const CaseLayout& layout, const
         if (!read) return read.error();
         if (points) piece.grid.point_fields.push_back({field.name, std::move(read->points)});
         if (cells) piece.grid.cell_fields.push_back({field.name, std::move(read->cells)});
+        for (const std::string& wrong : read->misfits) notes.push_back(wrong + ": it is not used");
         for (const std::string& file : read->unread) fields_including[file].push_back(escaped(field.name));
     }
     for (const auto& [file, names] : fields_including)

@@ -170,6 +170,10 @@ Result<Header> Scanner::any_header() {
     while (!take('}')) {
         const std::string_view key = token();
         if (key.empty()) return fail("has a header without its '}'");
+        if (peek() == '{') { // "meta", of version 2206 and later
+            if (auto skipped = skip_entry(); !skipped) return skipped.error();
+            continue;
+        }
         std::string_view value = peek() == ';' ? std::string_view() : token();
         if (key == "format") {
             if (value != "ascii" && value != "binary")
