@@ -354,6 +354,31 @@ TEST(ReadGmshVersion1, HasNodAndElm) {
     EXPECT_EQ(gmsh_error(bytes.substr(0, bytes.find("$ELM"))), "has no $ELM section");
 }
 
+TEST(ReadGmshGroups, OfVersion2MayShareElementsThatAreThereForEach) {
+    const std::string bytes = replaced(tets, "2\n1 4 0 1 2 3 4\n2 4 0 2 3 4 5\n",
+                                       "5\n1 4 2 7 1 1 2 3 4\n2 4 2 9 1 1 2 3 4\n3 4 2 8 1 1 2 3 4\n"
+                                       "4 4 2 9 1 2 3 4 5\n5 4 2 9 1 2 3 4 5\n");
+    const ReadResult result = io::parse_gmsh(bytes, {}, {}).value();
+    EXPECT_EQ(result.grid.cells.count(), 3u) << "an element that is there twice in one group is the file's own mistake";
+    expect_values(result.grid.cell_fields, "gmsh:physical", {7, 9, 9});
+    ASSERT_EQ(result.notes.size(), 1u);
+    EXPECT_EQ(result.notes[0], "2 elements are there again for another physical group: the first was taken; --block "
+                               "(ReadOptions::blocks) takes all of a group");
+    ReadOptions chosen;
+    chosen.blocks = {"9"};
+    EXPECT_EQ(io::parse_gmsh(bytes, chosen, {}).value().grid.cells.count(), 5u) << "the choice comes later";
+}
+
+TEST(ReadGmshGroups, OfVersion20HaveNamesWithoutDimensions) {
+    const std::string names = "$PhysicalNames\n2\n7 \"rock\"\n8 \"a cave\"\n$EndPhysicalNames\n";
+    const std::string bytes =
+        replaced(replaced(tets, "2.2 0 8\n$EndMeshFormat\n", "2.0 0 8\n$EndMeshFormat\n" + names), "1 4 0", "1 4 1 7");
+    const FileInfo info = io::inspect_gmsh(replaced(bytes, "2 4 0", "2 4 1 8"), {}).value();
+    ASSERT_EQ(info.regions.size(), 2u);
+    EXPECT_EQ(info.regions[1].number, 8);
+    EXPECT_EQ(info.regions[1].name, "a cave");
+}
+
 TEST(ReadGmshPartitions, OfVersion2AreTheFirstOfTheirTags) {
     const std::string bytes =
         replaced(replaced(tets, "1 4 0 1 2", "1 4 6 7 2 3 2 -3 -1 1 2"), "2 4 0 2 3", "2 4 4 8 3 1 1 2 3");

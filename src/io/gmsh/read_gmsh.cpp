@@ -256,17 +256,25 @@ Result<BoundaryPatches> physical_surfaces(const File& file, const Grid& grid, co
     return list.finish();
 }
 
-/// A file of one partition may have a layer of elements of others.
-Result<ReadResult> without_ghosts(ReadResult result, std::vector<std::uint8_t> ghosts) {
+/// A file of one partition may have a layer of elements of others; old files repeat those that are in several groups.
+Result<ReadResult> without_left_out(ReadResult result, const Mesh& mesh) {
+    std::vector<std::uint8_t> left_out = mesh.left_out;
+    std::vector<std::string> notes = result.notes;
     Loaded loaded;
     loaded.info = std::move(result.info);
     loaded.step = result.step;
     loaded.notes = std::move(result.notes);
     Piece& piece = loaded.pieces.emplace_back();
-    ghosts.resize(result.grid.cells.count());
+    left_out.resize(result.grid.cells.count());
     piece.grid = std::move(result.grid);
-    piece.left_out = std::move(ghosts);
-    return join(std::move(loaded), {});
+    piece.left_out = std::move(left_out);
+    auto rest = join(std::move(loaded), {});
+    if (!rest || mesh.repeats == 0) return rest;
+    notes.push_back(fmt::format("{} elements are there again for another physical group: the first was taken; --block "
+                                "(ReadOptions::blocks) takes all of a group",
+                                mesh.repeats));
+    rest->notes = std::move(notes); // those of join() speak of ghost cells
+    return rest;
 }
 
 } // namespace
@@ -284,6 +292,7 @@ Result<ReadResult> parse_gmsh(std::string_view bytes, const ReadOptions& options
     if (!step) return step.error();
 
     Wants wants;
+    wants.all_groups = !options.blocks.empty();
     wants.physical = contents->tags.physical && wanted(options, Association::cell, physical_name);
     const bool wants_patches = options.patches && contents->tags.physical, wants_physical = wants.physical;
     wants.physical = wants.physical || wants_patches;
@@ -320,7 +329,7 @@ Result<ReadResult> parse_gmsh(std::string_view bytes, const ReadOptions& options
     add_tags(wants_physical, physical_name, mesh->physical);
     add_tags(wants.geometrical, geometrical_name, mesh->geometrical);
     add_tags(wants.partition, partition_name, mesh->partition);
-    return mesh->ghosts.empty() ? std::move(result) : without_ghosts(std::move(result), std::move(mesh->ghosts));
+    return mesh->left_out.empty() ? std::move(result) : without_left_out(std::move(result), *mesh);
 }
 
 } // namespace isotet::io

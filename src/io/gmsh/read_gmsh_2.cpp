@@ -85,6 +85,22 @@ bool read_node_count(Source& source, Version version, const ElementType& type, s
     return version != Version::v1 || source.integer(nodes);
 }
 
+/// An element that is in several physical groups is there once for each of them, one after another.
+class Repeats {
+public:
+    bool repeats(std::int32_t type, const std::vector<std::uint64_t>& points, std::int32_t group) {
+        const bool same = type == type_ && points == points_ && group != group_;
+        type_ = type;
+        points_ = points;
+        group_ = group;
+        return same;
+    }
+
+private:
+    std::int32_t type_ = 0, group_ = 0;
+    std::vector<std::uint64_t> points_;
+};
+
 template <class Source>
 Result<void> read_elements_from(const Section& section, Source& source, Version version, const Wants& wants, Mesh& mesh,
                                 Pace& pace) {
@@ -100,6 +116,7 @@ Result<void> read_elements_from(const Section& section, Source& source, Version 
                                            done + 1, source.where()));
     };
     std::vector<std::uint64_t> points;
+    Repeats last;
     for (std::int64_t done = 0; done < count;) {
         ElementBlock block;
         if (!read_block_header(source, version, block)) return missing(done);
@@ -132,6 +149,8 @@ Result<void> read_elements_from(const Section& section, Source& source, Version 
                 }
                 points.push_back(point);
             }
+            tags.left_out = !wants.all_groups && last.repeats(block.type, points, tags.physical);
+            mesh.repeats += tags.left_out;
             mesh.add_element(wants, *type, number, points, tags);
             if (!pace.goes_on(source.position())) return Pace::cancelled();
         }

@@ -63,7 +63,7 @@ Result<void> read_entities(const Section& section, Source& source, const File& f
         for (std::int64_t i = 0; whole && i < ghosts; ++i) {
             std::int32_t number = 0;
             Tags tags;
-            tags.ghost = true;
+            tags.left_out = true;
             whole = source.integer(number) && source.integer(tags.partition);
             entities[{volume, number}] = tags;
         }

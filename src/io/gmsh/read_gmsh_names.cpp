@@ -1,5 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // $PhysicalNames: text in every version, in binary files, too.
+#include <utility>
+
 #include <fmt/core.h>
 
 #include "io/gmsh/read_gmsh_parts.hpp"
@@ -29,7 +31,11 @@ Result<std::vector<RegionName>> names_of_groups(const File& file, std::int32_t o
         return broken(*section, "has " + scanner.where() + " where the number of names should stand");
     for (std::int64_t i = 0; i < count; ++i) {
         std::int32_t dimension = 0, number = 0;
-        const bool numbers = scanner.number(dimension) && scanner.number(number);
+        bool numbers = scanner.number(dimension);
+        if (numbers && !scanner.number_of_line(number)) { // version 2.0 has no dimensions
+            numbers = file.version == Version::v2;
+            number = std::exchange(dimension, 3);
+        }
         std::optional<std::string> name = numbers ? quoted_rest(scanner) : std::nullopt;
         if (!name)
             return broken(*section,

@@ -71,12 +71,13 @@ std::optional<ElementType> element_type(std::int32_t number);
 struct Wants {
     bool physical = false, geometrical = false, partition = false, element_numbers = false;
     bool element_points = false; ///< in the order of the file
+    bool all_groups = false;     ///< elements once for each physical group they are in, where the file has them so
 };
 
 /// Tags of one element, or of the elements of an entity.
 struct Tags {
     std::int32_t physical = 0, geometrical = 0, partition = 0;
-    bool ghost = false;
+    bool left_out = false;
 };
 
 struct Mesh {
@@ -87,7 +88,8 @@ struct Mesh {
     NumberMap elements;
     std::vector<std::int32_t> physical, geometrical, partition;
     std::vector<std::uint64_t> element_points, element_ends;
-    std::vector<std::uint8_t> ghosts; ///< nonzero for each ghost; empty, or up to the last of them
+    std::vector<std::uint8_t> left_out; ///< nonzero for each ghost and repeat; empty, or up to the last of them
+    std::uint64_t repeats = 0; ///< elements that are there again for another physical group
 
     /// `in_file`   the points in the order of the file
     void add_element(const Wants& wants, const ElementType& type, std::int64_t number,
@@ -97,9 +99,9 @@ struct Mesh {
             for (const std::uint64_t point : in_file) cells.corner(point);
         else
             for (const std::uint16_t position : type.order) cells.corner(in_file[position]);
-        if (tags.ghost) {
-            ghosts.resize(cells.size());
-            ghosts.back() = 1;
+        if (tags.left_out) {
+            left_out.resize(cells.size());
+            left_out.back() = 1;
         }
         if (wants.element_numbers) elements.add(number);
         if (wants.physical) physical.push_back(tags.physical);
