@@ -100,6 +100,39 @@ TEST_P(EnsightFiles, MayHaveQuotesAndBlanksInNamesAndFilesThatAreMissing) {
     EXPECT_NE(error.error().message.find("gone.scl"), std::string::npos) << error.error().message;
 }
 
+TEST_P(EnsightFiles, MayHaveEmptyPartsAndSectionsThatAreNotRead) {
+    GoldText file(GetParam(), true);
+    file.line("a").line("b").line("node id off").line("element id off").line("part").integers({3}).line("nothing");
+    file.line("part").integers({1}).line("solid").line("coordinates").integers({4});
+    for (const auto& axis : {std::vector<float>{0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}) file.floats(axis);
+    file.line("tetra4").integers({1}).integers({1, 2, 3, 4}, 4);
+    folder_.write("grid.geo", file.line("part").integers({2}).line("nothing").text());
+    for (const char* number : {"3", "5"}) {
+        GoldText values(GetParam());
+        values.line("t").line("part").integers({1}).line("coordinates");
+        folder_.write(std::string("t") + number, values.floats(std::vector<float>(4, number[0] == '3' ? 3 : 5)).text());
+    }
+    folder_.write("numbers", "3\n5\n");
+    folder_.write("times", "0\n1.5e-1\n");
+    const std::string path = folder_.write(
+        "a.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: grid.geo\nVARIABLE\nscalar per node: 1 t t*\n"
+                  "MATERIAL\nmaterial set number: 1 m\nmaterial id count: 2\nBLOCK CONTINUATION\nnumber of sets: 1\n"
+                  "TIME\ntime set: 1\nnumber of steps: 2\nfilename numbers file: numbers\ntime values file: times\n"
+                  "SCRIPTS\nmetadata: x.xml\n");
+    ReadOptions last;
+    last.step = 1;
+    const auto result = whole(read(path, last));
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(result->info.times, (std::vector<double>{0, 0.15}));
+    EXPECT_EQ(result->grid.cells.count(), 1u);
+    ASSERT_EQ(result->grid.point_fields.size(), 1u);
+    EXPECT_EQ(result->grid.point_fields[0].values.at(3), 5);
+    const std::string outside = folder_.write(
+        "b.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: grid.geo\nTIME\ntime set: 1\nnumber of steps: 1\n"
+                  "filename start number: 1\nfilename increment: 1\ntime values file: /etc/hostname\n");
+    EXPECT_FALSE(read(outside));
+}
+
 TEST_P(EnsightFiles, VariablesThatAreCutAreErrorsThatNameTheFile) {
     for (const auto& [name, whole] :
          {std::pair("t.scl", of_nodes(1)), {"v.vec", of_nodes(3)}, {"e.scl", of_elements()}}) {

@@ -258,13 +258,32 @@ Result<Loaded> EnsightLoad::load() {
     return std::move(loaded_);
 }
 
-Result<EnsightCase> read_case(const std::string& case_file) {
+/// Lists of a time set may stand in files of their own.
+Result<void> read_lists(const std::string& case_file, bool allow_outside, EnsightCase& found) {
+    const auto take = [&](const std::string& name, auto* take_list, EnsightCase::TimeSet& set) -> Result<void> {
+        if (name.empty()) return {};
+        const auto path = named_file(case_file, name, allow_outside);
+        if (!path) return path.error();
+        const auto text = MappedFile::open(*path);
+        if (!text) return text.error();
+        take_list(set, text->text());
+        return {};
+    };
+    for (EnsightCase::TimeSet& set : found.time_sets) {
+        if (auto taken = take(set.numbers_file, take_file_numbers, set); !taken) return taken;
+        if (auto taken = take(set.values_file, take_time_values, set); !taken) return taken;
+    }
+    return {};
+}
+
+Result<EnsightCase> read_case(const std::string& case_file, bool allow_outside) {
     const auto text = MappedFile::open(case_file);
     if (!text) return text.error();
     EnsightCase found = parse_case(text->text());
     if (!found.is_ensight) return broken(case_file, "it is no EnSight case: \"type: ensight\" is missing");
     if (!found.error.empty()) return broken(case_file, found.error);
     if (found.model.name.empty()) return broken(case_file, "it names no geometry: \"model:\" is missing");
+    if (auto read = read_lists(case_file, allow_outside, found); !read) return read.error();
     return found;
 }
 
@@ -279,7 +298,7 @@ Result<void> check_names(const std::string& path, const EnsightCase& found, bool
 } // namespace
 
 Result<Loaded> load_ensight(const std::string& path, const ReadOptions& options, Depth depth) {
-    const auto found = read_case(path);
+    const auto found = read_case(path, options.allow_outside);
     if (!found) return found.error();
     if (auto allowed = check_names(path, *found, options.allow_outside); !allowed) return allowed.error();
     try {

@@ -112,6 +112,35 @@ std::string key_of(std::string_view line, std::size_t colon) {
     return fmt::format("{}", fmt::join(words_of(line.substr(0, colon)), " "));
 }
 
+Words words_of_lines(std::string_view text) {
+    Words words;
+    TextScanner scanner(text);
+    for (auto word = scanner.word(); !word.empty(); word = scanner.word()) words.push_back(word);
+    return words;
+}
+
+void keep_steps(EnsightCase::TimeSet& set) {
+    set.numbers.resize(std::min<std::size_t>(set.numbers.size(), set.steps));
+    set.values.resize(std::min<std::size_t>(set.values.size(), set.steps));
+}
+
+void add_file_numbers(EnsightCase::TimeSet& set, const Words& words) {
+    std::int32_t number = 0;
+    for (const std::string_view word : words)
+        if (parse_number(word, number)) set.numbers.push_back(number);
+}
+
+void add_time_values(EnsightCase::TimeSet& set, const Words& words) {
+    double value = 0;
+    for (const std::string_view word : words)
+        if (parse_number(word, value)) set.values.push_back(value);
+}
+
+/// "MATERIAL", "BLOCK CONTINUATION": sections are in capitals, alone on their line.
+bool begins_unknown_section(std::string_view line) {
+    return line.size() > 2 && std::ranges::all_of(line, [](char c) { return (c >= 'A' && c <= 'Z') || c == ' '; });
+}
+
 class CaseParser {
 public:
     EnsightCase parse(std::string_view text) {
@@ -122,16 +151,13 @@ public:
             while (!line.empty() && is_space(line.back())) line.remove_suffix(1);
             if (!line.empty() && line[0] != '#') take(line);
         }
-        for (auto& set : found_.time_sets) {
-            set.numbers.resize(std::min<std::size_t>(set.numbers.size(), set.steps));
-            set.values.resize(std::min<std::size_t>(set.values.size(), set.steps));
-        }
+        for (auto& set : found_.time_sets) keep_steps(set);
         return std::move(found_);
     }
 
 private:
     enum class List : std::uint8_t { none, numbers, values };
-    enum class Section : std::uint8_t { none, format, geometry, variable, time, file };
+    enum class Section : std::uint8_t { none, format, geometry, variable, time, file, unknown };
 
     /// True for the first line of a section.
     bool begin_section(std::string_view line) {
@@ -146,7 +172,9 @@ private:
                 section_ = name.section;
                 return true;
             }
-        return false;
+        if (section_ == Section::none || !begins_unknown_section(line)) return false;
+        section_ = Section::unknown;
+        return true;
     }
 
     void refuse(std::string_view line, std::string_view expected) {
@@ -185,9 +213,11 @@ private:
             else refuse(line, "a variable");
             return;
         case Section::file: return take_file_set(key, words);
-        case Section::time: take_time_set(key, words);
+        case Section::unknown: return;
+        case Section::time: take_time_set(key, rest, words);
         }
-        if (list_ != List::none) take_list(words);
+        if (list_ == List::numbers) add_file_numbers(found_.time_sets.back(), words);
+        if (list_ == List::values) add_time_values(found_.time_sets.back(), words);
     }
 
     void take_model(std::string_view rest) {
@@ -201,7 +231,7 @@ private:
         found_.model.name = take_last_name(rest);
     }
 
-    void take_time_set(std::string_view key, const Words& words) {
+    void take_time_set(std::string_view key, std::string_view rest, const Words& words) {
         const auto number = integer_at(words, 0);
         if (key == "time set") found_.time_sets.emplace_back().id = number.value_or(0);
         if (found_.time_sets.empty()) return;
@@ -212,16 +242,8 @@ private:
         else if (key == "filename increment") set.increment = number.value_or(0);
         else if (key == "filename numbers") list_ = List::numbers;
         else if (key == "time values") list_ = List::values;
-    }
-
-    void take_list(const Words& words) {
-        EnsightCase::TimeSet& set = found_.time_sets.back();
-        for (const std::string_view word : words) {
-            std::int32_t number = 0;
-            double value = 0;
-            if (list_ == List::numbers && parse_number(word, number)) set.numbers.push_back(number);
-            if (list_ == List::values && parse_number(word, value)) set.values.push_back(value);
-        }
+        else if (key == "filename numbers file") set.numbers_file = take_last_name(rest);
+        else if (key == "time values file") set.values_file = take_last_name(rest);
     }
 
     void take_file_set(std::string_view key, const Words& words) {
@@ -260,6 +282,16 @@ auto with_id(const Sets& sets, std::int64_t id) {
 } // namespace
 
 EnsightCase parse_case(std::string_view text) { return CaseParser().parse(text); }
+
+void take_file_numbers(EnsightCase::TimeSet& set, std::string_view text) {
+    add_file_numbers(set, words_of_lines(text));
+    keep_steps(set);
+}
+
+void take_time_values(EnsightCase::TimeSet& set, std::string_view text) {
+    add_time_values(set, words_of_lines(text));
+    keep_steps(set);
+}
 
 std::vector<double> times_of(const EnsightCase& found) {
     std::vector<double> all;

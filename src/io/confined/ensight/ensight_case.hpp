@@ -31,6 +31,7 @@ struct EnsightCase {
         std::int64_t increment = 1;
         std::vector<std::int64_t> numbers;        ///< of files, instead
         std::vector<double> values;
+        std::string numbers_file, values_file;    ///< where these lists stand instead
     };
     /// Files that have several steps each.
     struct FileSet {
@@ -50,6 +51,10 @@ struct EnsightCase {
 /// Empty lines and comments are left out, and a section begins at the first column. A file name is the last word, or what stands
 /// in quotes at the end of the line; the name of a variable is all before it.
 EnsightCase parse_case(std::string_view text);
+
+/// Takes the list of a file that a time set names.
+void take_file_numbers(EnsightCase::TimeSet& set, std::string_view text);
+void take_time_values(EnsightCase::TimeSet& set, std::string_view text);
 
 /// The times of all time sets, ascending, each once.
 std::vector<double> times_of(const EnsightCase& found);

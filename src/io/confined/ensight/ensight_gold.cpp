@@ -132,6 +132,7 @@ void read_gold_geometry(EnsightFile& file, EnsightGrid& grid, bool in_step) {
         EnsightPart& part = grid.add(file, number, std::string(file.raw_line("the description of a part")));
         if (part.name.empty() && !file.is_at("coordinates") && !file.is_at("block"))
             part.name = file.line("the description of a part");
+        if (is_at_part(file)) continue; // it is empty
         const std::string kind(file.line("the coordinates of a part"));
         if (kind.starts_with("block")) {
             read_block(file, part, kind, 1);
