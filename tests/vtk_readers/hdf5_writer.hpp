@@ -102,6 +102,16 @@ public:
         H5Tclose(type);
     }
 
+    /// As h5py writes a text of Python.
+    void variable_attribute(const std::string& group, const char* name, const std::string& text) {
+        const hid_t type = H5Tcopy(H5T_C_S1);
+        H5Tset_size(type, H5T_VARIABLE);
+        H5Tset_cset(type, H5T_CSET_UTF8);
+        const char* const letters = text.c_str();
+        attach(group, name, H5Screate(H5S_SCALAR), type, &letters);
+        H5Tclose(type);
+    }
+
     /// Texts of 80 letters, as MED has the names of groups.
     void long_texts(const std::string& name, const std::vector<std::string>& texts) {
         const hsize_t letters = 80, count = texts.size();

@@ -22,13 +22,15 @@ using Counts = std::vector<std::int64_t>;
 struct Parts {
     Counts cells;
     bool offsets_of_empty_parts = true;
+    bool variable_type = false; ///< the text of Type has no fixed length
     std::int64_t points_of_empty_parts = 0;
 };
 
 void write_parts(Hdf5Writer& file, const Parts& parts) {
     for (const char* name : {"/VTKHDF", "/VTKHDF/PointData", "/VTKHDF/CellData", "/VTKHDF/FieldData"}) file.group(name);
     file.attribute("/VTKHDF", "Version", Counts{2, 0});
-    file.attribute("/VTKHDF", "Type", "UnstructuredGrid");
+    if (parts.variable_type) file.variable_attribute("/VTKHDF", "Type", "UnstructuredGrid");
+    else file.attribute("/VTKHDF", "Type", "UnstructuredGrid");
     Counts points, corners, connectivity, offsets;
     std::vector<double> coordinates, values;
     std::vector<std::uint8_t> types;
@@ -84,7 +86,7 @@ TEST_F(ReadVtkhdfParts, PartsWithoutCellsAddNothing) {
     for (const Counts& cells : {Counts{0, 1, 1}, Counts{1, 0, 1}, Counts{1, 1, 0}, Counts{0, 1, 0, 0, 1}})
         for (const bool offsets : {true, false})
             for (const std::int64_t points : {0, 3}) {
-                const auto result = read_parts({cells, offsets, points});
+                const auto result = read_parts({cells, offsets, false, points});
                 ASSERT_TRUE(result) << result.error().message;
                 EXPECT_EQ(result->grid.cells.count(), 2u);
                 ASSERT_EQ(result->grid.point_fields.size(), 1u);
@@ -94,6 +96,12 @@ TEST_F(ReadVtkhdfParts, PartsWithoutCellsAddNothing) {
                 EXPECT_EQ(result->grid.points.at(last, 2), 1) << "the top of the second tet";
                 EXPECT_EQ(result->grid.point_fields[0].values.at(last), result->grid.points.at(last, 0) + 3);
             }
+}
+
+TEST_F(ReadVtkhdfParts, MayHaveATypeOfAnyLength) {
+    const auto result = read_parts({{1, 1}, true, true});
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(result->grid.cells.count(), 2u);
 }
 
 TEST_F(ReadVtkhdfParts, CountsOfDifferentLengthsAreAnError) {

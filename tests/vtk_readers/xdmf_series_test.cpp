@@ -38,6 +38,14 @@ std::string series_with(const std::string& include) {
 
 std::string included(const std::string& xpointer) { return "<xi:include xpointer='" + xpointer + "'/>"; }
 
+TEST_F(ReadXdmfSeries, MayHaveBlanksAroundTimes) {
+    const std::string steps = xdmf_grid("u", xdmf_points() + xdmf_tets() + xdmf_time(" 0.25 ")) +
+                              xdmf_grid("u", xdmf_points() + xdmf_tets() + xdmf_time("5.0e-1\n"));
+    const auto result = read_step(xdmf_collection("u", "Temporal", steps), 1);
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(result->info.times, (std::vector<double>{0.25, 0.5}));
+}
+
 TEST_F(ReadXdmfSeries, FollowsEveryFormOfXpointer) {
     const std::string both = "/*[self::Topology or self::Geometry]";
     const std::vector<std::string> includes = {

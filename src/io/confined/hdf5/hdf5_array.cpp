@@ -186,14 +186,29 @@ std::optional<std::int64_t> integer_attribute(const std::string& file, const std
     return static_cast<std::int64_t>(values[0]);
 }
 
+namespace {
+
+/// One text of any length, as h5py writes texts of Python.
+std::string variable_text(hid_t attribute, hid_t type) {
+    const Handle space(H5Aget_space(attribute), H5Sclose);
+    char* text = nullptr;
+    if (!space.good() || H5Sget_simple_extent_npoints(space) != 1 || H5Aread(attribute, type, &text) < 0) return {};
+    std::string out = text ? text : "";
+    H5Dvlen_reclaim(type, space, H5P_DEFAULT, &text);
+    return out;
+}
+
+} // namespace
+
 std::string text_attribute(const std::string& file, const std::string& group, const char* name) {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     const Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
     if (!opened.good() || H5Aexists_by_name(opened, group.c_str(), name, H5P_DEFAULT) <= 0) return {};
     const Handle attribute(H5Aopen_by_name(opened, group.c_str(), name, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
     const Handle type(attribute.good() ? H5Aget_type(attribute) : -1, H5Tclose);
-    const bool fixed = type.good() && H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0;
-    if (!fixed || H5Tget_size(type) > 256 || H5Aget_storage_size(attribute) > 256) return {};
+    if (!type.good() || H5Tget_class(type) != H5T_STRING) return {};
+    if (H5Tis_variable_str(type) > 0) return variable_text(attribute, type);
+    if (H5Tget_size(type) > 256 || H5Aget_storage_size(attribute) > 256) return {};
     char text[257] = {};
     return H5Aread(attribute, type, text) < 0 ? "" : text;
 }

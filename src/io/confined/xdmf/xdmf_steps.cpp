@@ -162,7 +162,8 @@ private:
         double value = 0;
         const pugi::xml_node time = document_.child(grid, "Time");
         if (!time) return std::nullopt;
-        if (parse_number(time.attribute("Value").as_string(), value)) return value;
+        TextScanner text(time.attribute("Value").as_string());
+        if (text.number(value) && text.at_end()) return value;
         if (const std::string_view type = kind_of(time); !type.empty() && !same_word(type, "Single"))
             return std::nullopt;
         const auto numbers = numbers_of(time);
