@@ -34,16 +34,18 @@ public:
 
 private:
     Result<bool> look_at_named(std::size_t step) {
-        const Result<FoundField> found = choose_field(source_, wish_.field);
-        if (!found) {
-            if (!was_there_ && !missing_) missing_ = found.error();
+        const auto is_missing = [&](const Error& error) {
+            if (!was_there_ && !missing_) missing_ = error;
             return false;
-        }
-        was_there_ = true;
-        missing_.reset();
+        };
+        const Result<FoundField> found = choose_field(source_, wish_.field);
+        if (!found) return is_missing(found.error());
         FieldsToRead read{found->point, found->cell};
         const Result<Grid> grid = read_with_others(read, step);
+        if (!grid && grid.error().code == ErrorCode::invalid_argument) return is_missing(grid.error());
         if (!grid) return grid.error();
+        was_there_ = true;
+        missing_.reset();
         source_.keep(*grid, read, step);
         return field_varies(*grid, found->name);
     }

@@ -112,6 +112,10 @@ TEST(ChooseSteps, TakesOneByTimeOrNumberOrAll) {
     options.time = 0.6;
     EXPECT_NE(choose_steps(info, options, Steps::one, listener).error().message.find("the nearest is 0.5"),
               std::string::npos);
+    info.times = {0.0999, static_cast<double>(0.1F), 2};
+    options.time = 0.1;
+    EXPECT_EQ(choose_steps(info, options, Steps::one, listener).value(), std::vector<std::size_t>{1})
+        << "a file of single precision";
     options = {};
     options.step = 2;
     EXPECT_EQ(choose_steps(info, options, Steps::one, listener).value(), std::vector<std::size_t>{2});

@@ -83,6 +83,25 @@ TEST_F(SeriesFields, AreThoseOfTheStepThatIsAskedFor) {
     }
 }
 
+/// A file that names the fields of all its steps at once; q is in the second step alone.
+TEST_F(SeriesFields, OfOneFileMayBeginLater) {
+    const auto data = [](const char* kind, const std::string& section, int step) {
+        return fmt::format("${0}\n1\n\"{1}\"\n1\n{2}\n3\n{2}\n1\n4\n1 0\n2 1\n3 2\n4 3\n$End{0}\n", kind, section,
+                           step);
+    };
+    const std::string file = folder.write(
+        "a.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n"
+                 "$Elements\n1\n1 4 0 1 2 3 4\n$EndElements\n" +
+                     data("NodeData", "T", 0) + data("NodeData", "T", 1) + data("NodeData", "T", 2) +
+                     data("NodeData", "q", 1) + data("NodeData", "q", 2));
+    const auto numbers = extract_files(job_of(file, "q"), listener);
+    ASSERT_TRUE(numbers) << numbers.error().message;
+    EXPECT_EQ(numbers->surfaces.at(0).triangles, 2u);
+    ExtractJob job = job_of(file, "q");
+    job.grid.step = 0;
+    EXPECT_EQ(extract_files(job, listener).error().message, "point field 'q' has no values at step 0");
+}
+
 TEST_F(SeriesFields, StepsWithoutTheFieldAreSkippedWithOneNote) {
     for (const auto& [field, steps, note] :
          {std::tuple{"q", 2u, "'q' is not in 1 of the 3 time steps, which is skipped: 0"},
