@@ -337,14 +337,9 @@ TEST_F(DecomposedCase, MayHaveProcessorsWithoutCells) {
         FoamFiles files = foam_case(box_, wave, style, 2);
         add_mesh(files, "processor2/", nothing, style);
         for (const char* time : {"0/", "0.5/"}) add_fields(files, std::string("processor2/") + time, nothing, wave, style);
-        for (const char* name : {"pointProcAddressing", "cellProcAddressing"})
-            if (addressing)
-                files[std::string("processor2/constant/polyMesh/") + name] =
-                    "FoamFile { version 2.0; format ascii; class labelList; }\n0()\n";
         const TemporaryFolder folder;
         write_case(folder, files);
         const Grid grid = read_whole(folder.file(""));
-        if (addressing) expect_same_grid(grid, whole);
         EXPECT_EQ(grid.cells.count(), whole.cells.count());
     }
 }

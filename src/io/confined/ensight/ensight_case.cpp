@@ -136,9 +136,9 @@ void add_time_values(EnsightCase::TimeSet& set, const Words& words) {
         if (parse_number(word, value)) set.values.push_back(value);
 }
 
-/// "MATERIAL", "BLOCK CONTINUATION": sections are in capitals, alone on their line.
-bool begins_unknown_section(std::string_view line) {
-    return line.size() > 2 && std::ranges::all_of(line, [](char c) { return (c >= 'A' && c <= 'Z') || c == ' '; });
+/// Sections of the format that are not read.
+bool begins_other_section(std::string_view line) {
+    return line == "MATERIAL" || line == "BLOCK CONTINUATION" || line == "SCRIPTS";
 }
 
 class CaseParser {
@@ -157,7 +157,7 @@ public:
 
 private:
     enum class List : std::uint8_t { none, numbers, values };
-    enum class Section : std::uint8_t { none, format, geometry, variable, time, file, unknown };
+    enum class Section : std::uint8_t { none, format, geometry, variable, time, file, other };
 
     /// True for the first line of a section.
     bool begin_section(std::string_view line) {
@@ -172,8 +172,8 @@ private:
                 section_ = name.section;
                 return true;
             }
-        if (section_ == Section::none || !begins_unknown_section(line)) return false;
-        section_ = Section::unknown;
+        if (!begins_other_section(line)) return false;
+        section_ = Section::other;
         return true;
     }
 
@@ -213,7 +213,7 @@ private:
             else refuse(line, "a variable");
             return;
         case Section::file: return take_file_set(key, words);
-        case Section::unknown: return;
+        case Section::other: return;
         case Section::time: take_time_set(key, rest, words);
         }
         if (list_ == List::numbers) add_file_numbers(found_.time_sets.back(), words);
