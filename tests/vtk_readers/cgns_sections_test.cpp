@@ -33,9 +33,13 @@ const std::vector<Points> boundary{{1, 2, 3, 4}, {5, 6, 7, 8}, {9, 13, 10}};
 struct CgnsWriter {
     int file = 0, base = 0, zone = 0, at = 0;
 
-    explicit CgnsWriter(const std::string& path) {
+    explicit CgnsWriter(const std::string& path, bool surface_first = false) {
         cg_set_file_type(CG_FILE_HDF5);
         EXPECT_EQ(cg_open(path.c_str(), CG_MODE_WRITE, &file), 0) << cg_get_error();
+        if (surface_first) {
+            cg_base_write(file, "Skin", 2, 3, &base);
+            triangle();
+        }
         cg_base_write(file, "Base", 3, 3, &base);
         const cgsize_t size[3] = {static_cast<cgsize_t>(corner_places.size()), static_cast<cgsize_t>(volume.size()), 0};
         cg_zone_write(file, base, "Zone", size, CG_Unstructured, &zone);
@@ -45,6 +49,14 @@ struct CgnsWriter {
             const char name[] = {'C', 'o', 'o', 'r', 'd', 'i', 'n', 'a', 't', 'e', "XYZ"[axis], '\0'};
             cg_coord_write(file, base, zone, CG_RealDouble, name, values.data(), &at);
         }
+    }
+    void triangle() {
+        const cgsize_t size[3] = {3, 1, 0};
+        cg_zone_write(file, base, "Triangle", size, CG_Unstructured, &zone);
+        const std::vector<double> places{0, 1, 0};
+        for (const char* name : {"CoordinateX", "CoordinateY", "CoordinateZ"})
+            cg_coord_write(file, base, zone, CG_RealDouble, name, places.data(), &at);
+        section("Tri", CG_TRI_3, 1, 1, {1, 2, 3});
     }
     void section(const char* name, CG_ElementType_t type, cgsize_t first, cgsize_t last, const Points& points) {
         EXPECT_EQ(cg_section_write(file, base, zone, name, type, first, last, 0, points.data(), &at), 0)
@@ -89,6 +101,12 @@ struct CgnsWriter {
         int number = 0;
         cg_sol_write(file, base, zone, name, location, &number);
         if (!values.empty()) cg_field_write(file, base, zone, number, CG_RealDouble, field, values.data(), &at);
+    }
+    void close_with_an_empty_zone() {
+        const cgsize_t size[3] = {8, 1, 0};
+        int hollow = 0;
+        cg_zone_write(file, base, "Hollow", size, CG_Unstructured, &hollow);
+        close();
     }
     void close() {
         solution("Empty", CG_Vertex, "", {});
@@ -208,6 +226,21 @@ TEST(CgnsSections, MayMixTheBoundaryWithTheVolume) {
             SCOPED_TRACE(path);
             expect_cells(path);
         }
+}
+
+TEST(CgnsBases, TheFirstWithVolumesIsReadWithoutZonesThatHaveNoPoints) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("a.cgns");
+    CgnsWriter writer(path, true);
+    writer.mixed(1, volume, true);
+    writer.close_with_an_empty_zone();
+    const auto result = read(path);
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(result->grid.cells.count(), volume.size());
+    ASSERT_EQ(result->notes.size(), 2u);
+    EXPECT_EQ(result->notes[0],
+              "only the first with volumes of 2 bases is read, 'Base': --block NAME (ReadOptions::blocks) reads 'Skin'");
+    EXPECT_EQ(result->notes[1], "zone \"Base/Hollow\" is left out: it has no coordinates");
 }
 
 TEST(CgnsSections, OfMixedElementsThatAreBrokenAreErrors) {

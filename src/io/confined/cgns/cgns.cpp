@@ -29,7 +29,9 @@ struct CgnsBase {
 void read_steps(const CgnsTree& tree, const CgnsNode& iterative, CgnsBase& base) {
     constexpr std::size_t letters_of_name = 32;
     const std::vector<CgnsNode> parts = tree.children(iterative);
-    if (const auto node = child_named(parts, "TimeValues"))
+    auto node = child_named(parts, "TimeValues");
+    if (!node) node = child_named(parts, "IterationValues");
+    if (node)
         if (const auto times = tree.numbers(*node))
             times->visit([&](auto values) { base.times.assign(values.begin(), values.end()); });
     const auto pointers = child_named(parts, "ZonePointers");
@@ -73,6 +75,13 @@ private:
     Error wrong(const CgnsZone& zone, const Error& error) const {
         if (error.code != ErrorCode::invalid_data || error.message.starts_with(escaped(path_))) return error;
         return broken(path_, fmt::format("zone \"{}\": {}", escaped(zone.name), error.message));
+    }
+
+    /// The one that is read without a choice: the first that has a zone of cells with a volume, or else the first.
+    std::size_t usual_base() const {
+        const auto found = std::ranges::find_if(
+            zones_, [](const CgnsZone& zone) { return zone.cell_dimension == 3 && zone.has_points(); });
+        return found == zones_.end() ? 0 : found->base;
     }
 
     const std::string& path_;
@@ -162,17 +171,25 @@ Result<Loaded> CgnsFile::load(const ReadOptions& options, Depth depth) {
     const auto step = choose_step(loaded.info, options);
     if (!step) return step.error();
     loaded.step = *step;
+    const std::size_t base = usual_base();
     if (bases_.size() > 1 && options.blocks.empty()) {
         std::vector<std::string> others;
-        for (std::size_t i = 1; i < bases_.size(); ++i) others.push_back("'" + escaped(bases_[i].name) + "'");
+        for (std::size_t i = 0; i < bases_.size(); ++i)
+            if (i != base) others.push_back("'" + escaped(bases_[i].name) + "'");
         loaded.notes.push_back(
-            fmt::format("only the first of {} bases is read, '{}': --block NAME (ReadOptions::blocks) reads {}",
-                        bases_.size(), escaped(bases_[0].name), fmt::join(others, ", ")));
+            fmt::format("only {} of {} bases is read, '{}': --block NAME (ReadOptions::blocks) reads {}",
+                        base == 0 ? "the first" : "the first with volumes", bases_.size(), escaped(bases_[base].name),
+                        fmt::join(others, ", ")));
     }
     core::PatchList patch_numbers;
     for (std::size_t i = 0; i < zones_.size(); ++i) {
-        // Bases are grids of their own, often in the same place: without a choice only the first is read.
-        if (!(*chosen)[i] || (options.blocks.empty() && zones_[i].base > 0) || !is_there(zones_[i], *step)) continue;
+        // Bases are grids of their own, often in the same place: without a choice only one is read.
+        const CgnsZone& zone = zones_[i];
+        if (!(*chosen)[i] || (options.blocks.empty() && zone.base != base) || !is_there(zone, *step)) continue;
+        if (!zone.has_points() && zones_.size() > 1) {
+            loaded.notes.push_back(fmt::format("zone \"{}\" is left out: it has no coordinates", escaped(zone.name)));
+            continue;
+        }
         auto piece = read_zone(i, options, *step, patch_numbers, loaded);
         if (!piece) return piece.error();
         loaded.pieces.push_back(*std::move(piece));

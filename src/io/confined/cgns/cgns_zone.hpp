@@ -27,6 +27,7 @@ struct CgnsZone {
     std::vector<std::uint64_t> points, cells; ///< along each axis; of unstructured zones one number
 
     std::uint64_t point_count() const;
+    bool has_points() const { return child_labelled(parts, "GridCoordinates_t").has_value(); }
 };
 
 /// All zones of all bases.
