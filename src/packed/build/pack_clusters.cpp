@@ -141,7 +141,7 @@ Result<void> form_clusters(CellOrder<Item> order, std::uint64_t user_cells, Draf
     draft.first_local = Buffer<std::uint64_t>(total.cluster + 1);
     draft.locals = Buffer<std::uint64_t>(total.local);
     draft.first_local[total.cluster] = total.local;
-    const bool wide_cells = user_cells > std::size_t{1} << 32;
+    const bool wide_cells = user_cells > std::uint64_t{1} << 32;
     if (source_cells && wide_cells) packed.wide_cell_ids = SharedBuffer<std::uint64_t>(total.word);
     else if (source_cells) packed.cell_ids = SharedBuffer<std::uint32_t>(total.word);
     parallel_each(block_count, 1, [&](std::size_t b) {
