@@ -42,6 +42,7 @@ public:
     EnsightFile(const std::string& path, std::string_view bytes, EnsightForm form, bool big_endian,
                 std::size_t integer_width);
 
+    const std::string& path() const noexcept { return path_; }
     bool is_binary() const noexcept { return form_ != EnsightForm::ascii; }
     std::size_t position() const noexcept { return at_; }
     void seek(std::size_t position) noexcept { at_ = position; }

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "io/confined/ensight/ensight_grid.hpp"
+#include "io/files/escape.hpp"
 #include "io/files/text_scanner.hpp"
 
 namespace isotet::io::confined {
@@ -81,7 +82,7 @@ bool is_without_values(EnsightFile& file, const EnsightPart& part, bool of_nodes
     if (of_nodes || part.is_structured ? part.nodes > 0 : !std::ranges::all_of(part.elements, is_empty)) return false;
     if (is_at_part(file)) return true;
     file.line("the kind of values of a part");
-    if (!is_at_part(file)) file.wrong("a part has values, but no nodes or elements");
+    if (!is_at_part(file)) file.wrong(fmt::format("a part has values, but no nodes or elements in {}", escaped(part.file)));
     return true;
 }
 

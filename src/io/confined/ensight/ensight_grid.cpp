@@ -96,6 +96,7 @@ EnsightPart& EnsightGrid::add(const EnsightFile& file, std::uint64_t number, std
     EnsightPart& part = parts.emplace_back();
     part.number = number;
     part.name = std::move(name);
+    part.file = file.path();
     return part;
 }
 

@@ -27,7 +27,7 @@ struct EnsightPart {
         std::uint64_t first = 0, count = 0;
     };
     std::uint64_t number = 0;
-    std::string name;
+    std::string name, file; ///< the geometry that has it
     bool is_structured = false, is_wanted = true;
     std::uint64_t nodes = 0, cells = 0; ///< none of ghosts; nodes of unstructured parts of EnSight 6: the grid has them
     std::array<std::uint64_t, 3> size{}; ///< of a block
