@@ -171,7 +171,7 @@ Result<JoinedCells> join_cells(std::vector<Piece>& pieces, std::span<const std::
     std::uint64_t largest = 0;
     for (std::size_t p = 0; p < pieces.size(); ++p) {
         counts[p] = counts_before(PieceCells(pieces[p].grid.cells), pieces[p].left_out).back();
-        largest = std::max(largest, pieces[p].grid.cells.connectivity.bytes());
+        largest = std::max<std::uint64_t>(largest, pieces[p].grid.cells.connectivity.bytes());
     }
     const Shape shape = shape_of(pieces, counts);
     constexpr auto max_narrow = static_cast<std::uint64_t>(std::numeric_limits<std::int32_t>::max());

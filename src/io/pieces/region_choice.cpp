@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -68,8 +69,9 @@ std::vector<BlockInfo> listed(const std::vector<std::int64_t>& regions, std::str
 } // namespace
 
 std::string_view region_field(const FileInfo& info) {
-    const auto* const known = std::ranges::find(numbered, info.format, &Numbered::format);
-    if (known == numbered.end()) return {};
+    const std::span<const Numbered> all = numbered; // an array's iterator is a pointer in some libraries only
+    const auto known = std::ranges::find(all, info.format, &Numbered::format);
+    if (known == all.end()) return {};
     const bool there = std::ranges::any_of(info.fields, [&](const FieldInfo& field) {
         return field.association == Association::cell && field.name == known->field;
     });

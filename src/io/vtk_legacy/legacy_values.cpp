@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include <fmt/core.h>
@@ -72,8 +73,9 @@ Result<std::uint64_t> LegacyValues::read_count(std::string_view what) {
 
 std::optional<LegacyType> legacy_type(std::string_view name) {
     if (name.starts_with("vtktype")) name.remove_prefix(7); // vtktypeint64 and so on
-    const auto* const known = std::ranges::find(legacy_types, name, &LegacyType::name);
-    return known == legacy_types.end() ? std::nullopt : std::optional(*known);
+    const std::span<const LegacyType> all = legacy_types;   // an array's iterator is a pointer in some libraries only
+    const auto known = std::ranges::find(all, name, &LegacyType::name);
+    return known == all.end() ? std::nullopt : std::optional(*known);
 }
 
 Result<LegacyType> LegacyValues::read_type() {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 #include <fmt/core.h>
 
@@ -180,8 +181,9 @@ Result<std::optional<DataArray>> describe_array(const Document& document, const 
     if (tag != "DataArray" && tag != "Array")
         return invalid_data(fmt::format("an element {} where an array should be", in_quotes(tag)));
     if (type == "String") return std::optional<DataArray>();
-    const auto* const known = std::ranges::find(type_names, type, &TypeName::name);
-    if (known == type_names.end())
+    const std::span<const TypeName> all = type_names; // an array's iterator is a pointer in some libraries only
+    const auto known = std::ranges::find(all, type, &TypeName::name);
+    if (known == all.end())
         return wrong(array.name, fmt::format("its type is {}, which is not known", in_quotes(type)));
     array.type = known->type;
     array.bits = type == "Bit";
