@@ -1,10 +1,14 @@
 #!/usr/bin/env bash
 # Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-# Builds isotet as WebAssembly, FOLDER/isotet.wasm, which `isotet export --as grid` puts into pages: with clang-19 and Debian's
-# C and C++ libraries for wasm32-wasi, one thread, SIMD of 128 bits. Then compares its surfaces with those of a program, where
-# ISOTET_PROGRAM names one (nodejs is installed for that). Give the module to a build by -DISOTET_WEB_MODULE=FOLDER/isotet.wasm.
+# Builds isotet as WebAssembly with clang-19 and Debian's C and C++ libraries for wasm32-wasi, one thread, SIMD of 128 bits:
+# FOLDER/isotet.wasm, which `isotet export --as grid` puts into pages, FOLDER/isotet_readers.wasm, for `isotet page`, and the package
+# FOLDER/npm, isotet.js for other pages. Give the first, with the second beside it, to a build by -DISOTET_WEB_MODULE=FOLDER/isotet.wasm.
+# Then compares with a program, where ISOTET_PROGRAM names one: surfaces by Node; and where npm is installed, the examples with
+# three.js and vtk.js, which it serves, in Chromium.
 source "$(dirname "${BASH_SOURCE[0]}")/lib/common.sh"
 source "$root/scripts/lib/packages.sh"
+source "$root/scripts/lib/software_vulkan.sh"
+source "$root/scripts/lib/web_libraries.sh"
 
 if (($# > 1)) || [[ ${1:-} == -* ]]; then
     echo "usage: $0 [FOLDER]    (build/web)" >&2
@@ -16,8 +20,19 @@ readonly folder
 
 install_packages cmake ninja-build libfmt-dev nlohmann-json3-dev "${packages_for_web[@]}" || exit
 mkdir -p "$folder"
+web_libraries_in "$folder/libraries"
+use_ccache
 cmake -G Ninja -S "$root/src/web" -B "$folder" -DCMAKE_TOOLCHAIN_FILE="$root/cmake/wasm.cmake" -DCMAKE_BUILD_TYPE=Release \
-    -DISOTET_WASM_ROOT="${ISOTET_WASM_ROOT:-}" >"$folder/configure.log"
+    -DISOTET_WASM_ROOT="${ISOTET_WASM_ROOT:-}" -DISOTET_WEB_LIBRARIES="$folder/libraries" >"$folder/configure.log"
 cmake --build "$folder" -j "$(jobs_that_fit)"
-say "$folder/isotet.wasm: $(stat -c %s "$folder/isotet.wasm") bytes, $(gzip -9 <"$folder/isotet.wasm" | wc -c) compressed"
-if [[ -n ${ISOTET_PROGRAM:-} ]]; then node "$root/tests/web/module_test.mjs" "$folder/isotet.wasm" "$ISOTET_PROGRAM"; fi
+for module in isotet isotet_readers npm/isotet_engine; do
+    say "$module.wasm: $(stat -c %s "$folder/$module.wasm") bytes, $(gzip -9 <"$folder/$module.wasm" | wc -c) compressed"
+done
+if [[ -z ${ISOTET_PROGRAM:-} ]]; then exit; fi
+node "$root/tests/web/module_test.mjs" "$folder/isotet.wasm" "$ISOTET_PROGRAM"
+node "$root/tests/web/readers_test.mjs" "$folder/isotet_readers.wasm" "$ISOTET_PROGRAM"
+node "$root/tests/web/npm_test.mjs" "$folder/npm" "$ISOTET_PROGRAM"
+if ! command -v npm >/dev/null; then exit; fi
+mkdir -p "$folder/libraries"
+npm install --prefix "$folder/libraries" --no-save --no-audit --no-fund --ignore-scripts --silent three vtk.js
+python3 -B "$root/tests/web/examples_test.py" "$folder/npm" "$folder/libraries/node_modules"

@@ -1,10 +1,11 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// `isotet docs`: man page, completion and docs/command-line.md, for the build and for a test.
+// `isotet docs`: man page, completion, docs/command-line.md and the page of Python's html(), for builds and for a test.
 #include <fmt/format.h>
 
 #include "command_text.hpp"
 #include "commands.hpp"
 #include "standard_streams.hpp"
+#include "view/saved_grid.hpp"
 
 namespace isotet::cli {
 
@@ -13,8 +14,12 @@ Result<ExitCode> run_docs(const DocsCommand& command, const std::vector<CommandT
     if (command.kind == "man") text = man_page(commands);
     else if (command.kind == "completion") text = bash_completion(commands);
     else if (command.kind == "markdown") text = markdown(commands);
-    else {
-        return usage_error("docs got '{}', but it takes man, completion or markdown", command.kind);
+    else if (command.kind == "page") {
+        const Result<std::string> page = view::unfilled_page();
+        if (!page) return page.error();
+        text = *page;
+    } else {
+        return usage_error("docs got '{}', but it takes man, completion, markdown or page", command.kind);
     }
     if (Result<void> written = write_to_stdout(text); !written) return written.error();
     return ExitCode::done;

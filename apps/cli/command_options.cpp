@@ -189,6 +189,14 @@ Examples:
   isotet export run.pvd run.html -f pressure -i 0.5 --all-steps --max-size 50MB
 )";
 
+constexpr const char* page_details = R"(
+OUT is the page of isotet view with isotet in it as WebAssembly, and no grid: files are dropped into it, or chosen, and read in the
+browser by isotet's own readers. Nothing of them leaves the machine. It is opened from a disk or put on any web server.
+
+Examples:
+  isotet page isotet.html
+)";
+
 /// Which device, which grid, and what every command has.
 void add_machine_and_input(const Command& command, DeviceChoice& device, GridOptions& grid, CommonOptions& common) {
     add_device(command, device);
@@ -484,6 +492,13 @@ void add_make(const Command& program, MakeCommand& make) {
     command.set_details(make_details);
 }
 
+void add_page(const Command& program, PageCommand& page) {
+    const Command command = program.add_command("page", "Make a page of one file into which grids are dropped");
+    command.add_file("OUT", page.out, "OUT_FILE", "The page: .html").required();
+    add_common(command, page.common);
+    command.set_details(page_details);
+}
+
 void add_formats(const Command& program, FormatsCommand& formats) {
     const Command command = program.add_command("formats", "List the file formats");
     add_common(command, formats.common);
@@ -503,9 +518,9 @@ void add_help(const Command& program, HelpCommand& help) {
 }
 
 void add_docs(const Command& program, DocsCommand& docs) {
-    const Command command =
-        program.add_command("docs", "Print the man page, the bash completion or docs/command-line.md");
-    command.add_text("KIND", docs.kind, "man|completion|markdown", "").required();
+    const Command command = program.add_command(
+        "docs", "Print the man page, the bash completion, docs/command-line.md or the page of Python's html()");
+    command.add_text("KIND", docs.kind, "man|completion|markdown|page", "").required();
     command.hide(); // for the build, not for users
 }
 
@@ -865,6 +880,7 @@ void add_commands(const Command& program, CommandLine& line) {
     add_render(program, line.render);
     add_view(program, line.view);
     add_export(program, line.exported);
+    add_page(program, line.page);
     add_bench(program, line.bench);
     add_check(program, line.check);
     add_pack(program, line.pack);

@@ -21,6 +21,7 @@ Result<ExitCode> run_clip(const ClipCommand& command);
 Result<ExitCode> run_render(const RenderCommand& command);
 Result<ExitCode> run_view(const ViewCommand& command);
 Result<ExitCode> run_export(const ExportCommand& command);
+Result<ExitCode> run_page(const PageCommand& command);
 Result<ExitCode> run_bench(const BenchCommand& command);
 Result<ExitCode> run_check(const CheckCommand& command);
 Result<ExitCode> run_pack(const PackCommand& command);

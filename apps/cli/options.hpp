@@ -85,6 +85,11 @@ struct ExportCommand {
     bool grid_inside = false; ///< a packed grid instead of surfaces
 };
 
+struct PageCommand {
+    CommonOptions common;
+    std::string out; ///< .html
+};
+
 struct BenchCommand : BenchJob {
     CommonOptions common;
 };
@@ -135,6 +140,7 @@ struct CommandLine {
     RenderCommand render;
     ViewCommand view;
     ExportCommand exported;
+    PageCommand page;
     BenchCommand bench;
     CheckCommand check;
     PackCommand pack;

@@ -52,6 +52,7 @@ Result<ExitCode> run_command(const CommandLine& line, const OptionTree& tree) {
     if (line.command == "render") return run_render(line.render);
     if (line.command == "view") return run_view(line.view);
     if (line.command == "export") return run_export(line.exported);
+    if (line.command == "page") return run_page(line.page);
     if (line.command == "bench") return run_bench(line.bench);
     if (line.command == "check") return run_check(line.check);
     if (line.command == "pack") return run_pack(line.pack);

@@ -113,6 +113,11 @@ std::string_view text_of_file(const std::vector<ServedFile>& files, std::string_
     return found == files.end() ? std::string_view{} : found->content;
 }
 
+std::string_view link_of(PageSource source) {
+    if (source == PageSource::files) return "files_link.js";
+    return source == PageSource::grid ? "wasm_link.js" : "saved_link.js";
+}
+
 } // namespace
 
 Result<std::string> bundle(std::span<const PageModule> modules, std::string_view first,
@@ -150,23 +155,22 @@ Result<std::string> page_document(std::string_view title, const Json& saved, con
     std::vector<PageModule> modules;
     for (const ServedFile& file : files)
         if (file.name.ends_with(".js")) modules.push_back({file.name, file.content});
-    const bool is_grid = source == PageSource::grid;
-    const Result<std::string> script =
-        bundle(modules, "main.js", {"link.js", is_grid ? "wasm_link.js" : "saved_link.js"});
+    const bool has_engine = source != PageSource::surfaces;
+    const Result<std::string> script = bundle(modules, "main.js", {"link.js", link_of(source)});
     if (!script) return script.error();
     const std::string_view style = text_of_file(files, "style.css");
-    const std::string policy =
-        fmt::format("default-src 'none'; script-src {}{}; style-src {}; img-src data: blob:; base-uri 'none'; "
-                    "form-action 'none'",
-                    hash_source(*script), is_grid ? " 'wasm-unsafe-eval'; worker-src blob:" : "",
-                    hash_source(style));
+    const std::string policy = fmt::format(
+        "default-src 'none'; script-src {}{}; style-src {}; img-src data: blob:; base-uri 'none'; "
+        "form-action 'none'",
+        hash_source(*script), has_engine ? " 'wasm-unsafe-eval'; worker-src blob:" : "", hash_source(style));
     std::string data = fmt::format("<script type=\"application/json\" id=\"saved\">{}</script>\n", json_in_html(saved));
     for (const PagePart& part : parts)
         data += fmt::format("<script type=\"text/plain\" id=\"{}\">{}</script>\n", html_text(part.name), part.base64);
-
-    if (is_grid)
-        data += fmt::format("<script type=\"text/plain\" id=\"worker\">{}</script>\n",
-                            base64_of(text_of_file(files, "engine_worker.js")));
+    if (has_engine) {
+        const Result<std::string> worker = bundle(modules, "engine_worker.js", {});
+        if (!worker) return worker.error();
+        data += fmt::format("<script type=\"text/plain\" id=\"worker\">{}</script>\n", base64_of(*worker));
+    }
 
     std::string html(text_of_file(files, "index.html"));
     const bool fits =

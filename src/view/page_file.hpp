@@ -39,7 +39,8 @@ struct PagePart {
 /// What answers the page in place of a server.
 enum class PageSource : std::uint8_t {
     surfaces, ///< web/saved_link.js, out of parts for each
-    grid      ///< web/wasm_link.js, with parts "engine" and "grid"; the policy allows WebAssembly and a thread for it
+    grid,     ///< web/wasm_link.js, with parts "engine" and "grid"; the policy allows WebAssembly and a thread for it
+    files     ///< web/files_link.js, with a part "engine" that reads files; policy as above
 };
 
 /// The page of `isotet view` as an HTML document that says by its policy (Content-Security-Policy) that it runs one

@@ -12,7 +12,7 @@ namespace isotet::view {
 Result<void> check_grid_pages() {
     if (web_module().empty())
         return Error{ErrorCode::invalid_argument,
-                     "a page with a grid has isotet in it as WebAssembly, which this isotet was built without: "
+                     "the page has isotet in it as WebAssembly, which this isotet was built without: "
                      "scripts/web.sh makes it, and docs/export.md tells how; --as surfaces needs none"};
     return {};
 }
@@ -28,6 +28,23 @@ Result<std::string> grid_page(std::string_view packed, const SavedGridOptions& o
                   {"notes", options.notes}};
     return page_document(fmt::format("{} – isotet", options.file), saved,
                          {{"engine", base64_of(*engine)}, {"grid", base64_of(*grid)}}, PageSource::grid);
+}
+
+Result<std::string> unfilled_page() {
+    if (Result<void> checked = check_grid_pages(); !checked) return checked.error();
+    const Result<std::string> engine = deflated(web_module());
+    if (!engine) return engine.error();
+    return page_document("isotet", Json::object(), {{"engine", base64_of(*engine)}}, PageSource::grid);
+}
+
+Result<std::string> empty_page(const std::string& version) {
+    if (web_reader_module().empty())
+        return Error{ErrorCode::invalid_argument,
+                     "the page has isotet's readers in it as WebAssembly, which this isotet was built without: "
+                     "scripts/web.sh makes them, and docs/export.md tells how"};
+    const Result<std::string> engine = deflated(web_reader_module());
+    if (!engine) return engine.error();
+    return page_document("isotet", {{"version", version}}, {{"engine", base64_of(*engine)}}, PageSource::files);
 }
 
 } // namespace isotet::view

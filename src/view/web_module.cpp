@@ -5,18 +5,28 @@
 
 #ifdef ISOTET_WEB_MODULE
 
-// The assembler puts the file into the program: as numbers in C++ it would take minutes to compile.
+#ifdef ISOTET_WEB_READERS
+#define ISOTET_READERS_IN_PROGRAM ".incbin \"" ISOTET_WEB_READERS "\"\n"
+#else
+#define ISOTET_READERS_IN_PROGRAM "\n"
+#endif
+
+// The assembler puts the files into the program: as numbers in C++ it would take minutes to compile.
 asm(".section .rodata\n"
-    ".global isotet_web_module_begin, isotet_web_module_end\n"
+    ".global isotet_web_module_begin, isotet_web_module_end, isotet_web_readers_end\n"
     "isotet_web_module_begin: .incbin \"" ISOTET_WEB_MODULE "\"\n"
-    "isotet_web_module_end: .byte 0\n"
+    "isotet_web_module_end: " ISOTET_READERS_IN_PROGRAM "isotet_web_readers_end: .byte 0\n"
     ".text\n");
-extern "C" const char isotet_web_module_begin[], isotet_web_module_end[];
+extern "C" const char isotet_web_module_begin[], isotet_web_module_end[], isotet_web_readers_end[];
 
 namespace isotet::view {
 
 std::string_view web_module() {
     return {isotet_web_module_begin, static_cast<std::size_t>(isotet_web_module_end - isotet_web_module_begin)};
+}
+
+std::string_view web_reader_module() {
+    return {isotet_web_module_end, static_cast<std::size_t>(isotet_web_readers_end - isotet_web_module_end)};
 }
 
 } // namespace isotet::view
@@ -26,6 +36,7 @@ std::string_view web_module() {
 namespace isotet::view {
 
 std::string_view web_module() { return {}; }
+std::string_view web_reader_module() { return {}; }
 
 } // namespace isotet::view
 

@@ -6,7 +6,10 @@
 
 namespace isotet::view {
 
-/// The module; empty where there is none.
+/// The module that looks at a packed grid; empty where there is none.
 std::string_view web_module();
+
+/// The same with isotet's own readers.
+std::string_view web_reader_module();
 
 } // namespace isotet::view

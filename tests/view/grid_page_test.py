@@ -1,5 +1,6 @@
 # Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 """Pages of `isotet export --as grid` in Chromium, opened from the disk: isotet as WebAssembly answers."""
+import html
 import json
 import os
 import subprocess
@@ -77,6 +78,21 @@ def test_values_at_a_point(browser, path):
     values = {one['name']: one['values'][0] for one in picked['values']}
     check(abs(values['sphere'] - 0.5) < 1e-5, f'the value there is the isovalue: {values}')
     check('gyroid' in values, 'the other field is told')
+
+
+def test_in_a_frame(browser, path):
+    """As notebooks show it: a document without an address."""
+    with open(path, encoding='utf-8') as file:
+        page = html.escape(file.read())
+    outer = path.replace('grid.html', 'outer.html')
+    with open(outer, 'w', encoding='utf-8') as file:
+        file.write(f'<!doctype html><title>A notebook</title><iframe srcdoc="{page}" width="900" height="600"></iframe>')
+    browser.call('Page.navigate', url='about:blank')
+    browser.open('file://' + outer)
+    inside = 'document.querySelector("iframe").contentDocument.body'
+    browser.wait(f'{inside} && Number({inside}.dataset.triangles) > 0', 60)
+    browser.value(f'{inside}.querySelector("#pin").click()')
+    browser.wait(f'{inside}.querySelectorAll("#surfaces li").length === 2')
 
 
 def main():

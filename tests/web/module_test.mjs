@@ -1,39 +1,13 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // isotet as WebAssembly against the program: node module_test.mjs MODULE PROGRAM. Surfaces of packed grids of all kinds of cells are
 // the same bytes, and messages of a page are answered.
-import {spawnSync} from 'node:child_process';
-import {mkdtempSync, readFileSync, rmSync} from 'node:fs';
-import {tmpdir} from 'node:os';
-import {dirname, join} from 'node:path';
-import {fileURLToPath} from 'node:url';
-import vm from 'node:vm';
+import {readFileSync} from 'node:fs';
+import {join} from 'node:path';
+import {check, data, folder, median, pageModule, readPly, run} from './support.mjs';
 
-const [module, program] = process.argv.slice(2), here = dirname(fileURLToPath(import.meta.url));
-const folder = mkdtempSync(join(tmpdir(), 'isotet-web-'));
-const worker = readFileSync(join(here, '../../src/view/web/engine_worker.js'), 'utf8');
-const startEngine = vm.runInThisContext(`(() => {${worker}\nreturn startEngine;})()`);
-const engine = readFileSync(module);
-
-function check(condition, what) {
-  if (!condition) throw new Error(what);
-}
-
-function isotet(...words) {
-  const run = spawnSync(program, [...words, '--json', '-', '--quiet'], {encoding: 'utf8', maxBuffer: 1e9});
-  check(run.status === 0, `isotet ${words.join(' ')}: ${run.stderr}`);
-  return JSON.parse(run.stdout);
-}
-
-/** Positions and triangles of a binary PLY of isotet: three numbers each, and int32 behind a count of 3. */
-function readPly(path) {
-  const bytes = readFileSync(path), end = bytes.indexOf('end_header\n') + 11, head = bytes.toString('latin1', 0, end);
-  const [vertices, triangles] = ['vertex', 'face'].map((name) => Number(head.match(new RegExp(`element ${name} (\\d+)`))[1]));
-  const each = [...head.slice(0, head.indexOf('element face')).matchAll(/property (\w+) /g)].map(([, type]) => ({float: 4, double: 8, uchar: 1, int: 4}[type])).reduce((a, b) => a + b, 0);
-  const positions = bytes.subarray(end, end + each * vertices), corners = Buffer.alloc(12 * triangles);
-  const faces = end + each * vertices, size = (bytes.length - faces) / Math.max(1, triangles);
-  for (let i = 0; i < triangles; ++i) bytes.copy(corners, 12 * i, faces + size * i + 1, faces + size * i + 13);
-  return {positions, corners};
-}
+const [module, program] = process.argv.slice(2);
+const {startEngine} = await pageModule('engine_worker.js');
+const engine = readFileSync(module), isotet = (...words) => run(program, ...words);
 
 const none = {state: {field: '', isovalues: []}};
 
@@ -42,8 +16,6 @@ async function open(path, told = none) {
   const isotet = await startEngine({engine, grid: new Uint8Array(readFileSync(path)), told}, (message) => said.push(message));
   return {isotet, said};
 }
-
-const median = (numbers) => numbers.sort((a, b) => a - b)[Math.floor(numbers.length / 2)];
 
 /** The same bytes at five isovalues. */
 async function compare(name) {
@@ -75,16 +47,11 @@ async function compare(name) {
   console.log(`ok ${name} ${field}: ${triangles} triangles, ${median(times).toFixed(1)} ms each`);
 }
 
-try {
-  const data = (path) => join(here, '../../data', path);
-  for (const name of ['make:kuhn:12:sphere', 'make:mixed:8:sphere', 'make:wedge:8:gyroid', 'make:pyramid:8:gyroid', 'make:hex:12:integer',
-    'make:tet10:6:sphere', 'make:kelvin:5:sphere', 'make:octree:8:sphere', 'make:hex27:4:sphere', data('vtu/artery_flow_tet_wedge.vtu')]) await compare(name);
-  for (const bytes of [new Uint8Array(0), new Uint8Array(5000), readFileSync(join(folder, 'grid.isotet')).subarray(0, 5000)]) {
-    const said = [];
-    await startEngine({engine, grid: new Uint8Array(bytes), told: none}, (message) => said.push(message));
-    check(said[0].text.say === 'error', 'a file that is none is a sentence');
-  }
-  console.log('ok broken files');
-} finally {
-  rmSync(folder, {recursive: true});
+for (const name of ['make:kuhn:12:sphere', 'make:mixed:8:sphere', 'make:wedge:8:gyroid', 'make:pyramid:8:gyroid', 'make:hex:12:integer',
+  'make:tet10:6:sphere', 'make:kelvin:5:sphere', 'make:octree:8:sphere', 'make:hex27:4:sphere', data('vtu/artery_flow_tet_wedge.vtu')]) await compare(name);
+for (const bytes of [new Uint8Array(0), new Uint8Array(5000), readFileSync(join(folder, 'grid.isotet')).subarray(0, 5000)]) {
+  const said = [];
+  await startEngine({engine, grid: new Uint8Array(bytes), told: none}, (message) => said.push(message));
+  check(said[0].text.say === 'error', 'a file that is none is a sentence');
 }
+console.log('ok broken files');

@@ -6,7 +6,7 @@ import * as format from './format.js';
 import {say} from './notes.js';
 import {forgetParts, forgetPartNumbers} from './parts.js';
 import {pinColor, showSurfaces} from './surfaces.js';
-import {address, commit, commitSoon} from './undo.js';
+import {commit, commitSoon, nameState} from './undo.js';
 import {forgetPoints, showCurve} from './volume.js';
 import {wishSoon} from './wishes.js';
 
@@ -56,6 +56,15 @@ export function measureServer(made) {
 
 /** Of fields that were shown before. */
 export const forgetValues = () => level.left.clear();
+
+/** Of another grid: its fields may have the same names. */
+export function forgetField() {
+  level.seen.clear();
+  forgetValues();
+  level.automatic = false;
+  level.empty = '';
+  app.slider.chart = app.slider.spectrum = null;
+}
 
 /** Once the grid is packed, frames take another time. */
 export const forgetSpeed = () => { level.msPerTriangle = null; };
@@ -146,7 +155,7 @@ export function takeChart(chart) {
   if (state.value === null && slider.chart) {
     state.value = chart.first;
     level.automatic = !varies;
-    history.replaceState(null, '', address());
+    nameState();
   } else if (level.automatic && varies) {
     setValue(chart.first);
     commitSoon();

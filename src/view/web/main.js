@@ -7,7 +7,7 @@ import {Cuts} from './cuts.js';
 import {short} from './format.js';
 import {offerField, refuseFormula} from './formula.js';
 import './keys.js';
-import {askChart, followStep, forgetQuestions, forgetSpeed, forgetValues, takeChart, takeShare, takeSpectrum} from './level.js';
+import {askChart, followStep, forgetField, forgetQuestions, forgetSpeed, forgetValues, takeChart, takeShare, takeSpectrum} from './level.js';
 import {Link} from './link.js';
 import {moved, showBoundary} from './looking.js';
 import {say, showNotes} from './notes.js';
@@ -17,10 +17,10 @@ import {drawSoon, pictureAsSeen, takeFrame} from './picture.js';
 import {Pointer} from './pointer.js';
 import {Save} from './save.js';
 import {Scene} from './scene.js';
-import {coloredBy, fromMessage} from './state.js';
+import {coloredBy, fromAddress, fromMessage} from './state.js';
 import {showSurfaces} from './surfaces.js';
 import {TimeSteps} from './time.js';
-import {address, commit, commitSoon, onReturn} from './undo.js';
+import {commit, commitSoon, nameState, onReturn} from './undo.js';
 import {showVolume} from './volume.js';
 import {serverDraws, stopWaiting, wishSoon} from './wishes.js';
 
@@ -142,7 +142,21 @@ function takeGrid(message) {
   showNotes();
   document.body.dataset.grid = `${app.grid.points} points, ${app.grid.cells} cells`;
   showState();
-  if (fresh) history.replaceState(null, '', address());
+  if (fresh) nameState();
+}
+
+/** Another grid comes: nothing of this one stays. */
+function forgetGrid() {
+  if (app.grid) app.state = fromAddress('');
+  app.time.stop();
+  app.grid = app.frame = app.made = app.sent = app.picked = null;
+  app.sentAt.clear();
+  app.large = 0;
+  forgetQuestions();
+  forgetField();
+  forgetPartNumbers();
+  stopWaiting();
+  say('');
 }
 
 function takeProgress({step, fraction}) {
@@ -202,6 +216,7 @@ try {
 
 app.link = new Link(app.token, {
   open: () => { id('lost').hidden = true; document.body.dataset.link = 'open'; },
+  other: forgetGrid,
   waits: () => app.sentAt.size > 0 || app.save.file !== null,
   lost: (refused) => {
     // Another connection begins without surfaces: all are sent again.

@@ -4,14 +4,19 @@ import {app, mayBeField} from './app.js';
 import {fromAddress, toAddress} from './state.js';
 
 let commitTimer = 0;
-export const address = () => `#${app.token}&${toAddress(app.state)}`;
+/** A page in a notebook's frame has no address. */
+const hasAddress = location.protocol !== 'about:';
+const address = () => `#${app.token}&${toAddress(app.state)}`;
 
 export function commit() {
   clearTimeout(commitTimer);
   commitTimer = 0;
   app.state.camera = app.grid ? app.camera.text() : app.state.camera;
-  if (location.hash !== address()) history.pushState(null, '', address());
+  if (hasAddress && location.hash !== address()) history.pushState(null, '', address());
 }
+
+/** The address as it is now becomes that of the state. */
+export const nameState = () => { if (hasAddress) history.replaceState(null, '', address()); };
 
 export function commitSoon() {
   clearTimeout(commitTimer);

@@ -1,79 +1,17 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// In place of the socket (link.js) where the page is a file with a packed grid: isotet as WebAssembly answers (engine_worker.js).
-import {readFrame} from './frame.js';
-import {surfaceFile} from './mesh_files.js';
-import {partBytes, unpack} from './unpack.js';
+// The link of a page that has a packed grid in it.
+import {EngineLink} from './engine_link.js';
+import {unpack} from './unpack.js';
 
-export class Link {
-  /** @param on  as that of link.js */
+export class Link extends EngineLink {
   constructor(_token, on) {
-    this.on = on;
-    this.ready = false;
-    this.meshes = new Map(); // of the last frame
-    this.wish = null;        // the newest that waits
-    this.working = false;    // on a frame
-    this.start().catch((error) => on.text({say: 'error', about: 'engine', sentence: `The grid cannot be looked at: ${error.message}`}));
+    super(on);
+    this.start().catch((error) => this.failed(error.message));
   }
 
   async start() {
     const told = JSON.parse(document.getElementById('saved').textContent);
     const [engine, grid] = await Promise.all([unpack('engine'), unpack('grid')]);
-    const code = URL.createObjectURL(new Blob([partBytes('worker')], {type: 'text/javascript'}));
-    this.worker = new Worker(code);
-    this.worker.onmessage = ({data}) => this.take(data);
-    this.worker.onerror = (event) => this.on.text({say: 'error', about: 'engine', sentence: `The grid cannot be looked at: ${event.message}`});
-    this.worker.postMessage({engine, grid, told}, [engine.buffer, grid.buffer]);
-  }
-
-  take({text, frame}) {
-    if (frame) {
-      this.working = false;
-      this.keep(readFrame(frame));
-      this.next();
-      return;
-    }
-    if (text.say === 'refused' || text.about === 'engine') this.working = false;
-    if (text.say === 'welcome') {
-      this.ready = true;
-      this.on.open();
-    }
-    this.on.text(text);
-    this.next();
-  }
-
-  keep(frame) {
-    const meshes = new Map();
-    for (const {key, mesh} of frame.surfaces) meshes.set(key, mesh || this.meshes.get(key));
-    this.meshes = meshes;
-    this.frame = frame;
-    this.on.frame(frame);
-  }
-
-  next() {
-    if (this.working || !this.wish) return;
-    this.working = true;
-    this.worker.postMessage(this.wish);
-    this.wish = null;
-  }
-
-  restart() { location.reload(); }
-
-  send(message) {
-    if (!this.ready) return false;
-    if (message.do === 'show' || message.do === 'refine') {
-      this.wish = message;
-      this.next();
-    } else if (['chart', 'spectrum', 'pick', 'parts', 'share'].includes(message.do)) this.worker.postMessage(message);
-    else if (message.do === 'save') this.save(message);
-    else if (message.do === 'part') this.on.part(this.file);
-    return true;
-  }
-
-  /** The isosurfaces that are shown, as a file. */
-  save({name, kind}) {
-    const shown = this.frame.surfaces.filter((one) => one.kind === 'surface'), answer = (message) => setTimeout(() => this.on.text(message));
-    this.file = kind === 'surface' ? surfaceFile(name, [...new Set(shown.map(({key}) => key))].map((key) => this.meshes.get(key)), shown) : null;
-    if (this.file) answer({say: 'download', name, bytes: this.file.length});
-    else answer({say: 'error', about: 'save', sentence: 'This page writes pictures (.png) and surfaces (.stl, .glb).'});
+    this.begin({engine, grid, told}, [engine.buffer, grid.buffer]);
   }
 }

@@ -1,0 +1,127 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// The files that isotet as WebAssembly reads, by the calls of WASI.
+
+const noEntry = 44, badDescriptor = 8, notSupported = 58; // of WASI
+const folder = 3, plainFile = 4, aFolder = 3;
+
+/** Bytes in memory, read as a file. */
+export const bytesAsFile = (bytes) => ({size: bytes.length, read: (at, count) => bytes.subarray(at, at + count)});
+
+/** A file of the user, read where it is needed: it may be larger than memory. Of a thread (FileReaderSync). */
+export function blobAsFile(blob) {
+  const reader = new FileReaderSync(), window = 1 << 20;
+  const take = (at, count) => new Uint8Array(reader.readAsArrayBuffer(blob.slice(at, at + count)));
+  let kept = new Uint8Array(0), from = 0;
+  return {
+    size: blob.size,
+    read(at, count) {
+      if (count >= window) return take(at, count);
+      if (at < from || at + count > from + kept.length) [from, kept] = [at, take(at, window)];
+      return kept.subarray(at - from, at - from + count);
+    },
+  };
+}
+
+/** What WASI must have: files that are read, by their paths. */
+export class Files {
+  /** @param files  {path: {size, read(at, count)}} */
+  constructor(files) {
+    this.files = new Map(Object.entries(files));
+    this.opened = new Map(); // by descriptor
+    this.next = folder + 1;
+  }
+
+  view() { return new DataView(this.memory.buffer); }
+
+  /** Files that were given without their folders are found by their names. */
+  find(at, length) {
+    const path = new TextDecoder().decode(new Uint8Array(this.memory.buffer, at, length)).replace(/^[./]+/, '');
+    if (this.files.has(path)) return this.files.get(path);
+    const name = path.split('/').pop(), same = [...this.files].filter(([other]) => other.split('/').pop() === name);
+    return path.includes('/') && same.length === 1 ? same[0][1] : undefined;
+  }
+
+  /** Fills parts of memory with a file from a place on; returns how many bytes. */
+  read(file, from, parts, count) {
+    const view = this.view();
+    let at = from;
+    for (let i = 0; i < count; ++i) {
+      const to = view.getUint32(parts + 8 * i, true), room = Math.min(view.getUint32(parts + 8 * i + 4, true), Math.max(0, file.size - at));
+      const part = room > 0 ? file.read(at, room) : new Uint8Array(0);
+      new Uint8Array(this.memory.buffer).set(part, to);
+      at += part.length;
+    }
+    return at - from;
+  }
+
+  status(to, kind, size, number = 0) {
+    const view = this.view();
+    for (let i = 0; i < 64; i += 8) view.setBigUint64(to + i, 0n, true);
+    view.setBigUint64(to + 8, BigInt(number), true);
+    view.setUint8(to + 16, kind);
+    view.setBigUint64(to + 32, BigInt(size), true);
+    return 0;
+  }
+
+  imports() {
+    const refuse = () => notSupported;
+    const own = {
+      fd_prestat_get: (file, to) => {
+        if (file !== folder) return badDescriptor;
+        this.view().setUint32(to, 0, true);
+        this.view().setUint32(to + 4, 1, true);
+        return 0;
+      },
+      fd_prestat_dir_name: (_file, to) => { this.view().setUint8(to, 47); return 0; }, // "/"
+      fd_fdstat_get: (file, to) => {
+        const view = this.view();
+        for (let i = 0; i < 24; i += 8) view.setBigUint64(to + i, 0n, true);
+        view.setUint8(to, file === folder ? aFolder : plainFile);
+        view.setBigUint64(to + 8, 0xffffffffn, true);
+        view.setBigUint64(to + 16, 0xffffffffn, true);
+        return 0;
+      },
+      fd_filestat_get: (number, to) => {
+        const opened = this.opened.get(number);
+        return opened ? this.status(to, plainFile, opened.file.size, number) : this.status(to, aFolder, 0);
+      },
+      path_filestat_get: (_folder, _flags, name, length, to) => {
+        const file = this.find(name, length);
+        return file ? this.status(to, plainFile, file.size) : noEntry;
+      },
+      path_open: (_folder, _lookup, name, length, _flags, _rights, _inherited, _more, to) => {
+        const file = this.find(name, length);
+        if (!file) return noEntry;
+        this.opened.set(this.next, {file, at: 0});
+        this.view().setUint32(to, this.next++, true);
+        return 0;
+      },
+      fd_pread: (number, parts, count, from, to) => {
+        const opened = this.opened.get(number);
+        if (!opened) return badDescriptor;
+        this.view().setUint32(to, this.read(opened.file, Number(from), parts, count), true);
+        return 0;
+      },
+      fd_read: (number, parts, count, to) => {
+        const opened = this.opened.get(number);
+        if (!opened) return badDescriptor;
+        const got = this.read(opened.file, opened.at, parts, count);
+        opened.at += got;
+        this.view().setUint32(to, got, true);
+        return 0;
+      },
+      fd_close: (number) => { this.opened.delete(number); return 0; },
+      fd_write: (_file, parts, count, to) => {
+        let written = 0;
+        for (let i = 0; i < count; ++i) written += this.view().getUint32(parts + 8 * i + 4, true);
+        this.view().setUint32(to, written, true);
+        return 0;
+      },
+      clock_time_get: (_clock, _precision, to) => { this.view().setBigUint64(to, BigInt(Math.round(1e6 * performance.now())), true); return 0; },
+      environ_sizes_get: (count, size) => { this.view().setUint32(count, 0, true); this.view().setUint32(size, 0, true); return 0; },
+      environ_get: () => 0,
+      proc_exit: (status) => { throw new Error(`isotet ended (${status})`); },
+    };
+    return new Proxy(own, {get: (all, name) => all[name] || refuse, has: () => true});
+  }
+}

@@ -1,0 +1,85 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// In place of the socket (link.js) where the page is a file: isotet as WebAssembly answers, in a thread (engine_worker.js).
+import {readFrame} from './frame.js';
+import {surfaceFile} from './mesh_files.js';
+import {partBytes} from './unpack.js';
+
+export class EngineLink {
+  /** @param on  as that of link.js */
+  constructor(on) {
+    this.on = on;
+    this.forget();
+  }
+
+  forget() {
+    this.worker?.terminate();
+    this.worker = null;
+    this.ready = false;
+    this.meshes = new Map(); // of the last frame
+    this.wish = null;        // the newest that waits
+    this.working = false;    // on a frame
+  }
+
+  failed(why) { this.on.text({say: 'error', about: 'engine', sentence: `The grid cannot be looked at: ${why}`}); }
+
+  /** @param message  {engine, grid or blobs, told} */
+  begin(message, transferred) {
+    const code = URL.createObjectURL(new Blob([partBytes('worker')], {type: 'text/javascript'}));
+    this.worker = new Worker(code);
+    this.worker.onmessage = ({data}) => this.take(data);
+    this.worker.onerror = (event) => this.failed(event.message);
+    this.worker.postMessage(message, transferred);
+  }
+
+  take({text, frame}) {
+    if (frame) {
+      this.working = false;
+      this.keep(readFrame(frame));
+      this.next();
+      return;
+    }
+    if (text.say === 'refused' || text.about === 'engine') this.working = false;
+    if (text.say === 'welcome') {
+      this.ready = true;
+      this.on.open();
+    }
+    this.on.text(text);
+    this.next();
+  }
+
+  keep(frame) {
+    const meshes = new Map();
+    for (const {key, mesh} of frame.surfaces) meshes.set(key, mesh || this.meshes.get(key));
+    this.meshes = meshes;
+    this.frame = frame;
+    this.on.frame(frame);
+  }
+
+  next() {
+    if (this.working || !this.wish) return;
+    this.working = true;
+    this.worker.postMessage(this.wish);
+    this.wish = null;
+  }
+
+  restart() { location.reload(); }
+
+  send(message) {
+    if (!this.ready) return false;
+    if (message.do === 'show' || message.do === 'refine') {
+      this.wish = message;
+      this.next();
+    } else if (['chart', 'spectrum', 'pick', 'parts', 'share'].includes(message.do)) this.worker.postMessage(message);
+    else if (message.do === 'save') this.save(message);
+    else if (message.do === 'part') this.on.part(this.file);
+    return true;
+  }
+
+  /** The isosurfaces that are shown, as a file. */
+  save({name, kind}) {
+    const shown = this.frame.surfaces.filter((one) => one.kind === 'surface'), answer = (message) => setTimeout(() => this.on.text(message));
+    this.file = kind === 'surface' ? surfaceFile(name, [...new Set(shown.map(({key}) => key))].map((key) => this.meshes.get(key)), shown) : null;
+    if (this.file) answer({say: 'download', name, bytes: this.file.length});
+    else answer({say: 'error', about: 'save', sentence: 'This page writes pictures (.png) and surfaces (.stl, .glb).'});
+  }
+}

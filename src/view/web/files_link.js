@@ -1,0 +1,71 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// The link of a page without a grid: one is dropped into it, or chosen. Nothing of it leaves the page.
+import {filesOfDrop, filesOfList, pathsToRead} from './dropped_files.js';
+import {EngineLink} from './engine_link.js';
+import {unpack} from './unpack.js';
+
+function element(kind, attributes, ...children) {
+  const made = Object.assign(document.createElement(kind), attributes);
+  made.append(...children);
+  return made;
+}
+
+export class Link extends EngineLink {
+  constructor(_token, on) {
+    super(on);
+    this.told = JSON.parse(document.getElementById('saved').textContent);
+    this.engine = unpack('engine');
+    this.engine.catch((error) => this.failed(error.message));
+    this.makeControls();
+    this.takeDrops();
+  }
+
+  makeControls() {
+    const input = element('input', {type: 'file', multiple: true, hidden: true, id: 'chosen-files'});
+    input.addEventListener('change', () => { this.open(filesOfList(input.files)); input.value = ''; });
+    const choose = () => input.click();
+    const button = (text) => {
+      const made = element('button', {type: 'button', textContent: text, title: 'Open a grid of this machine'});
+      made.addEventListener('click', choose);
+      return made;
+    };
+    this.panel = element('section', {id: 'drop'}, element('h2', {textContent: 'Drop a grid here'}), button('Choose files…'),
+      element('p', {textContent: 'VTU, PVTU, legacy VTK, Gmsh, Medit, TetGen, AVS UCD, CalculiX, Gocad, GRDECL or a packed grid. Of a file that names others, drop all or their folder.'}),
+      element('p', {textContent: 'Nothing leaves this machine: the page reads the files itself, and loads nothing.'}));
+    this.panel.setAttribute('aria-label', 'Open a grid');
+    document.getElementById('stage').append(this.panel, input);
+    document.querySelector('.top').prepend(button('Open…'));
+  }
+
+  takeDrops() {
+    const stage = document.documentElement, mark = (over) => document.body.classList.toggle('dropping', over);
+    stage.addEventListener('dragover', (event) => { event.preventDefault(); mark(true); });
+    stage.addEventListener('dragleave', (event) => { if (!event.relatedTarget) mark(false); });
+    stage.addEventListener('drop', (event) => {
+      event.preventDefault();
+      mark(false);
+      filesOfDrop(event.dataTransfer).then((files) => this.open(files)).catch((error) => this.failed(error.message));
+    });
+  }
+
+  /** @param blobs  [{path, blob}] */
+  async open(blobs) {
+    if (blobs.length === 0) return;
+    this.forget();
+    this.on.other();
+    this.panel.hidden = true;
+    this.on.text({say: 'progress', step: 'read', fraction: 0});
+    const files = pathsToRead(blobs.map(({path}) => path));
+    const engine = await this.engine;
+    this.begin({engine, blobs, told: {file: files[0].split('/').pop(), version: this.told.version, files}});
+  }
+
+  take(message) {
+    super.take(message);
+    // Nothing is shown: another file may be chosen.
+    if (message.text?.say === 'error' && !this.ready) {
+      this.panel.hidden = false;
+      this.on.text({say: 'progress', step: 'ready', fraction: 1});
+    }
+  }
+}

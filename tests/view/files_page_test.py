@@ -1,0 +1,146 @@
+# Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+"""The page of `isotet page` in Chromium, opened from the disk: files are dropped into it, and read by isotet as WebAssembly."""
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import traceback
+
+from chromium import Browser
+
+DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'data')
+ARTERY = os.path.join(DATA, 'vtu', 'artery_flow_tet_wedge.vtu')
+TETGEN = [os.path.join(DATA, 'tetgen', 'ellipsoid_16k' + ending) for ending in ('.node', '.ele')]
+
+
+def check(condition, what):
+    if not condition:
+        raise AssertionError(what)
+
+
+def isotet(*words):
+    """The JSON of a command."""
+    run = subprocess.run([os.environ['ISOTET_PROGRAM'], *words, '--json', '-', '--quiet'], capture_output=True, text=True)
+    check(run.returncode == 0, f'{words}: {run.stderr}')
+    return json.loads(run.stdout)
+
+
+def start(browser, path):
+    browser.call('Page.navigate', url='about:blank')
+    browser.open('file://' + path)
+    browser.wait('document.getElementById("drop") !== null')
+
+
+def choose(browser, files):
+    document = browser.call('DOM.getDocument')['root']['nodeId']
+    node = browser.call('DOM.querySelector', nodeId=document, selector='#chosen-files')['nodeId']
+    browser.call('DOM.setFileInputFiles', nodeId=node, files=[os.path.abspath(file) for file in files])
+
+
+def drop(browser, files):
+    x, y, width, height = browser.box('#stage')
+    data = {'items': [], 'files': [os.path.abspath(file) for file in files], 'dragOperationsMask': 1}
+    for kind in ('dragEnter', 'dragOver', 'drop'):
+        browser.call('Input.dispatchDragEvent', type=kind, x=x + width / 2, y=y + height / 2, data=data)
+
+
+def ready(browser, name):
+    browser.wait(f'document.getElementById("file").textContent === {json.dumps(name)} && document.body.dataset.step === "ready"'
+                 ' && Number(document.body.dataset.triangles) > 0 && document.body.dataset.preview === "false"', 60)
+
+
+def check_triangles(browser, path):
+    """Those that the program extracts at the page's value."""
+    field, value = browser.value('[document.body.dataset.field, document.body.dataset.shown]')
+    extracted = isotet('extract', path, '-f', field, '-i', value, '--method', 'clusters')['surfaces'][0]['triangles']
+    shown = int(browser.value('document.body.dataset.triangles'))
+    check(shown == extracted, f'{shown} triangles of {field} at {value}, but the program extracts {extracted}')
+
+
+def sentence(browser):
+    browser.wait('!document.getElementById("message").hidden')
+    check(browser.value('!document.getElementById("drop").hidden'), 'another file may be chosen')
+    return browser.value('document.getElementById("message").textContent')
+
+
+def test_files_are_chosen_and_dropped(browser, path, folder):
+    start(browser, path)
+    choose(browser, [ARTERY])
+    ready(browser, 'artery_flow_tet_wedge.vtu')
+    check_triangles(browser, ARTERY)
+    # Another grid in its place.
+    drop(browser, TETGEN)
+    ready(browser, 'ellipsoid_16k.node')
+    check_triangles(browser, TETGEN[0])
+    check(browser.value('document.getElementById("drop").hidden'), 'the picture is not covered')
+
+
+def test_broken_files_are_sentences(browser, path, folder):
+    start(browser, path)
+    with open(ARTERY, 'rb') as file:
+        whole = file.read()
+    for name, content, words in [('cut.vtu', whole[:100000], 'cut short'), ('empty.vtu', b'', 'empty'), ('notes.txt', b'nothing', 'no format'),
+                                 ('run.e', b'CDF\x01num_nodes', 'reader')]:
+        broken = os.path.join(folder, name)
+        with open(broken, 'wb') as file:
+            file.write(content)
+        choose(browser, [broken])
+        browser.wait(f'document.getElementById("message").textContent.includes({json.dumps(words)})')
+        check(name in sentence(browser), f'the sentence names the file: {sentence(browser)}')
+    # And then one that is whole.
+    choose(browser, TETGEN)
+    ready(browser, 'ellipsoid_16k.node')
+
+
+def test_names_are_text(browser, path, folder):
+    name = '<img src=x onerror=document.body.dataset.hacked=1>"\'&.vtu'
+    hostile = os.path.join(folder, name)
+    with open(ARTERY, 'rb') as file:
+        content = file.read().replace(b'Name="Umag"', b'Name="&lt;b&gt;"')
+    with open(hostile, 'wb') as file:
+        file.write(content)
+    start(browser, path)
+    choose(browser, [hostile])
+    ready(browser, name)
+    check(browser.value('[...document.querySelectorAll("#field option")].some((one) => one.textContent === "<b>")'), 'a field is called so')
+    check(browser.value('document.images.length === 0 && !document.body.dataset.hacked && !document.querySelector("#panel b")'), 'no name is HTML')
+
+
+def test_small_screens_and_keys(browser, path, folder):
+    browser.resize(360, 640)
+    start(browser, path)
+    x, _, width, _ = browser.box('#drop')
+    check(x >= 0 and x + width <= 360, f'the invitation is inside: {x} to {x + width}')
+    check(browser.value('document.documentElement.scrollWidth <= 360'), 'nothing is wider than the screen')
+    for _ in range(12):
+        browser.key('Tab')
+        if browser.value('document.activeElement.textContent === "Choose files…"'):
+            break
+    check(browser.value('document.activeElement.textContent === "Choose files…"'), 'the Tab key leads to the button')
+    browser.resize(1280, 720)
+
+
+def main():
+    failed = 0
+    with tempfile.TemporaryDirectory(prefix='isotet-page-') as folder:
+        path = os.path.join(folder, 'isotet.html')
+        isotet('page', path)
+        browser = Browser()
+        try:
+            for test in [f for name, f in globals().items() if name.startswith('test_')]:
+                try:
+                    browser.errors.clear()
+                    test(browser, path, folder)
+                    check(not browser.errors, f'errors of the page: {browser.errors}')
+                    print('ok', test.__name__, flush=True)
+                except Exception:
+                    failed += 1
+                    print('FAILED', test.__name__)
+                    traceback.print_exc(file=sys.stdout)
+        finally:
+            browser.close()
+    return 1 if failed else 0
+
+
+sys.exit(main())
