@@ -3,7 +3,7 @@
 # Builds the Python package: a source archive, and from it one wheel for Linux on x86-64 and Python 3.10 and later, with
 # oneTBB and the other libraries inside; then tries it in a fresh virtual environment, FOLDER/venv, that has what
 # tests/python needs. ISOTET_PYTHON is the Python to build and try with (Debian's), ISOTET_INSTALLED a prefix to take the
-# library from instead of compiling it.
+# library from instead of compiling it, ISOTET_PAGE the page that isotet.html() fills (isotet docs page; without it that is an error).
 source "$(dirname "${BASH_SOURCE[0]}")/lib/common.sh"
 source "$root/scripts/lib/packages.sh"
 
@@ -72,6 +72,7 @@ repaired_wheel() {
     PATH=$folder/tools/bin:$PATH "$folder/tools/bin/auditwheel" repair --plat "$platform" --only-plat --strip \
         --wheel-dir "$folder/repaired" "$folder"/raw/isotet-*.whl
     "$folder/tools/bin/wheel" unpack --dest "$folder/unpacked" "$folder"/repaired/isotet-*.whl
+    if [[ -n ${ISOTET_PAGE:-} ]]; then cp "$ISOTET_PAGE" "$(echo "$folder"/unpacked/isotet-*)/isotet/page.html"; fi
     add_licences "$(echo "$folder"/unpacked/isotet-*)"
     "$folder/tools/bin/wheel" pack --dest-dir "$folder/dist" "$folder"/unpacked/isotet-*
     cp "$folder"/source/*.tar.gz "$folder/dist"

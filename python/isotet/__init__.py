@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING
 
 from ._grid import Clipper, Contour, Grid, PackedGrid, Solids, contour, formats, inspect, make, pack, read, solid
 from ._packed_file import PackedFile, open
+from ._page import Page, html
 from ._picture import render
 from ._pieces import Frame, make_frame, number_points
 from ._surface import Surface, SurfaceReport, check, parts, read_surface
@@ -38,6 +39,6 @@ else:
     from ._isotet import Error, __version__
 
 __all__ = [
-    "Clipper", "Contour", "Error", "Frame", "Grid", "PackedFile", "PackedGrid", "Solids", "Surface", "SurfaceReport", "__version__", "check", "contour", "formats",
-    "inspect", "make", "make_frame", "number_points", "open", "pack", "parts", "read", "read_surface", "render", "solid",
+    "Clipper", "Contour", "Error", "Frame", "Grid", "PackedFile", "PackedGrid", "Page", "Solids", "Surface", "SurfaceReport", "__version__", "check", "contour", "formats",
+    "html", "inspect", "make", "make_frame", "number_points", "open", "pack", "parts", "read", "read_surface", "render", "solid",
 ]  # fmt: skip
