@@ -82,10 +82,6 @@ TEST(Docs, ReadmeShowsTheConsumerThatTheInstallTestBuilds) {
     EXPECT_NE(content(root / "README.md").find("```cpp\n" + consumer() + "```"), std::string::npos);
 }
 
-TEST(Docs, LibraryPageShowsTheConsumerThatTheInstallTestBuilds) {
-    EXPECT_NE(content(root / "docs/library.md").find("```cpp\n" + consumer() + "```"), std::string::npos);
-}
-
 TEST(Docs, ReadmeHasAtMost150Lines) {
     const std::string readme = content(root / "README.md");
     EXPECT_LE(std::count(readme.begin(), readme.end(), '\n'), 150);
