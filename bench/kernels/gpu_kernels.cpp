@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Compiles every pipeline for three families of AMD's, without a card, and prints the tables of docs/inside/gpu.md.
+// Compiles every pipeline for three families of AMD's, without a card, and prints what the compiler makes of them.
 //
 // usage: isotet_gpu_kernels [all] [DRIVER]    all: a line for every set of constants, not the heaviest of each kernel
 #include <algorithm>

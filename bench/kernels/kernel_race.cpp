@@ -126,7 +126,7 @@ void print_times(Contestant& one) {
     }
 }
 
-/// Waves of each set of constants that is told apart in docs/inside/gpu.md.
+/// Waves of each set of constants of count and emit that bench/kernels/vendors.py tells apart.
 void print_figures(const std::vector<Contestant>& all) {
     const auto driver = bench::driver_beside_software_device();
     if (!driver) return;

@@ -3,7 +3,7 @@
 
     python bench/kernels/vendors.py FOLDER [all] [--against FOLDER]
 
-all: a row for every set of constants, not only those that are told apart in docs/inside/gpu.md.
+all: a row for every set of constants, not only those of SHOWN and the longest of other kernels.
 --against: also how the estimated cycles have changed from another run; ends with 1 where they are more than 2 % worse.
 """
 
