@@ -9,7 +9,7 @@ from statistics import median
 
 from charts import short_time, write_charts
 from measure import CaseResult, Measurement
-from methods import BY_KEY, MEASURED_FOR_MEMORY
+from methods import BY_KEY
 from summary import Line, growth_exponent, lines_of
 
 BEGIN, END = "<!-- measured: begin -->", "<!-- measured: end -->"
@@ -68,11 +68,8 @@ def table(header: list[str], rows: list[list[str]]) -> str:
 
 def tables(results: list[CaseResult], lines: list[Line], facts: dict) -> str:
     parts = [conditions_table(results, facts),
-             "### One surface after another\n", speed_table(results, lines), exponents(lines),
-             "### On processors that can do less\n", levels_table(results, lines),
-             "### Packing, new fields, and everything once\n", steps_table(results, lines),
-             "### What normals and attributes cost\n", attributes_table(results, lines),
-             "### Memory\n", memory_table(results)]
+             "### One surface\n", speed_table(results, lines), exponents(lines),
+             "### Packing and memory\n", packing_table(results, lines)]
     return "\n".join(part for part in parts if part)
 
 
@@ -109,38 +106,24 @@ def by_method(lines: list[Line], case: str) -> dict[str, Line]:
     return {line.method: line for line in lines if line.case == case}
 
 
-def three(line: Line | None) -> str:
-    if line is None:
-        return ""
-    if line.runs == 1:
-        return f"{short_time(line.best)} (1 run)"
-    return f"{short_time(line.best)} / {short_time(line.median)} / {short_time(line.worst)}"
+def middle(line: Line | None) -> str:
+    return short_time(line.median) if line else ""
+
+
+def times_faster(line: Line) -> str:
+    return f"{line.speedup_median:.1f} x" if line.speedup_median else ""
 
 
 def speed_table(results: list[CaseResult], lines: list[Line]) -> str:
     rows = []
     for result in results:
         of = by_method(lines, result.case.name)
-        ours = of["clusters"]
-        rivals = [three(of.get(key)) for key in ("vtk_merged", "wheel_merged", "vtk_span_space")]
-        rows.append([result.case.name, f"{result.cells:,}", f"{ours.triangles:,.0f}", three(ours), *rivals, times_faster(ours)])
-    return table(["grid", "cells", "triangles", "isotet, packed before", "VTK merged", "VTK wheel, merged",
-                  "VTK merged, span space", "faster than the faster merged VTK (best, median)"], rows)
-
-
-def times_faster(line: Line | None) -> str:
-    return f"{line.speedup_best:.1f} x, {line.speedup_median:.1f} x" if line and line.speedup_best else ""
-
-
-def levels_table(results: list[CaseResult], lines: list[Line]) -> str:
-    rows = []
-    for result in results:
-        of = by_method(lines, result.case.name)
-        columns = [(three(of.get(key)), times_faster(of.get(key))) for key in ("clusters_avx2", "clusters_portable")]
-        rows.append([result.case.name, *(text for column in columns for text in column)])
-    than = "faster than the faster merged VTK (best, median)"
-    return ("isotet, packed before, as it would be without AVX-512, and without AVX2 too.\n\n" +
-            table(["grid", "with AVX2 only", than, "portable code only", than], rows))
+        ours, once = of["clusters"], of["once"]
+        shown = ("clusters", "clusters_avx2", "clusters_portable", "once", "vtk_merged", "wheel_merged")
+        rows.append([result.case.name, f"{result.cells:,}", f"{ours.triangles:,.0f}", *(middle(of.get(key)) for key in shown),
+                     times_faster(ours), times_faster(once)])
+    return table(["grid", "cells", "triangles", "isotet, packed before", "with AVX2 only", "portable code only",
+                  "from arrays", "VTK merged", "VTK wheel, merged", "faster: packed", "faster: from arrays"], rows)
 
 
 def exponents(lines: list[Line]) -> str:
@@ -155,51 +138,18 @@ def exponents(lines: list[Line]) -> str:
     return f"Time grows with the number of cells, from 1 million on, to the power of: {'; '.join(said)}.\n"
 
 
-def steps_table(results: list[CaseResult], lines: list[Line]) -> str:
+def packing_table(results: list[CaseResult], lines: list[Line]) -> str:
     rows = []
     for result in results:
         of = by_method(lines, result.case.name)
-        pack, new_field, once = of["pack"], of["new_field"], of["once"]
-        rows.append([result.case.name, three(pack), f"{pack.cells_per_second / 1e6:.1f}", three(new_field),
-                     f"{new_field.cells_per_second / 1e6:.0f}", three(once),
-                     f"{once.speedup_best:.2f} x, {once.speedup_median:.2f} x" if once.speedup_best else "",
-                     three(of.get("vtk_tree"))])
-    return table(["grid", "pack", "million cells a second", "new field", "million cells a second",
-                  "one surface from arrays, nothing kept", "against the faster merged VTK (best, median)",
-                  "VTK span space and one surface"], rows)
-
-
-def cost(of: dict[str, Line], method: str, without: str) -> str:
-    if method not in of:
-        return ""
-    seconds = of[method].best - of[without].best
-    return short_time(seconds) if seconds > 0 else "lost in noise"
-
-
-def attributes_table(results: list[CaseResult], lines: list[Line]) -> str:
-    rows = []
-    for result in results:
-        of = by_method(lines, result.case.name)
-        added = [cost(of, key, "clusters")
-                 for key in ("face_normals", "gradient_normals", "point_field", "source_cells")]
-        theirs = [cost(of, key, "vtk_merged") for key in ("vtk_normals", "vtk_attributes")]
-        rows.append([result.case.name, short_time(of["clusters"].best), *added, cost(of, "pack_full", "pack"), *theirs])
-    return "Best time with it, less best time without.\n\n" + table(
-        ["grid", "surface alone", "+ face normals", "+ gradient normals", "+ one point field", "+ source cells",
-         "packing: + gradients and source cells", "VTK merged: + normals", "VTK merged: + one point field"], rows)
-
-
-def memory_table(results: list[CaseResult]) -> str:
-    rows = []
-    for result in results:
         pack, full = result.packed["pack"], result.packed["pack_full"]
         peak = {key: f"{value / result.cells:.1f}" for key, value in result.peaks.items()}
-        rows.append([result.case.name, f"{result.cells / result.points:.2f}", f"{pack['bytes'] / pack['cells']:.2f}",
+        rows.append([result.case.name, middle(of["pack"]), middle(of["new_field"]), f"{pack['bytes'] / pack['cells']:.2f}",
                      f"{full['source_bytes'] / full['cells']:.2f}", f"{full['gradient_bytes'] / full['cells']:.2f}",
-                     *(peak.get(key, "") for key in MEASURED_FOR_MEMORY)])
-    return "Bytes a cell. Peaks: beyond the input, in a process of its own.\n\n" + table(
-        ["grid", "cells a point", "packed grid", "source cells", "gradients", "peak: pack", "peak: one surface from arrays",
-         "peak: one surface, packed before", "peak: VTK merged", "peak: VTK span space", "peak: VTK wheel"], rows)
+                     *(peak.get(key, "") for key in ("pack", "once", "clusters", "vtk_merged", "wheel_merged"))])
+    return ("Memory in bytes a cell; peaks beyond the input, in a process of its own.\n\n" +
+            table(["grid", "pack", "new field", "packed grid", "source cells", "gradients", "peak: pack", "from arrays",
+                   "packed before", "VTK merged", "VTK wheel"], rows))
 
 
 def publish(results_folder: Path, docs: Path) -> None:
