@@ -11,7 +11,7 @@ namespace isotet::cli {
 namespace {
 
 constexpr const char* bench_details = R"(
-Each method gets every isovalue in every round; without one three are taken. With a device each isovalue ends as a
+Each method gets every isovalue in every round; without -i three are taken. With a device each isovalue ends as a
 picture of it, shaded by faces; without one (--device none) surfaces are extracted and that is all. Prepare is what
 happens once: packing, building the search index, uploading. Search is the index's; extract is making triangles, and
 sending them or the list of tets to the device; draw is the rest of the way to the picture. Medians; the best round in
@@ -22,7 +22,7 @@ registers_instanced and textures of Buatois, Caumon and Levy (2006), and mesh, w
 last four draw the tets that a search index finds: none, interval_tree, octree, seed_set, span_space, cluster_ranges.
 
 --paper measures that paper's Figure 4 on this machine: tets a second against the size of the grid, and what the
-interval tree gains. --device-memory makes grids that do not fit visible at sizes that one can run.
+interval tree gains. --device-memory shows, at sizes that one can run, what happens to grids that do not fit.
 
 Examples:
   isotet bench grid.vtu -f pressure -i 0.5

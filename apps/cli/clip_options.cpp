@@ -11,15 +11,11 @@ namespace {
 constexpr const char* clip_details = R"(
 Cells with all corners in the range stay as they are. Others are cut where the isovalue crosses their edges; a piece is
 a tetrahedron, pyramid, wedge or hexahedron where it has that shape, else a polyhedron, whose faces fit those of its
-neighbours. The boundary of all is the solid that isotet extract --solid makes, vertex by vertex. --above V keeps a value
-of V, --below V does not.
+neighbours. --above V keeps a value of V, --below V does not.
 
 OUT ends in .vtu or .vtk; .vtk holds no polyhedra: --no-polyhedra makes none. All fields are carried unless --with names
-some: point fields are interpolated, cell fields copied; the cell field source_cell is the number of the cell in FILE. x,
-y and z are fields, too. Polyhedra and curved cells in FILE become the linear cells that are made of them. With {time} or
-{step} in OUT there is one file for each step, and, of .vtu files, a collection (.pvd).
-
-At ties, where points have the value itself, a piece may have no volume: it is left out.
+some; the cell field source_cell is the number of the cell in FILE. x, y and z are fields, too. With {time} or {step} in
+OUT there is one file for each step, and, of .vtu files, a collection (.pvd).
 
 Examples:
   isotet clip grid.vtu hot.vtu -f temperature --above 900

@@ -49,11 +49,8 @@ that of most. Of --survey: repeated tets have the corners of an earlier one, dup
 boundary faces are those that the tets do not use equally often in both directions.
 
 Shown first is what isotet render, view and extract take where no field is named: the array that the file marks as its
-scalars; else one with a name that people contour, such as alpha, temperature, velocity or pressure; else the one that
-varies most, and smoothly. Numbers of points, cells and processes, weights, sizes, centres and errors are never taken.
-Vectors count by their magnitude, also those stored as x, y and z (Exodus, CGNS). Where the field jumps from cell to
-cell, or the grid is one cell thick, it colours the boundary; where no field varies, regions do. Of several time steps
-the first one, the second or the last is taken, where a field varies.
+scalars; else one with a name that people contour, such as temperature, velocity or pressure; else the one that varies
+most. Where isosurfaces would say little, the boundary is drawn, coloured by it or by regions.
 
 Of --chart: areas are in the square, volumes in the cube of the unit of the points. They are those of the tets that
 extract --split-cells makes, up to rounding; quadratic cells are split at their nodes.
@@ -67,31 +64,28 @@ Examples:
 constexpr const char* extract_details = R"(
 FIELD is taken whole first; only if no field has that name is the part after the last colon a component: x, y, z, mag,
 or a number from 0. Velocity stands for the fields VelocityX, VelocityY and VelocityZ, disp for disp_x, disp_y and
-disp_z, where no field is called so. x, y and z alone are the coordinates, unless fields are called so. A cell field is
-averaged to the points, weighted by volume (ParaView's Cell Data to Point Data takes the plain mean).
+disp_z, and x, y and z for the coordinates, where no field is called so. A cell field is averaged to the points,
+weighted by volume (ParaView's Cell Data to Point Data takes the plain mean).
 
-OUT ends in .vtp, .ply, .stl, .3mf, .obj, .glb, .usda, .vtk or .ts. Several isovalues in one OUT make one surface with
-a cell field isovalue. With {value}, {time} or {step} in OUT there is one file each: values and times are the shortest
-decimals that read back, steps are numbers of equal length, from 0. Beside the .vtp files of several time steps a
-collection is written, front.pvd for front-{step}.vtp, which ParaView opens as one series with its times, unless there is
-one that isotet has not written; beside .usda files front.usda for front-{step}.usda, which shows them one after another.
-A .glb without {step} has all time steps, and shows them one after another. Files that were complete when Ctrl-C came
-stay. Without OUT only the numbers are printed. Without an isovalue the middle of the range is taken.
+OUT ends in .vtp, .ply, .stl, .3mf, .obj, .glb, .usda, .vtk or .ts; without OUT only the numbers are printed. Several
+isovalues in one OUT make one surface with a cell field isovalue; without an isovalue the middle of the range is taken.
+With {value}, {time} or {step} in OUT there is one file each: values and times are the shortest decimals that read
+back, steps are numbers of equal length, from 0. Beside the .vtp files of several time steps a collection is written,
+front.pvd for front-{step}.vtp, which ParaView opens as one series (one that isotet has not written is kept); beside
+.usda files front.usda, which shows them one after another. A .glb without {step} has all time steps. Ctrl-C leaves the
+files that were complete.
 
 A point whose value equals the isovalue counts as above it. Triangles face the side of higher values. The methods give
-the same vertices and triangles in a different order; but of cells that repeat others direct gives the triangles again,
-and clusters drops them (`isotet info --survey` counts such cells). auto chooses by a fixed rule: clusters from 32
-surfaces on (isovalues times time steps), from 4 with gradient normals, or with a device; else direct. So the same
-command gives the same bytes on every machine, unless packing finds too little memory: direct is taken instead, with a
-note.
+the same vertices and triangles in a different order; but direct repeats the triangles of repeated cells, which
+clusters drops (`isotet info --survey` counts such cells). auto takes clusters from 32 surfaces on (isovalues times
+time steps), from 4 with gradient normals, or with a device; else direct. So the same command gives the same bytes on
+every machine, unless packing finds too little memory: direct is taken instead, with a note.
 
-A solid (--solid) is closed: its boundary has the vertices of the isosurface. Triangles face outwards; those of the
-isosurface come first. The report tells its volume, and that of the grid. Polyhedra and curved cells are taken as the
-linear cells that are made of them. --solid A:B has no other isovalues.
+Triangles of solids (--solid) face outwards, those of the isosurface first; the report tells the volume of the solid
+and of the grid. --solid A:B takes no other isovalues.
 
-Pieces (--piece) have equally many cells, in the order of the file. They are stored as the whole grid is, and edge ends
-and source cells have the numbers of the whole; so surfaces of pieces fit bit for bit. Normals of vertices at the rim
-of a piece do not: they are those of its own cells.
+Pieces (--piece) have equally many cells, in the order of the file. Edge ends and source cells have the numbers of the
+whole grid. Normals of vertices at the rim of a piece are those of its own cells, and do not fit those of the next.
 
 Examples:
   isotet extract grid.vtu surface.vtp -f pressure -i 0.5
@@ -109,26 +103,26 @@ Fails (exit status 1) if the surface has: an edge that is used unequally often i
 not be; a triangle with two equal corners; a triangle that occurs twice in the same direction.
 
 Where edges must be used equally often: with --closed everywhere; with --grid everywhere except on edges whose grid
-points all lie in one boundary face of the grid's valid tets; with neither they are only counted. --grid needs the
-point array edge_ends, which isotet extract --edge-ends writes into .vtp and .vtk, and excuses a repeated triangle on
-a face with two tets on one side. A tet is valid when the field has a value (not NaN) at its four points. Where
-quadratic cells were refined for the surface, their points are derived again: the file says how they were refined
-(field data isotet:refinement), unless -i and the tolerances do, as for isotet extract: all isovalues of that call.
-Edges at hanging points, where the face of a larger cell meets smaller ones, fail; where curved cells have hanging
-points, which are not closed there, every open edge does. With --hanging-points leave they are excused, and the verdict
-counts them. The grid is closed as for isotet extract: give the same --hanging-points.
+points all lie in one boundary face of the grid's valid tets; with neither they are only counted. A tet is valid when
+the field has a value (not NaN) at its four points. --grid needs the point array edge_ends, which isotet extract
+--edge-ends writes into .vtp and .vtk, and excuses a repeated triangle on a face with two tets on one side.
+
+Where quadratic cells were refined for the surface, their points are derived again, as the file's field data
+isotet:refinement say, or -i (all isovalues of that isotet extract) and the tolerances. Give the same --hanging-points
+as then: edges at hanging points fail, where the face of a larger cell meets smaller ones (of curved cells with hanging
+points, which are not closed there, all open edges). With --hanging-points leave they are counted and excused.
 
 With --strict it also fails for: triangles of zero area, edges with more than two triangles, double sheets (two
 triangles on the same corners in opposite directions), touching vertices (triangles that are not one fan), coincident
 vertices.
 
-STL has no vertex numbers: its vertices are merged by exact coordinates first. What that collapses is counted, and no
-defect. So are several surfaces, pieces of one (isotet extract --piece): they are checked as if they were one file.
+The vertices of STL, and of several files (the pieces of isotet extract --piece), are merged first: those on one edge
+of the grid (edge_ends), else those of equal coordinates. Triangles that collapse by that are counted, and no defect.
 )";
 
 constexpr const char* pack_details = R"(
-A packed file holds the grid as isotet works on it: half the size of the grid's raw arrays, read without packing again.
-Every command takes it for a grid. extract reads only what its isovalues meet.
+A packed file holds the grid as isotet works on it, in half the size of its arrays. Every command reads it as a grid;
+extract reads only what its isovalues meet.
 
 Examples:
   isotet pack grid.vtu grid.isotet
@@ -156,11 +150,10 @@ constexpr const char* formats_details = R"(--format takes the names in the first
 )";
 
 constexpr const char* devices_details = R"(
-A device can be used when it has Vulkan 1.1 and what the engine needs; of one that cannot, the reason is told. Software
-devices are used only when asked for, by --device software. Without Vulkan, or without a device, isotet works on the
-CPU.
+A device can be used when it has Vulkan 1.1 and what the engine needs; else the reason is told. Software devices are
+used only with --device software. Without Vulkan, or without a device, isotet works on the CPU.
 
-With --device that device is opened, and its arithmetic is compared with the processor's, bit by bit: in a few thousand
+With --device that device is opened, and its arithmetic is compared with the processor's, bit by bit, in a few thousand
 cases that are hard to round. Where they differ, surfaces may differ from the CPU's in their last bits, and every
 command that uses the device says so.
 )";
@@ -168,7 +161,7 @@ command that uses the device says so.
 constexpr const char* view_details = R"(
 Prints one address, and opens it in the browser if there is one on this machine. The page can be reached from this
 machine only, by whoever has the address; from another one through ssh, by a line that is printed where isotet was
-started over ssh. Ctrl-C ends it. Press ? in the page for its keys and what the mouse does.
+started over ssh. Ctrl-C ends it. Press ? in the page for its keys.
 
 Examples:
   isotet view grid.vtu
@@ -178,10 +171,10 @@ Examples:
 )";
 
 constexpr const char* export_details = R"(
-OUT is a page that shows isosurfaces with a slider, as isotet view does, and loads nothing: it can be sent by mail, opened from a
-disk, put on any web server. It holds N surfaces between two isovalues, or those of -i, at one time step or all; with --as grid
-the packed grid, with the field of -f, that of --color-by, or else all its point fields. Places are rounded to a 65536th of a surface's box. Where the file would be larger than --max-size, every second,
-third and so on of the N surfaces stays, which is said.
+OUT is a page that shows isosurfaces with a slider, as isotet view does, and loads nothing: send it by mail, open it
+from a disk, put it on any web server. It holds N surfaces between two isovalues, or those of -i, at one time step or
+all; where it would be larger than --max-size, every second, third and so on of the N surfaces, with a note. With
+--as grid it holds the packed grid, with the fields of -f and --color-by, or without -f all point fields.
 
 Examples:
   isotet export grid.vtu grid.html -f pressure
@@ -190,8 +183,8 @@ Examples:
 )";
 
 constexpr const char* page_details = R"(
-OUT is the page of isotet view with isotet in it as WebAssembly, and no grid: files are dropped into it, or chosen, and read in the
-browser by isotet's own readers. Nothing of them leaves the machine. It is opened from a disk or put on any web server.
+OUT is the page of isotet view with isotet in it as WebAssembly, and no grid: files are dropped into it, or chosen, and
+read in the browser. Nothing of them leaves the machine. Open it from a disk, or put it on any web server.
 
 Examples:
   isotet page isotet.html
@@ -219,10 +212,9 @@ void add_info(const Command& program, InfoCommand& info) {
     const Option chart = command.add_count(
         "--chart", {1, 65'535}, [&](std::uint64_t n) { info.chart = n; }, "N",
         "Area of the isosurface and volume below it at N + 1 isovalues, from end to end of the field's range");
-    command.add_flag(
-        "--heads", info.heads,
-        "Only what the file announces, without reading values: fields, cells, time steps, blocks. At once at any size, "
-        "but for formats of text")
+    command
+        .add_flag("--heads", info.heads,
+                  "Only what the file announces, without reading values: fields, cells, time steps, blocks")
         .excludes(survey)
         .excludes(chart);
     add_field(command, info.field, "The field of the chart; default: the one that is shown first").needs(chart);
@@ -252,8 +244,8 @@ void add_surface_arrays(const Command& command, ExtractJob& extract) {
                                 "triangles around each vertex");
     command.add_texts(
         "--with", [&](const std::vector<std::string>& names) { extract.with = names; }, "FIELD[,...]",
-        "Carry these point and cell fields onto the surface, separated by commas; may be repeated; an empty name "
-        "carries none. Default: point fields that the format can hold");
+        "Carry these point and cell fields onto the surface; may be repeated; an empty name carries none. Default: "
+        "point fields that the format can hold");
     command.add_flag(
         "--edge-ends", extract.edge_ends,
         "Write the two grid points of each vertex (edge_ends) and its place between them (edge_weights); .vtp, .vtk");
@@ -315,7 +307,7 @@ void add_extract(const Command& program, ExtractCommand& extract) {
     add_levels(command, extract);
     add_surface_options(command, extract,
                         "Closed solids: the part of the grid where the field is at least the isovalue, below it, or "
-                        "from A to B, with the grid's boundary there; cell field boundary: 1 there, 0 on isosurfaces");
+                        "from A to B; cell field boundary: 1 on the grid's boundary, 0 on isosurfaces");
     add_bytes(command, "--memory", extract.memory,
               "Of a packed file, keep at most so much in memory, such as 2GB; default: half of what is free");
     add_common(command, extract.common);
@@ -352,7 +344,7 @@ void add_view(const Command& program, ViewCommand& view) {
         "A folder into which the page may save pictures, surfaces and animations, by name; without it, it downloads "
         "them");
     command.add_text("--listen", view.listen, "ADDRESS",
-                     "Serve at this address of the machine, 0.0.0.0 for all, instead of 127.0.0.1: whoever knows the "
+                     "Serve at this address of the machine (0.0.0.0: all) instead of 127.0.0.1: whoever knows the "
                      "printed address can look, over an open line; or unix:PATH, a socket that only you can open");
     command.add_flag(
         "--keep", view.keep,
@@ -591,8 +583,8 @@ void add_centre(const Command& command, FieldChoice& field) {
             field.own_centres = text == "own";
         },
         "mean|own",
-        "Polyhedra, of a cell field: the value at the point inside that a polyhedron is split around is the mean of "
-        "its points (mean, the default), or the cell's own (own): sharper, and beyond the values around");
+        "Polyhedra, of a cell field: the value at the point inside around which a polyhedron is split is the mean of "
+        "its points (default), or the cell's own: sharper, and beyond the values around");
 }
 
 namespace {
@@ -700,20 +692,20 @@ SolidRange parse_range(const std::string& option, const std::string& text, Range
 
 Option add_isovalues(const Command& command, std::vector<double>& isovalues, std::vector<IsovalueShare>& shares,
                      std::optional<double>* decimal_comma) {
-    return command.add_numbers(
-        "-i,--isovalue", isovalues, "V[,W...]",
-        "Isovalues, separated by commas: numbers, 90%v for the one with 90 % of the grid's volume below, p95 for the "
-        "95th percentile of the point values; or @NAME: from that file, separated by blanks, commas or line ends, # "
-        "begins a comment; may be repeated",
-        {[&shares](std::string_view word) {
-             const std::optional<IsovalueShare> share = parse_share(word);
-             if (share) shares.push_back(*share);
-             return share.has_value();
-         },
-         "finite numbers, or shares such as 90%v or p95",
-         [decimal_comma](const std::vector<std::string>& lists) {
-             if (decimal_comma && lists.size() == 1) *decimal_comma = with_decimal_comma(lists.front());
-         }});
+    return command.add_numbers("-i,--isovalue", isovalues, "V[,W...]",
+                               "Isovalues, separated by commas: numbers, 90%v (with 90 % of the grid's volume below), "
+                               "p95 (95th percentile of the point values); or @NAME: from that file, separated by "
+                               "blanks, commas or line ends, # begins a comment; may be repeated",
+                               {[&shares](std::string_view word) {
+                                    const std::optional<IsovalueShare> share = parse_share(word);
+                                    if (share) shares.push_back(*share);
+                                    return share.has_value();
+                                },
+                                "finite numbers, or shares such as 90%v or p95",
+                                [decimal_comma](const std::vector<std::string>& lists) {
+                                    if (decimal_comma && lists.size() == 1)
+                                        *decimal_comma = with_decimal_comma(lists.front());
+                                }});
 }
 
 void add_device(const Command& command, DeviceChoice& choice) {
@@ -755,7 +747,7 @@ void add_refinement(const Command& command, RefineChoice& refine, bool* asked) {
         },
         "T|P%|nodes",
         "Quadratic cells: largest error of the field, in its unit or in % of its range, default: 0.1%; nodes splits "
-        "cells at their nodes, without a bound, as by default for fields that are averaged from cells");
+        "cells at their nodes, without a bound: the default for averaged cell fields");
     const auto add_length = [&](const std::string& name, auto set, const char* help) {
         command.add_value(
             name,
@@ -774,13 +766,12 @@ void add_refinement(const Command& command, RefineChoice& refine, bool* asked) {
             options.distance = value;
             if (!*given) options.relative_tolerance = 0;
         },
-        "Quadratic cells: largest distance of the surface from that of the quadratic field, by estimate, in the unit "
-        "of "
-        "the points; in place of --tolerance, or beside it");
+        "Quadratic cells: largest distance of the surface from that of the quadratic field, by estimate; in place of "
+        "--tolerance, or beside it");
     add_length(
         "--geometry-tolerance", [](RefineOptions& options, double value) { options.geometry_tolerance = value; },
-        "Quadratic cells: largest distance of the tets from the curved cells, in the unit of the points; default: a "
-        "hundredth of each edge's length");
+        "Quadratic cells: largest distance of the tets from the curved cells; default: a hundredth of each edge's "
+        "length");
 }
 
 void add_common(const Command& command, CommonOptions& common) {
@@ -815,10 +806,7 @@ void add_surface_options(const Command& command, ExtractJob& job, const std::str
         "--keep", [&job](const std::string& text) { job.keep = parse_parts(text); },
         "largest|N|area>A|volume>V|touching:REGION|parts:I[,J]|not:I[,J]",
         "Only these connected parts of each surface or solid: the largest by area, the N largest, those of more area "
-        "or "
-        "enclosed volume, those that touch boundary, a named region, or cells with FIELD=VALUE, or by their numbers, "
-        "as "
-        "--parts and the cell field part have them");
+        "or volume, those that touch boundary, a region or cells with FIELD=VALUE, or by their numbers in --parts");
     command.add_file("--parts", job.parts_table, "FILE.csv",
                      "Write a table of the connected parts: triangles, area, volume, place, means of the fields");
     command.add_value(
@@ -835,9 +823,9 @@ void add_surface_options(const Command& command, ExtractJob& job, const std::str
     command.add_flag("--fail-if-empty", job.fail_if_empty,
                      "An empty surface is an error, exit status 3, and is not written");
     command
-        .add_flag("--allow-empty", job.allow_empty,
-                  "Write empty surfaces also where all isovalues are outside the range of the field, which else is an "
-                  "error, exit status 3")
+        .add_flag(
+            "--allow-empty", job.allow_empty,
+            "Write empty surfaces also where all isovalues are outside the range of the field, which else is an error")
         .excludes(command.option("--fail-if-empty"));
     command.add_text("--color-by", job.colors.by, "FIELD",
                      "Colour vertices by this point field: vertex colours in .glb, .ply and .usda, a field rgb in .vtp "
@@ -849,17 +837,15 @@ void add_surface_options(const Command& command, ExtractJob& job, const std::str
                                   "Precision of the packed grid");
     command.add_choice<std::optional<Method>>(
         "--method", job.method, {{"auto", std::nullopt}, {"clusters", Method::clusters}, {"direct", Method::direct}},
-        "How: clusters packs the grid once, which pays for many surfaces; direct goes through all cells for each "
-        "surface; auto chooses by their number");
-    command.add_choice<EngineChoice>(
-        "--engine", job.engine,
-        {{"auto", EngineChoice::automatic},
-         {"cpu", EngineChoice::cpu},
-         {"vulkan", EngineChoice::vulkan},
-         {"reference", EngineChoice::reference}},
-        "What extracts: auto is the device that --device names, with the CPU where that fails, or "
-        "without --device the CPU; vulkan is a device or an error; "
-        "reference is slow and obvious");
+        "clusters packs the grid once, which pays for many surfaces; direct goes through all cells for each; auto "
+        "chooses by their number");
+    command.add_choice<EngineChoice>("--engine", job.engine,
+                                     {{"auto", EngineChoice::automatic},
+                                      {"cpu", EngineChoice::cpu},
+                                      {"vulkan", EngineChoice::vulkan},
+                                      {"reference", EngineChoice::reference}},
+                                     "What extracts: auto is the CPU, or the device that --device names, with the CPU "
+                                     "where that fails; vulkan is a device or an error; reference is slow and obvious");
     add_device(command, job.device);
     add_device_memory(command, job.device);
     add_reading(command, job.grid, "--format");

@@ -16,12 +16,12 @@ FILE is a grid or a surface. With nothing but FILE it draws what isotet info say
 isovalues between the ends of the field's range (without rare values at the ends), each in its own colour; or the
 boundary, coloured. FIELD is found as by isotet extract.
 
-The picture is as large as possible in its frame, z upwards; +x looks from the end of the x axis. OUT ends in .png;
-without it the picture gets FILE's name, in the current folder. The pictures of --sweep and --orbit are numbered from 1
-where {frame} stands in OUT, or go into one animated file when OUT ends in .webp.
+The picture is as large as possible in its frame. OUT ends in .png; without it the picture gets FILE's name, in the
+current folder. The pictures of --sweep and --orbit are numbered from 1 where {frame} stands in OUT, or go into one
+animated file when OUT ends in .webp.
 
-The CPU draws, unless --device or --engine vulkan asks for a Vulkan device; a method that draws tets needs one. On the
-CPU the same command gives the same bytes on every machine.
+The CPU draws, with the same bytes on every machine, unless --device or --engine vulkan asks for a Vulkan device; a
+method that draws tets needs one.
 
 Examples:
   isotet render grid.vtu
@@ -94,9 +94,8 @@ void add_camera(const Command& command, RenderCommand& render) {
             render.angles = named ? std::vector<double>() : angles;
         },
         "VIEW",
-        "From where one looks: iso, +x, -x, +y, -y, +z, -z, or AZIMUTH,ELEVATION, degrees to the right of the front "
-        "and "
-        "upwards; default: iso, obliquely from above");
+        "From where one looks: iso (default), +x, -x, +y, -y, +z, -z, or AZIMUTH,ELEVATION, degrees to the right of "
+        "the front and upwards");
     command.add_value(
         "--up",
         [&render](const std::string& text) {
@@ -151,8 +150,8 @@ void add_cuts(const Command& command, RenderCommand& render) {
             "PLANE", text);
     };
     add_planes("--clip", render.clips,
-               "Leave out what is beyond a plane: x=0.5 leaves out what has larger x, -x=0.5 what has smaller x, "
-               "NX,NY,NZ,OFFSET where the product with the normal is larger; may be repeated");
+               "Leave out what is beyond a plane: x=0.5 larger x, -x=0.5 smaller x, NX,NY,NZ,OFFSET where the product "
+               "with the normal is larger; may be repeated");
     add_planes("--slice", render.slices,
                "Show the cut through the grid along a plane, coloured by --color-by or else by the field; isosurfaces "
                "only with -i, --levels or --sweep; may be repeated");
@@ -201,9 +200,8 @@ void add_opacity(const Command& command, RenderCommand& render) {
         },
         "OPACITY",
         "Opacity of the surfaces, 0 to 1; default: 1, and of several isosurfaces 0.35 for those that may hide others. "
-        "Of a "
-        "volume: VALUE:OPACITY,VALUE:OPACITY,... with lines between, values of the field ascending; ramp; peaks or "
-        "peaks:N, at N values; shell, transparent near the ends of the range; default: ramp. May be given for both");
+        "Of a volume: VALUE:OPACITY,... ascending, with lines between; ramp (default); peaks or peaks:N, at N values; "
+        "shell, transparent near the ends of the range. May be given for both");
     command.add_flag(
         "--volume", render.volume,
         "Draw the field as a volume; isosurfaces only with -i or --levels, the boundary only with --boundary. "
@@ -283,12 +281,12 @@ Command add_render_command(const Command& program, RenderCommand& render) {
         {"auto", {}}, {"direct", {Method::direct, {}}}, {"clusters", {Method::clusters, {}}}};
     for (const DrawMethod method : all_draw_methods) methods.push_back({std::string(name_of(method)), {{}, method}});
     command.add_choice("--method", render.method, methods,
-                       "How: auto, direct and clusters extract surfaces, as isotet extract does; the others are "
-                       "earlier methods that draw tets and make no surface, to be compared with; default: auto");
+                       "auto, direct and clusters extract surfaces, as isotet extract does; the others are earlier "
+                       "methods that draw tets and make no surface; default: auto");
     std::vector<std::pair<std::string, std::optional<SearchIndex>>> indexes;
     for (const SearchIndex index : all_search_indexes) indexes.emplace_back(name_of(index), index);
     command.add_choice("--index", render.index, indexes,
-                       "Search index that finds the active tets for a method that draws tets, none: it draws all; "
+                       "Search index that finds the active tets for a method that draws tets; none: it draws all; "
                        "default: cluster_ranges");
     command.add_text("--color-by", render.color_by, "FIELD",
                      "Colour by this point or cell field; default: each isovalue has its colour");

@@ -7,18 +7,14 @@ namespace isotet::cli {
 namespace {
 
 constexpr const char* slice_details = R"(
-DIRECTION is x, y or z, with a minus for the other way, or three numbers NX,NY,NZ of any length. Where several offsets or
-radii may stand, each may be a share: 50%v has half of the grid's volume before it (or inside), p10 a tenth of the points.
+DIRECTION is x, y or z, with a minus for the other way, or three numbers NX,NY,NZ of any length. Where several offsets
+or radii may stand, each may be a share: 50%v has half of the grid's volume before it (or inside), p10 a tenth of the
+points.
 
-A slice is the isosurface of a field that is computed at the points in double precision: of planes the product of
-direction and point, of spheres the distance from the centre, of cylinders that from the axis. So it is welded, has the
-vertices on the edges of the cells, and carries fields as any isosurface does; all that isotet extract says of OUT,
-steps, methods and pieces holds. The report calls the place isovalue, and {value} in OUT is that: the product with the
-direction (z of z=0.5), or the radius. Triangles face along the direction, or outwards. Without --with slices carry all
-point fields and, in .vtp, .vtk and .ply, all cell fields.
-
-Cuts along planes are flat. Those along spheres and cylinders have triangles between vertices that lie on the shape up
-to the square of the length of their edge.
+A slice is the isosurface of a field that is computed at the points: what isotet extract says of OUT, steps, methods and
+pieces holds. {value} in OUT, and the field isovalue, is the place: the product with the direction (z of z=0.5), or the
+radius. Triangles face along the direction, or outwards. Without --with slices carry all point fields and, in .vtp, .vtk
+and .ply, all cell fields.
 
 Examples:
   isotet slice grid.vtu cut.vtp --plane z=0.5
