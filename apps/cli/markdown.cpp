@@ -44,8 +44,8 @@ std::string markdown_shared_options(const CommandText& command, const std::vecto
         if (earlier.word.empty()) continue; // --help, which every command has
         std::vector<std::string> names;
         for (const OptionText& option : command.options) {
-            if (!option.positional && first.at(list_item(option)) == &earlier)
-                names.push_back("`" + option.flags.back() + "`");
+            if (first.at(list_item(option)) == &earlier)
+                names.push_back("`" + (option.positional ? option.names : option.flags.back()) + "`");
         }
         if (!names.empty())
             result +=
@@ -59,7 +59,7 @@ std::string markdown_options(const CommandText& command, const std::vector<Comma
     std::string items;
     for (const OptionText& option : command.options) {
         const std::string item = list_item(option);
-        if (option.positional || first.at(item) == &command) items += item;
+        if (first.at(item) == &command) items += item;
     }
     return (items.empty() ? "" : "\n" + items) + markdown_shared_options(command, commands, first);
 }
