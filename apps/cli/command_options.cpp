@@ -45,15 +45,15 @@ Exit status:
 
 constexpr const char* info_details = R"(
 A field's range is that of its finite values; no data is the number of NaN. Inverted tets are those whose sign is not
-that of most. Of --survey: repeated tets have the corners of an earlier one, duplicate points the place of another, and
-boundary faces are those that the tets do not use equally often in both directions.
+that of most. --survey counts repeated tets (with the corners of an earlier one), duplicate points (at the place of
+another) and boundary faces (which the tets do not use equally often in both directions).
 
 Shown first is what isotet render, view and extract take where no field is named: the array that the file marks as its
 scalars; else one with a name that people contour, such as temperature, velocity or pressure; else the one that varies
 most. Where isosurfaces would say little, the boundary is drawn, coloured by it or by regions.
 
-Of --chart: areas are in the square, volumes in the cube of the unit of the points. They are those of the tets that
-extract --split-cells makes, up to rounding; quadratic cells are split at their nodes.
+--chart gives areas in the square, and volumes in the cube, of the unit of the points: those of the tets that extract
+--split-cells makes; quadratic cells are split at their nodes.
 
 Examples:
   isotet info grid.vtu
@@ -230,8 +230,7 @@ void add_levels(const Command& command, ExtractCommand& extract) {
             "N isovalues evenly inside the range of the field at each time step: min + k (max - min) / (N + 1), k = "
             "1..N")
         .excludes(isovalues);
-    command.add_flag("--snap", extract.snap,
-                     "Take the nearest value that the field's type can hold: 0.7 becomes 0.699999988 on float32");
+    command.add_flag("--snap", extract.snap, "Round isovalues to the field's type: 0.7 becomes 0.699999988 on float32");
 }
 
 void add_surface_arrays(const Command& command, ExtractJob& extract) {
@@ -240,8 +239,8 @@ void add_surface_arrays(const Command& command, ExtractJob& extract) {
                                  {"gradient", Normals::gradient},
                                  {"face", Normals::face},
                                  {"vertex", Normals::vertex}},
-                                "Normals: gradient, of the field, a vertex; face, of each triangle; vertex, of the "
-                                "triangles around each vertex");
+                                "Normals: at each vertex the gradient of the field; of each face; or at each vertex "
+                                "the mean of its triangles'");
     command.add_texts(
         "--with", [&](const std::vector<std::string>& names) { extract.with = names; }, "FIELD[,...]",
         "Carry these point and cell fields onto the surface; may be repeated; an empty name carries none. Default: "
@@ -377,7 +376,7 @@ void add_export(const Command& program, ExportCommand& exported) {
     command.add_numbers("--between", exported.range, "A,B", "The range of --surfaces; default: that of the field")
         .excludes(isovalues);
     command.add_text("--color-by", exported.color_by, "FIELD", "Colour by this point or cell field");
-    add_bytes(command, "--max-size", exported.max_size, "The file may be so large; default: 20MB");
+    add_bytes(command, "--max-size", exported.max_size, "Largest size of the file; default: 20MB");
     add_refinement(command, exported.refine);
     add_time(command, exported.grid);
     command.add_flag("--all-steps", exported.all_steps, "All time steps")
@@ -549,15 +548,15 @@ void add_reading(const Command& command, GridOptions& grid, const std::string& f
     command
         .add_choice<MergedValues>(
             "--merge-values", grid.merge_values, {{"lowest", MergedValues::lowest}, {"mean", MergedValues::mean}},
-            "What merged points have where a field jumps: the value of the lowest-numbered, or the mean")
+            "Value of merged points where a field jumps: that of the lowest-numbered, or the mean")
         .needs(command.option("--merge-points"));
     command.add_choice<HangingChoice>(
         "--hanging-points", grid.hanging_points,
         {{"close", HangingChoice::close}, {"interpolate", HangingChoice::interpolate}, {"leave", HangingChoice::leave}},
-        "Points on faces and edges of larger cells: close, these cells list them; interpolate, and the points have the "
-        "values of these cells; leave, the surface is open there");
+        "Points that hang on faces and edges of larger cells: close gives them to these cells; interpolate also takes "
+        "their values from these cells; leave leaves the surface open there");
     command.add_flag("--keep-pieces", grid.keep_pieces,
-                     "Keep points of different pieces apart, which are joined where their coordinates are equal");
+                     "Do not join points of different pieces that have equal coordinates");
     command.add_flag("--allow-outside", grid.allow_outside,
                      "Index files (.pvd, .pvtu and so on) may name files outside their own folder");
 }
@@ -819,7 +818,7 @@ void add_surface_options(const Command& command, ExtractJob& job, const std::str
     command.add_flag("--keep-degenerate", job.keep_degenerate,
                      "One vertex for every active edge and one or two triangles for every active tet, ties or not");
     command.add_flag("--volumes", job.volumes,
-                     "Tell the volume of the grid where the field is below each isovalue, and where it is above");
+                     "Report the volume of the grid where the field is below each isovalue, and where it is above");
     command.add_flag("--fail-if-empty", job.fail_if_empty,
                      "An empty surface is an error, exit status 3, and is not written");
     command

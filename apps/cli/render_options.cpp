@@ -109,7 +109,7 @@ void add_camera(const Command& command, RenderCommand& render) {
             if (factor <= 0) refuse_value("--zoom", shortest(factor), "a number above 0");
             render.zoom = factor;
         },
-        "FACTOR", "Everything so many times as large");
+        "FACTOR", "Magnification");
     command.add_choice<bool>("--fit", render.fit_surface, {{"grid", false}, {"surface", true}},
                              "What fills the picture: the grid, or isosurfaces and slices alone; default: grid");
     command.add_value(
@@ -121,9 +121,9 @@ void add_camera(const Command& command, RenderCommand& render) {
                              "perspective:TARGET:DIRECTION:UP:DISTANCE:ANGLE or parallel:TARGET:DIRECTION:UP:HEIGHT, "
                              "as --json tells");
         },
-        "CAMERA", "All of a camera, as -v and --json tell it of another picture");
-    command.add_flag("--parallel", render.parallel, "Without perspective: what is farther away is not smaller");
-    command.add_flag("--scale-bar", render.scale_bar, "Show how long a round number is; with --parallel it always is");
+        "CAMERA", "The camera of another picture, as -v and --json print it");
+    command.add_flag("--parallel", render.parallel, "Parallel projection, without perspective");
+    command.add_flag("--scale-bar", render.scale_bar, "Draw a scale bar; with --parallel there always is one");
     command.add_text("--unit", render.unit, "TEXT", "Unit of coordinates, written beside the scale bar");
     command.add_value(
         "--scale",
@@ -199,7 +199,7 @@ void add_opacity(const Command& command, RenderCommand& render) {
             for (const std::string& text : texts) set_opacity(render, text);
         },
         "OPACITY",
-        "Opacity of the surfaces, 0 to 1; default: 1, and of several isosurfaces 0.35 for those that may hide others. "
+        "Opacity of the surfaces, 0 to 1; default: 1, and 0.35 for isosurfaces that may hide others. "
         "Of a volume: VALUE:OPACITY,... ascending, with lines between; ramp (default); peaks or peaks:N, at N values; "
         "shell, transparent near the ends of the range. May be given for both");
     command.add_flag(
@@ -213,9 +213,7 @@ void add_opacity(const Command& command, RenderCommand& render) {
             render.opacity_length = length;
         },
         "LENGTH",
-        "What the opacity of a volume is of: so much of one value hides so much; default: a tenth of the diagonal of "
-        "the "
-        "grid's box");
+        "Length over which one value of a volume has its opacity; default: a tenth of the diagonal of the grid's box");
     command.add_numbers("--dirac", render.dirac, "V[,W...]",
                         "Draw isosurfaces by rays through the volume, opaque, without extracting them; its opacity is "
                         "only drawn where --opacity is given");
@@ -256,7 +254,7 @@ Command add_render_command(const Command& program, RenderCommand& render) {
     sweep.excludes(command.option("--levels"));
     const Option orbit = command.add_count(
         "--orbit", {2, 100'000}, [&](std::uint64_t n) { render.orbit = n; }, "N",
-        "N pictures, once around from the left to the right");
+        "N pictures, once around the grid from left to right");
     orbit.excludes(sweep);
     command.add_number(
         "--fps",
@@ -267,7 +265,7 @@ Command add_render_command(const Command& program, RenderCommand& render) {
         },
         "RATE", "Pictures a second of an animated OUT; default: 12");
     add_part(command, "--boundary", render.boundary, "Opacity of the grid's boundary, 0 to 1; default: 0.1");
-    command.add_flag("--outline", render.outline, "Draw the edges of the box around");
+    command.add_flag("--outline", render.outline, "Draw the edges of the grid's box");
     add_opacity(command, render);
     add_size(command, render.picture);
     add_camera(command, render);

@@ -61,7 +61,7 @@ void add_shapes(const Command& command, SliceCommand& slice) {
     command
         .add_count(
             "--count", {1, 1'000'000}, [&slice](std::uint64_t n) { slice.count = n; }, "N",
-            "So many planes: min + k (max - min) / (N + 1), k = 1..N, of the extent of the cells; default: 1")
+            "Number of planes, at min + k (max - min) / (N + 1), k = 1..N, of the extent of the cells; default: 1")
         .needs(along);
     const Option sphere =
         add_shape(command, slice, "--sphere", parse_spheres, "X,Y,Z,R[,R2...]", "X,Y,Z,R, centre and radius",
