@@ -22,7 +22,7 @@ enum class Method : std::uint8_t {
 ISOTET_API std::string_view name_of(Method method) noexcept;
 
 /// Packing pays from so many surfaces of one grid on, isovalues times fields: direct extraction takes longer than
-/// packing and extracting from clusters (docs/performance/choice.md). With gradient normals, for which direct
+/// packing and extracting from clusters (docs/inside/choice.md). With gradient normals, for which direct
 /// extraction goes through all cells twice more, much earlier.
 inline constexpr std::uint64_t surfaces_that_pay_for_packing = 32;
 inline constexpr std::uint64_t surfaces_with_gradients_that_pay_for_packing = 4;
