@@ -12,17 +12,16 @@ namespace {
 
 constexpr const char* bench_details = R"(
 Each method gets every isovalue in every round; without -i three are taken. With a device each isovalue ends as a
-picture of it, shaded by faces; without one (--device none) surfaces are extracted and that is all. Prepare is what
-happens once: packing, building the search index, uploading. Search is the index's; extract is making triangles, and
-sending them or the list of tets to the device; draw is the rest of the way to the picture. Medians; the best round in
-JSON.
+picture; without one (--device none) surfaces are extracted. Prepare is what happens once: packing, building the search
+index, uploading. Search is the index's; extract is making triangles, and sending them or the list of tets to the
+device; draw is the rest of the way to the picture. Medians; the best round in JSON.
 
-Methods: direct and clusters (CPU), clusters_vulkan (device); and those that draw without making a surface: registers,
-registers_instanced and textures of Buatois, Caumon and Levy (2006), and mesh, where the device has mesh shaders. The
-last four draw the tets that a search index finds: none, interval_tree, octree, seed_set, span_space, cluster_ranges.
+Methods: direct and clusters (CPU), clusters_vulkan (device); and those that draw tets without making a surface:
+registers, registers_instanced and textures of Buatois, Caumon and Levy (2006), and mesh, where the device has mesh
+shaders. Indexes for these four: none, interval_tree, octree, seed_set, span_space, cluster_ranges.
 
---paper measures that paper's Figure 4 on this machine: tets a second against the size of the grid, and what the
-interval tree gains. --device-memory shows, at sizes that one can run, what happens to grids that do not fit.
+--paper measures tets a second against the size of the grid, and what the interval tree gains. --device-memory shows, at
+sizes that one can run, what happens to grids that do not fit.
 
 Examples:
   isotet bench grid.vtu -f pressure -i 0.5

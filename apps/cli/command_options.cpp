@@ -68,18 +68,16 @@ disp_z, and x, y and z for the coordinates, where no field is called so. A cell 
 weighted by volume (ParaView's Cell Data to Point Data takes the plain mean).
 
 OUT ends in .vtp, .ply, .stl, .3mf, .obj, .glb, .usda, .vtk or .ts; without OUT only the numbers are printed. Several
-isovalues in one OUT make one surface with a cell field isovalue; without an isovalue the middle of the range is taken.
-With {value}, {time} or {step} in OUT there is one file each: values and times are the shortest decimals that read
-back, steps are numbers of equal length, from 0. Beside the .vtp files of several time steps a collection is written,
-front.pvd for front-{step}.vtp, which ParaView opens as one series (one that isotet has not written is kept); beside
-.usda files front.usda, which shows them one after another. A .glb without {step} has all time steps. Ctrl-C leaves the
-files that were complete.
+isovalues in one OUT make one surface with a cell field isovalue; without one the middle of the range is taken. With
+{value}, {time} or {step} in OUT there is one file each; steps are numbers of equal length, from 0. Beside the .vtp
+files of several time steps a collection is written, front.pvd for front-{step}.vtp, which ParaView opens as one
+series (one that isotet has not written is kept); beside .usda files front.usda. A .glb without {step} has all time
+steps. Ctrl-C leaves the files that were complete.
 
 A point whose value equals the isovalue counts as above it. Triangles face the side of higher values. The methods give
-the same vertices and triangles in a different order; but direct repeats the triangles of repeated cells, which
-clusters drops (`isotet info --survey` counts such cells). auto takes clusters from 32 surfaces on (isovalues times
-time steps), from 4 with gradient normals, or with a device; else direct. So the same command gives the same bytes on
-every machine, unless packing finds too little memory: direct is taken instead, with a note.
+the same vertices and triangles in a different order, but direct repeats the triangles of repeated cells, which clusters
+drops. auto takes clusters from 32 surfaces on (isovalues times time steps), from 4 with gradient normals, or with a
+device; else direct, also where packing finds too little memory (noted).
 
 Triangles of solids (--solid) face outwards, those of the isosurface first; the report tells the volume of the solid
 and of the grid. --solid A:B takes no other isovalues.
@@ -103,9 +101,9 @@ Fails (exit status 1) if the surface has: an edge that is used unequally often i
 not be; a triangle with two equal corners; a triangle that occurs twice in the same direction.
 
 Where edges must be used equally often: with --closed everywhere; with --grid everywhere except on edges whose grid
-points all lie in one boundary face of the grid's valid tets; with neither they are only counted. A tet is valid when
-the field has a value (not NaN) at its four points. --grid needs the point array edge_ends, which isotet extract
---edge-ends writes into .vtp and .vtk, and excuses a repeated triangle on a face with two tets on one side.
+points all lie in one boundary face of the tets that have a value at each point; with neither they are only counted.
+--grid needs the point array edge_ends, which isotet extract --edge-ends writes into .vtp and .vtk, and excuses a
+repeated triangle on a face with two tets on one side.
 
 Where quadratic cells were refined for the surface, their points are derived again, as the file's field data
 isotet:refinement say, or -i (all isovalues of that isotet extract) and the tolerances. Give the same --hanging-points
@@ -159,9 +157,9 @@ command that uses the device says so.
 )";
 
 constexpr const char* view_details = R"(
-Prints one address, and opens it in the browser if there is one on this machine. The page can be reached from this
-machine only, by whoever has the address; from another one through ssh, by a line that is printed where isotet was
-started over ssh. Ctrl-C ends it. Press ? in the page for its keys.
+Prints one address, and opens it in the browser if there is one on this machine. Whoever has the address can look,
+from this machine only; from another one through ssh, by a line that is printed where isotet was started over ssh.
+Ctrl-C ends it. Press ? in the page for its keys.
 
 Examples:
   isotet view grid.vtu
@@ -171,10 +169,10 @@ Examples:
 )";
 
 constexpr const char* export_details = R"(
-OUT is a page that shows isosurfaces with a slider, as isotet view does, and loads nothing: send it by mail, open it
-from a disk, put it on any web server. It holds N surfaces between two isovalues, or those of -i, at one time step or
-all; where it would be larger than --max-size, every second, third and so on of the N surfaces, with a note. With
---as grid it holds the packed grid, with the fields of -f and --color-by, or without -f all point fields.
+OUT is a page that shows isosurfaces with a slider, as isotet view does, and loads nothing. It holds N surfaces
+between two isovalues, or those of -i, at one time step or all; where it would be larger than --max-size, every
+second, third and so on of the N surfaces, with a note. With --as grid it holds the packed grid, with the fields of -f
+and --color-by, or without -f all point fields.
 
 Examples:
   isotet export grid.vtu grid.html -f pressure

@@ -12,13 +12,11 @@ namespace isotet::cli {
 namespace {
 
 constexpr const char* render_details = R"(
-FILE is a grid or a surface. With nothing but FILE it draws what isotet info says is shown first: isosurfaces at three
-isovalues between the ends of the field's range (without rare values at the ends), each in its own colour; or the
-boundary, coloured. FIELD is found as by isotet extract.
+With nothing but FILE it draws what isotet info says is shown first: isosurfaces at three isovalues inside the field's
+range, each in its own colour; or the boundary, coloured. FIELD is found as by isotet extract.
 
-The picture is as large as possible in its frame. OUT ends in .png; without it the picture gets FILE's name, in the
-current folder. The pictures of --sweep and --orbit are numbered from 1 where {frame} stands in OUT, or go into one
-animated file when OUT ends in .webp.
+OUT ends in .png; without it the picture gets FILE's name, in the current folder. The pictures of --sweep and --orbit
+are numbered from 1 where {frame} stands in OUT, or go into one animated file when OUT ends in .webp.
 
 The CPU draws, with the same bytes on every machine, unless --device or --engine vulkan asks for a Vulkan device; a
 method that draws tets needs one.
