@@ -163,7 +163,7 @@ def test_steps(browser, folder):
 
 def test_hostile_names(browser, folder):
     """Names of files and fields are text, wherever they stand."""
-    name = '<img src=x onerror=alert(1)> "\'&.vtk'
+    name = '<img src=x onerror=alert(1)> "\'&\u202e\u05d0\u2028\U0001f600.vtk'
     grid = os.path.join(folder, name)
     shutil.copy(os.path.join(folder, 'hostile.vtk'), grid)
     path, _ = export(folder, '<b>&.html', grid, '--surfaces', '2')

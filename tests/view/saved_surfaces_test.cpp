@@ -2,8 +2,12 @@
 // Pages of one file: how meshes are coded, how the page is put together, what fits.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
+#include <string>
+#include <string_view>
+#include <utility>
 
 #include <isotet/extract_direct.hpp>
 #include <isotet/make.hpp>
@@ -182,6 +186,47 @@ TEST(PageDocument, LetsNoNameOutOfItsElement) {
     EXPECT_EQ(times_in(html, "</script"), times_in(plain, "</script"));
     EXPECT_EQ(times_in(html, "<!--"), times_in(plain, "<!--"));
     EXPECT_NE(html.find("<title>&lt;/script&gt;&lt;script&gt;alert(1)"), std::string::npos);
+}
+
+/// Of what ends elements, attributes, texts of JSON and of scripts, and of letters that change how others are shown.
+std::string hostile_name(std::mt19937& random) {
+    constexpr std::array<std::string_view, 22> pieces{
+        "</script>",        "</SCRIPT ", "<script>", "<!--",    "-->",          "]]>",
+        "</title>",         "\"",        "'",        "&",       "&lt;",         "\\",
+        "\\u003c",          "`${x}`",    "\n",       {"\0", 1}, "\xe2\x80\xae", "\xe2\x80\xa8",
+        "\xf0\x9f\x98\x80", "\xd7\x90",  "<",        "a"};
+    std::string name;
+    for (std::size_t i = 0; i < 6; ++i)
+        name += pieces.at(std::uniform_int_distribution<std::size_t>(0, pieces.size() - 1)(random));
+    return name;
+}
+
+std::string read_html_text(std::string text) {
+    for (const auto& [entity, letter] : {std::pair{"&lt;", "<"}, std::pair{"&gt;", ">"}, std::pair{"&quot;", "\""},
+                                         std::pair{"&#39;", "'"}, std::pair{"&amp;", "&"}})
+        for (std::size_t at = 0; (at = text.find(entity, at)) != std::string::npos; ++at)
+            text.replace(at, std::string_view(entity).size(), letter);
+    return text;
+}
+
+TEST(PageDocument, KeepsHostileNamesAsTheyAre) {
+    std::mt19937 random(11);
+    for (int i = 0; i < 500; ++i) {
+        const std::string name = hostile_name(random);
+        const Json saved = {{"file", name}, {name, {name}}};
+        const std::string json = json_in_html(saved), text = html_text(name);
+        EXPECT_EQ(json.find('<'), std::string::npos) << json;
+        EXPECT_EQ(parse_json(json).value(), saved) << json;
+        EXPECT_EQ(text.find_first_of("<>\"'"), std::string::npos) << text;
+        EXPECT_EQ(read_html_text(text), name);
+    }
+    const std::string plain = page_document("plain", Json::object(), {{"part", "AAAA"}}).value();
+    for (int i = 0; i < 8; ++i) {
+        const std::string name = hostile_name(random);
+        const std::string html = page_document(name, {{"file", name}}, {{"part", "AAAA"}}).value();
+        for (const std::string_view mark : {"<script", "</script", "<!--", "</title", "Content-Security-Policy"})
+            EXPECT_EQ(times_in(html, mark), times_in(plain, mark)) << mark << ": " << name;
+    }
 }
 
 TEST(PageDocument, LoadsNothing) {
