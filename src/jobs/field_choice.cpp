@@ -118,6 +118,24 @@ Result<FoundField> choose_field(const GridSource& source, const FieldChoice& cho
     return found;
 }
 
+Result<std::vector<std::string>> choose_field_names(const GridSource& source, const std::vector<std::string>& texts,
+                                                    FieldChoice choice) {
+    std::vector<std::string> names;
+    for (const std::string& text : texts) {
+        choice.name = text;
+        const Result<FoundField> found = choose_field(source, choice);
+        const std::size_t comma = found ? std::string::npos : comma_between(text);
+        if (found) names.push_back(text);
+        else if (comma == std::string::npos) return found.error();
+        else {
+            auto listed = choose_field_names(source, {text.substr(0, comma), text.substr(comma + 1)}, choice);
+            if (!listed) return listed;
+            names.insert(names.end(), listed->begin(), listed->end());
+        }
+    }
+    return names;
+}
+
 Result<CarriedFields> choose_carried(const GridSource& source, const std::vector<std::string>& names) {
     CarriedFields carried;
     for (const std::string& name : names)

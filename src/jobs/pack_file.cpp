@@ -80,7 +80,9 @@ Result<void> PackRun::look_at_file() {
 }
 
 Result<void> PackRun::choose_names() {
-    names_ = job_.fields;
+    auto named = choose_field_names(*source_, job_.fields, choice({}));
+    if (!named) return named.error();
+    names_ = *std::move(named);
     if (!names_.empty()) return {};
     if (auto looked = source_->look_at_steps({steps_.front()}, caller_); !looked) return looked;
     for (const FieldInfo& field : source_->info().fields)

@@ -112,6 +112,15 @@ TEST_F(PackCommand, TakesAllStepsOfASeries) {
     EXPECT_EQ(content_of(path("n.isotet")), "");
 }
 
+TEST_F(PackCommand, TakesFieldsSeparatedByCommas) {
+    const auto names_of = [&](const std::string& fields) {
+        return json_of({"pack", "make:kuhn:3:sphere,gyroid", path("f.isotet"), "--fields", fields})["fields"];
+    };
+    EXPECT_EQ(names_of("gyroid,x"), (nlohmann::json{"gyroid", "x"}));
+    EXPECT_EQ(names_of("max(sphere,gyroid),sphere"), (nlohmann::json{"max(sphere,gyroid)", "sphere"}));
+    EXPECT_TRUE(is_one_error(isotet({"pack", "make:kuhn:3", path("f.isotet"), "--fields", "x,nothing"}), "nothing"));
+}
+
 TEST_F(PackCommand, RefusesWhatItCannot) {
     EXPECT_TRUE(is_one_error(isotet({"pack", "make:kuhn:3", path("a.vtu")}), "must end in .isotet"));
     EXPECT_TRUE(is_one_error(isotet({"pack", "make:kuhn:3", path("a.isotet"), "--fields", "nothing"}), "nothing"));

@@ -34,6 +34,14 @@ struct FoundField {
 /// Errors   invalid_argument: no such field (what there is, nearest first), or no name and not just one field
 Result<FoundField> choose_field(const GridSource& source, const FieldChoice& choice);
 
+/// Names of fields by texts as --fields takes them: each a field as choose_field() finds it, else a list of these
+/// separated by commas.
+///
+/// `choice`   of all of them, but for the name
+/// Errors     as choose_field()
+Result<std::vector<std::string>> choose_field_names(const GridSource& source, const std::vector<std::string>& texts,
+                                                    FieldChoice choice);
+
 /// The fields to carry onto a surface.
 struct CarriedFields {
     std::vector<std::string> point;     ///< whole point fields
