@@ -172,7 +172,7 @@ constexpr const char* export_details = R"(
 OUT is a page that shows isosurfaces with a slider, as isotet view does, and loads nothing. It holds N surfaces
 between two isovalues, or those of -i, at one time step or all; where it would be larger than --max-size, every
 second, third and so on of the N surfaces, with a note. With --as grid it holds the packed grid, with the fields of -f
-and --color-by, or without -f all point fields.
+and --color-by, or without -f all point fields, of which those that do not fit are left out, with a note.
 
 Examples:
   isotet export grid.vtu grid.html -f pressure

@@ -1,13 +1,17 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "export_grid.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <optional>
+#include <span>
 #include <sstream>
 
 #include <fmt/format.h>
 
+#include <isotet/jobs/grid_source.hpp>
 #include <isotet/jobs/number_text.hpp>
 #include <isotet/jobs/output_names.hpp>
 #include <isotet/version.hpp>
@@ -80,30 +84,134 @@ std::string bytes_of(const std::string& path) {
     return std::move(bytes).str();
 }
 
-std::string grid_table(const ExportCommand& command, const PackNumbers& packed, std::size_t bytes) {
+/// A page, and what was packed for it.
+struct GridPage {
+    PackNumbers packed;
+    std::string html;
+    std::size_t left_out = 0; ///< of the fields
+};
+
+std::vector<std::string> names_of(const std::vector<FieldReport>& fields) {
+    std::vector<std::string> names;
+    for (const FieldReport& field : fields) names.push_back(field.name);
+    return names;
+}
+
+class GridPageMaker {
+public:
+    GridPageMaker(const ExportCommand& command, std::string folder, Console& console)
+        : command_(command), console_(console), job_(pack_job_of(command, folder + "/grid.isotet")) {}
+
+    /// With as many of the fields as fit, if none was named.
+    /// Errors   invalid_argument: too large
+    Result<GridPage> make(std::uint64_t max_bytes);
+
+private:
+    Result<GridPage> page_with(std::vector<std::string> fields);
+    Result<GridPage> page_with_first(std::span<const std::string> names, std::size_t count) {
+        return page_with({names.begin(), names.begin() + static_cast<std::ptrdiff_t>(count)});
+    }
+    Result<GridPage> with_fewer_fields(GridPage all, std::uint64_t max_bytes);
+
+    const ExportCommand& command_;
+    Console& console_;
+    PackJob job_;
+    std::optional<std::vector<double>> isovalues_; ///< of the first field
+};
+
+Result<GridPage> GridPageMaker::page_with(std::vector<std::string> fields) {
+    PackJob job = job_;
+    job.fields = std::move(fields);
+    Result<PackNumbers> packed = pack_file(job, console_);
+    if (!packed) return packed.error();
+    view::SavedGridOptions options;
+    options.file = valid_utf8(std::filesystem::path(command_.grid.file).filename().string());
+    options.version = ISOTET_VERSION;
+    options.state.field = packed->fields.front().name;
+    if (!isovalues_) {
+        auto isovalues = isovalues_of(command_, options.state.field, console_);
+        if (!isovalues) return isovalues.error();
+        isovalues_ = *std::move(isovalues);
+    }
+    options.state.isovalues = *isovalues_;
+    options.state.color_by = command_.color_by;
+    options.notes = console_.noted();
+    Result<std::string> html = view::grid_page(bytes_of(job.out), options);
+    if (!html) return html.error();
+    return GridPage{*std::move(packed), *std::move(html)};
+}
+
+/// Sizes are nearly linear in the number of fields: a few pages are made until one more field would be too much.
+Result<GridPage> GridPageMaker::with_fewer_fields(GridPage all, std::uint64_t max_bytes) {
+    std::vector<std::string> names = names_of(all.packed.fields);
+    std::size_t count = 1; ///< of the first ones, which fit
+    if (const auto color = std::find(names.begin() + 1, names.end(), command_.color_by); color != names.end()) {
+        std::rotate(names.begin() + 1, color, color + 1);
+        count = 2;
+    }
+    if (count == names.size()) return all;
+    Result<GridPage> page = page_with_first(names, count);
+    std::size_t too_many = names.size(), too_large = all.html.size(); // which do not
+    while (page && page->html.size() <= max_bytes && too_many - count > 1) {
+        const double share =
+            static_cast<double>(max_bytes - page->html.size()) / static_cast<double>(too_large - page->html.size());
+        const auto guess = count + static_cast<std::size_t>(share * static_cast<double>(too_many - count));
+        const std::size_t next = std::clamp(guess, count + 1, too_many - 1);
+        Result<GridPage> larger = page_with_first(names, next);
+        if (!larger) return larger;
+        if (larger->html.size() <= max_bytes) {
+            count = next;
+            page = std::move(larger);
+        } else {
+            too_many = next;
+            too_large = larger->html.size();
+        }
+    }
+    if (page) page->left_out = names.size() - count;
+    return page;
+}
+
+Result<GridPage> GridPageMaker::make(std::uint64_t max_bytes) {
+    Result<GridPage> page = page_with(job_.fields);
+    if (page && page->html.size() > max_bytes && job_.fields.empty())
+        page = with_fewer_fields(*std::move(page), max_bytes);
+    if (!page) return page;
+    const std::string largest = format_bytes(max_bytes);
+    if (page->html.size() > max_bytes)
+        return usage_error(
+            "the page would have {} with {}, but may have {} (--max-size): --as surfaces makes smaller ones",
+            format_bytes(page->html.size()), quoted_list(names_of(page->packed.fields)), largest);
+    if (page->left_out > 0)
+        console_.note(
+            fmt::format("{} of {} fields are in the page, {}: all of them would make it larger than {} (--max-size)",
+                        page->packed.fields.size(), page->packed.fields.size() + page->left_out,
+                        quoted_list(names_of(page->packed.fields)), largest));
+    return page;
+}
+
+std::string grid_table(const ExportCommand& command, const GridPage& page) {
     Table table = facts();
     table.row({"grid", command.grid.file});
-    table.row({"cells", grouped(packed.cells)});
-    for (const FieldReport& field : packed.fields)
+    table.row({"cells", grouped(page.packed.cells)});
+    for (const FieldReport& field : page.packed.fields)
         table.row({"field", fmt::format("{}: {} to {}", field.name, shortest(field.lower), shortest(field.upper))});
-    if (packed.steps > 1) table.row({"time steps", grouped(packed.steps)});
-    table.row({"packed", format_bytes(packed.bytes)});
-    table.row({"file", fmt::format("{} ({})", command.out, format_bytes(bytes))});
+    if (page.packed.steps > 1) table.row({"time steps", grouped(page.packed.steps)});
+    table.row({"packed", format_bytes(page.packed.bytes)});
+    table.row({"file", fmt::format("{} ({})", command.out, format_bytes(page.html.size()))});
     return table.text();
 }
 
-Json grid_report(const ExportCommand& command, const PackNumbers& packed, std::size_t bytes) {
-    std::vector<std::string> names;
-    for (const FieldReport& field : packed.fields) names.push_back(field.name);
+Json grid_report(const ExportCommand& command, const GridPage& page) {
     Json report = json_report("export");
     report["kind"] = "grid";
     report["grid"] = json_text(command.grid.file);
-    report["cells"] = packed.cells;
-    report["fields"] = json_texts(names);
-    report["steps"] = packed.steps;
-    report["packed_bytes"] = packed.bytes;
+    report["cells"] = page.packed.cells;
+    report["fields"] = json_texts(names_of(page.packed.fields));
+    report["left_out"] = page.left_out;
+    report["steps"] = page.packed.steps;
+    report["packed_bytes"] = page.packed.bytes;
     report["file"] = json_text(command.out);
-    report["bytes"] = bytes;
+    report["bytes"] = page.html.size();
     return report;
 }
 
@@ -117,30 +225,12 @@ Result<ExitCode> run_export_grid(const ExportCommand& command) {
         return paths.error();
     const PackFolder folder;
     if (folder.path().empty()) return Error{ErrorCode::cannot_write, "no folder could be made for the packed grid"};
-    const std::string file = folder.path() + "/grid.isotet";
-    const Result<PackNumbers> packed = pack_file(pack_job_of(command, file), console);
-    if (!packed) return packed.error();
-
-    view::SavedGridOptions options;
-    options.file = valid_utf8(std::filesystem::path(command.grid.file).filename().string());
-    options.version = ISOTET_VERSION;
-    options.state.field = packed->fields.front().name;
-    const auto isovalues = isovalues_of(command, options.state.field, console);
-    if (!isovalues) return isovalues.error();
-    options.state.isovalues = *isovalues;
-    options.state.color_by = command.color_by;
-    options.notes = console.noted();
-    const Result<std::string> html = view::grid_page(bytes_of(file), options);
-    if (!html) return html.error();
-    const std::uint64_t most = command.max_size.value_or(20'000'000);
-    if (html->size() > most)
-        return usage_error("the page would have {}, but may have {} (--max-size): name the fields that are wanted, or "
-                           "take --as surfaces",
-                           format_bytes(html->size()), format_bytes(most));
-    console.note(fmt::format("{} will have {}", command.out, format_bytes(html->size())));
-    if (Result<void> written = write_text(*html, command.out, console.run()); !written) return written.error();
-    return finish(console, command.common, grid_table(command, *packed, html->size()),
-                  grid_report(command, *packed, html->size()));
+    const Result<GridPage> page =
+        GridPageMaker(command, folder.path(), console).make(command.max_size.value_or(20'000'000));
+    if (!page) return page.error();
+    console.note(fmt::format("{} will have {}", command.out, format_bytes(page->html.size())));
+    if (Result<void> written = write_text(page->html, command.out, console.run()); !written) return written.error();
+    return finish(console, command.common, grid_table(command, *page), grid_report(command, *page));
 }
 
 } // namespace isotet::cli

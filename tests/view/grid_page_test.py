@@ -95,6 +95,21 @@ def test_in_a_frame(browser, path):
     browser.wait(f'{inside}.querySelectorAll("#surfaces li").length === 2')
 
 
+def test_fields_that_fit(browser, path):
+    """As many of the fields as there is room for; those that were named stay."""
+    small, fields = path.replace('grid.html', 'small.html'), 'make:kuhn:16:sphere,gyroid,integer,torus'
+    sizes = [isotet('export', fields, small, '--as', 'grid', '-f', 'sphere', *more)['bytes'] for more in ([], ['--color-by', 'torus'])]
+    room = ['--max-size', str(sizes[1] + 1000)]
+    report = isotet('export', fields, small, '--as', 'grid', '--color-by', 'torus', *room)
+    check(report['fields'] == ['sphere', 'torus'] and report['left_out'] == 2, f'the first field and that of the colours: {report}')
+    check(report['bytes'] <= sizes[1] + 1000 and any('2 of 4 fields' in note for note in report['notes']), f'it says so: {report}')
+    start(browser, small)
+    check(browser.value('document.body.dataset.field') == 'sphere', 'the page shows them')
+    for words in (['--max-size', str(sizes[0] - 1000)], ['-f', 'sphere', '--color-by', 'torus', '--max-size', str(sizes[0] + 100)]):
+        refused = subprocess.run([os.environ['ISOTET_PROGRAM'], 'export', fields, small, '--as', 'grid', *words], capture_output=True, text=True)
+        check(refused.returncode == 2 and '--max-size' in refused.stderr, f'{words}: {refused.stderr}')
+
+
 def main():
     failed = 0
     with tempfile.TemporaryDirectory(prefix='isotet-export-') as folder:
