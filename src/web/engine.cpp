@@ -16,9 +16,9 @@
 
 #include <isotet/contour.hpp>
 #include <isotet/packed_file.hpp>
-#include <isotet/read.hpp>
 
 #include "base/buffer.hpp"
+#include "engine_files.hpp"
 #include "page.hpp"
 #include "view/json.hpp"
 
@@ -138,7 +138,7 @@ Result<Json> Engine::open(const Json& message) {
         times_ = file_->info().times;
         return description();
     }
-    Result<ReadResult> read = isotet::read(path_, {}, telling_run());
+    Result<ReadResult> read = read_grid_file(path_, {}, telling_run());
     if (!read) return read.error();
     grid_ = std::move(read->grid);
     times_ = std::move(read->info.times);
@@ -187,7 +187,7 @@ Result<void> Engine::go_to_step(std::size_t step) {
     if (path_.empty()) return bad_message("a grid of arrays has one time step");
     ReadOptions options;
     options.step = step;
-    Result<ReadResult> read = isotet::read(path_, options, telling_run());
+    Result<ReadResult> read = read_grid_file(path_, options, telling_run());
     if (!read) return read.error();
     grid_ = std::move(read->grid);
     step_ = step;

@@ -2,10 +2,11 @@
 // isotet.js in Node: node npm_test.mjs FOLDER PROGRAM. Surfaces of files of all kinds of cells are the bytes of the program's.
 import {readFileSync} from 'node:fs';
 import {join, resolve} from 'node:path';
+import {gzipSync} from 'node:zlib';
 import {bytesOf, check, data, folder, median, readPly, run} from './support.mjs';
 
 const [npm, program] = process.argv.slice(2);
-const {fromArrays, open} = await import(resolve(npm, 'isotet.js'));
+const {fromArrays, open, useModule} = await import(resolve(npm, 'isotet.js'));
 
 async function fails(work, words) {
   try {
@@ -72,3 +73,10 @@ for (let i = 0; i < 21; ++i) {
 }
 check(packed.fields.map(({name}) => name).join() === 'gyroid,sphere', 'fields of a packed file');
 console.log(`ok arrays, errors, packed: ${median(times).toFixed(1)} ms a surface`);
+
+// The module that pages load for arrays and packed files; it alone says so of other files.
+const small = readFileSync(join(npm, 'isotet_engine.wasm')), compressed = gzipSync(small, {level: 9}).length;
+check(compressed < 700000, `isotet_engine.wasm has ${compressed} bytes compressed, and may have 700,000`);
+await useModule(small);
+await fails(() => open(readFileSync(data('vtk/ugridex_all_kinds.vtk')), {name: 'a.vtk'}), 'isotet_engine_readers.wasm');
+console.log(`ok isotet_engine.wasm: ${compressed} bytes compressed`);

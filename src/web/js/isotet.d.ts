@@ -103,5 +103,8 @@ export interface GridArrays {
 export function fromArrays(grid: GridArrays): Promise<Grid>;
 export function fromArraysInWorker(grid: GridArrays, options?: {worker?: Worker}): Promise<RemoteGrid>;
 
-/** Takes isotet_engine.wasm from elsewhere than beside isotet.js: its bytes, or compiled. Call it first. */
+/**
+ * A module in place of those beside isotet.js, for all grids: its bytes, or compiled. isotet_engine.wasm takes arrays and packed files,
+ * isotet_engine_readers.wasm all. Call it first.
+ */
 export function useModule(module: ArrayBuffer | Uint8Array | WebAssembly.Module): Promise<WebAssembly.Module>;

@@ -8,34 +8,40 @@ const arrays = {
 };
 const typeOf = (values) => Object.keys(arrays).find((name) => values instanceof arrays[name]);
 
-async function bytesOfModule() {
-  const address = new URL('isotet_engine.wasm', import.meta.url);
+async function bytesOfModule(address) {
   if (address.protocol === 'file:' && typeof process !== 'undefined') return (await import('node:fs/promises')).readFile(address);
   const answer = await fetch(address);
   if (!answer.ok) throw new Error(`${address} cannot be loaded: ${answer.status}`);
   return answer.arrayBuffer();
 }
 
-let compiled = null; // a promise of the module, for all grids
+const modules = { // that lie beside this file
+  packed: new URL('isotet_engine.wasm', import.meta.url), // arrays and packed files
+  files: new URL('isotet_engine_readers.wasm', import.meta.url),
+};
+const compiled = {}; // promises of modules, for all grids
+let given = null;    // one in their place
 
-/** Where the module comes from, in place of isotet_engine.wasm beside this file: its bytes, or a WebAssembly.Module. */
+/** @see isotet.d.ts */
 export function useModule(module) {
-  compiled = module instanceof WebAssembly.Module ? Promise.resolve(module) : WebAssembly.compile(module);
-  return compiled;
+  given = module instanceof WebAssembly.Module ? Promise.resolve(module) : WebAssembly.compile(module);
+  return given;
 }
 
-export const compile = () => (compiled ??= bytesOfModule().then((bytes) => WebAssembly.compile(bytes)));
+async function compile(kind) {
+  return given ?? (compiled[kind] ??= bytesOfModule(modules[kind]).then((bytes) => WebAssembly.compile(bytes)));
+}
 
 /** A grid, and the instance of the module that has it in its memory. */
 export class Grid {
-  static async create(files, onProgress) {
+  static async create(kind, files, onProgress) {
     const grid = new Grid(), given = new Files(files);
     const page = {text: (at, count) => {
       const said = JSON.parse(new TextDecoder().decode(new Uint8Array(grid.exports.memory.buffer, at, count)));
       if (said.progress) onProgress?.(...said.progress);
       else grid.answer = said;
     }};
-    const {exports} = await WebAssembly.instantiate(await compile(), {page, wasi_snapshot_preview1: given.imports()});
+    const {exports} = await WebAssembly.instantiate(await compile(kind), {page, wasi_snapshot_preview1: given.imports()});
     grid.exports = exports;
     given.memory = exports.memory;
     exports._initialize();
@@ -98,16 +104,24 @@ function fileOf(data) {
   return bytesAsFile(data instanceof ArrayBuffer ? new Uint8Array(data) : new Uint8Array(data.buffer, data.byteOffset, data.byteLength));
 }
 
+const packedMark = 'isotetP\n';
+
+/** Which module reads this file. */
+async function kindOf(data) {
+  const begin = isBlob(data) ? await data.slice(0, packedMark.length).arrayBuffer() : fileOf(data).read(0, packedMark.length);
+  return String.fromCharCode(...new Uint8Array(begin)) === packedMark ? 'packed' : 'files';
+}
+
 /** @see isotet.d.ts */
 export async function open(data, {name = 'grid', files = {}, onProgress} = {}) {
   const all = Object.fromEntries(Object.entries(files).map(([path, content]) => [path, fileOf(content)]));
-  const grid = await Grid.create({...all, [name]: fileOf(data)}, onProgress);
+  const grid = await Grid.create(await kindOf(data), {...all, [name]: fileOf(data)}, onProgress);
   return grid.describe(grid.call({do: 'open', path: name}));
 }
 
 /** @see isotet.d.ts */
 export async function fromArrays({points, cells, values}) {
-  const grid = await Grid.create({}), message = {do: 'take', fields: {}};
+  const grid = await Grid.create('packed', {}), message = {do: 'take', fields: {}};
   const {connectivity, offsets, types} = ArrayBuffer.isView(cells) ? {connectivity: cells} : cells;
   for (const [key, array] of Object.entries({points, connectivity, offsets, types})) {
     if (array === undefined) continue;
@@ -154,12 +168,14 @@ export class RemoteGrid {
   close() { this.worker.terminate(); }
 }
 
-async function remote(worker, onProgress, method, ...words) {
+async function remote(kind, worker, onProgress, method, ...words) {
   const grid = new RemoteGrid(worker ?? new Worker(new URL('isotet_worker.js', import.meta.url), {type: 'module'}));
   grid.onProgress = onProgress;
-  return Object.assign(grid, await grid.ask(method, ...words, await compile()));
+  return Object.assign(grid, await grid.ask(method, ...words, await compile(kind)));
 }
 
-export const openInWorker = (data, {worker, onProgress, ...options} = {}) => remote(worker, onProgress, 'open', data, options);
+export async function openInWorker(data, {worker, onProgress, ...options} = {}) {
+  return remote(await kindOf(data), worker, onProgress, 'open', data, options);
+}
 
-export const fromArraysInWorker = (grid, {worker} = {}) => remote(worker, null, 'fromArrays', grid, {});
+export const fromArraysInWorker = (grid, {worker} = {}) => remote('packed', worker, null, 'fromArrays', grid, {});
