@@ -1,0 +1,29 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// An isovalue that moves, in Node on one thread: node moving.mjs NPM PROGRAM [SIDE...], isotet.js of scripts/web.sh and isotet.
+import {mkdtempSync, readFileSync, rmSync} from 'node:fs';
+import {spawnSync} from 'node:child_process';
+import {tmpdir} from 'node:os';
+import {join, resolve} from 'node:path';
+
+const [npm, program, ...given] = process.argv.slice(2), sides = given.length > 0 ? given.map(Number) : [55, 94];
+const {open} = await import(resolve(npm, 'isotet.js')), folder = mkdtempSync(join(tmpdir(), 'isotet-moving-'));
+
+for (const side of sides) {
+  const file = join(folder, 'grid.isotet');
+  spawnSync(program, ['pack', `make:kuhn:${side}:gyroid`, file, '--quiet'], {stdio: 'inherit'});
+  const started = performance.now(), grid = await open(readFileSync(file)), rounds = 9, values = 21, times = [];
+  grid.contour(0);
+  const ready = performance.now() - started;
+  let triangles = 0;
+  for (let i = 0; i < rounds * values; ++i) {
+    const start = performance.now();
+    triangles += grid.contour(-0.8 + 1.6 * (i % values) / (values - 1)).triangles.length / 3;
+    times.push(performance.now() - start);
+  }
+  times.sort((a, b) => a - b);
+  const at = (share) => times[Math.floor(share * (times.length - 1))].toFixed(1);
+  console.log(`${grid.cells} tets: first surface ${ready.toFixed(0)} ms after opening; then ${at(0)} / ${at(0.5)} / ${at(1)} ms (best, median, worst of ` +
+    `${times.length}), ${Math.round(triangles / times.length)} triangles`);
+  grid.close();
+}
+rmSync(folder, {recursive: true});
