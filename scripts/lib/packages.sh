@@ -13,9 +13,10 @@ readonly packages_to_test_vtk=(python3-vtk9 python3-mpi4py python3-numpy openmpi
 # chromium: the browser of the tests of `isotet view`, and SwiftShader, a second software Vulkan device.
 readonly packages_to_test=(ccache libvtk9-dev libgtest-dev pkg-config vulkan-validationlayers spirv-tools chromium
     "${packages_for_software_vulkan[@]}" "${packages_to_test_vtk[@]}")
-# Of scripts/web.sh: compiler and libraries for WebAssembly, and what runs its test.
+# Of scripts/web.sh: compiler and libraries for WebAssembly, and what runs its test. binaryen: clang runs its wasm-opt,
+# where it is installed, which makes modules 5 % smaller.
 readonly packages_for_web=(clang-19 lld-19 libc++-19-dev-wasm32 libc++abi-19-dev-wasm32 libclang-rt-19-dev-wasm32
-    wasi-libc nodejs)
+    wasi-libc binaryen nodejs)
 readonly packages_for_python=(python3-dev python3-venv)
 readonly packages_to_test_fully=("${packages_for_python[@]}" clang-19 clang-tidy-19 libclang-rt-19-dev xz-utils xvfb
     libgl1-mesa-dri)
