@@ -12,6 +12,7 @@
 #include "base/buffer.hpp"
 #include "base/parallel.hpp"
 #include "grid/fixed_corners.hpp"
+#include "io/pieces/uniform_cells.hpp"
 
 namespace isotet::io {
 namespace {
@@ -29,18 +30,20 @@ Array stretch_of(const Array& array, std::uint64_t begin, std::uint64_t end) {
 std::optional<CellPlaces> CellPlaces::make(std::span<const std::uint8_t> types) {
     CellPlaces places(types);
     places.before_.assign(types.size() / stride + 1, 0);
-    std::atomic<bool> known = true;
+    std::atomic<bool> known = true, uniform = !types.empty() && vtk_xml::corners_of_uniform(types.front());
     core::parallel_each(places.before_.size(), 64, [&](std::size_t i) {
         const std::uint64_t end = std::min<std::uint64_t>(types.size(), (i + 1) * stride);
         std::uint64_t corners = 0;
         for (std::uint64_t cell = i * stride; cell < end; ++cell) {
             const std::uint64_t own = core::fixed_corners_of(types[cell]);
             if (own == 0) known = false;
+            if (types[cell] != types.front()) uniform = false;
             corners += own;
         }
         places.before_[i] = corners;
     });
     if (!known) return std::nullopt;
+    if (uniform) return CellPlaces(static_cast<CellType>(types.front()), types.size());
     std::uint64_t next = 0;
     for (std::uint64_t& before : places.before_) before = std::exchange(next, next + before);
     return places;

@@ -18,7 +18,8 @@ namespace isotet::io {
 /// Of linear cells, whose types say how many corners each has. Borrows the types.
 class CellPlaces {
 public:
-    /// Nothing where a type is none of the contoured ones, vertex, line, triangle, pixel and quadrilateral.
+    /// Nothing where a type is none of the contoured ones, vertex, line, triangle, pixel and quadrilateral. Uniform,
+    /// and without types, where all are of one contoured type.
     static std::optional<CellPlaces> make(std::span<const std::uint8_t> types);
     /// Of `cells` cells of one contoured type.
     CellPlaces(CellType type, std::uint64_t cells);

@@ -50,6 +50,7 @@ public:
 
     Result<std::optional<ReadResult>> join() {
         if (!are_unread()) return std::optional<ReadResult>();
+        if (all_.size() == 1 && all_.pieces[0].left_out.empty()) return take_one();
         if (auto found = find_uses_with_ghosts(); !found) return found.error();
         std::optional<ReadResult> result;
         for (bool again = true; again && !needs_all_;) {
@@ -58,7 +59,7 @@ public:
             if (!tried) return tried.error();
             result = *std::move(tried);
         }
-        return needs_all_ ? std::optional<ReadResult>() : std::move(result);
+        return result;
     }
 
     std::vector<Piece> pieces() && {
@@ -88,6 +89,37 @@ private:
         points.point_ids = piece.point_ids;
         return points;
     }
+
+    /// A piece alone is the grid, if no cell is left out.
+    Result<std::optional<ReadResult>> take_one() const {
+        const Piece& piece = all_.pieces[0];
+        const CellPlaces& places = piece.unread->places();
+        ReadResult result = begun_;
+        result.grid.points = piece.grid.points;
+        result.grid.point_fields = piece.grid.point_fields;
+        auto filter = active_filter(result.grid, type_, options_);
+        if (!filter) return std::optional<ReadResult>();
+        WholeCells whole(places, [&](std::uint64_t first, std::uint64_t count, const Array& corners) {
+            filter->add_cells(first, places.types(first, count), corners);
+        });
+        const auto done = piece.unread->each_block([&](std::uint64_t first, const Array& corners) {
+            type_ ? filter->add(first, corners) : whole.add(first, corners);
+        });
+        if (!done) return done.error();
+        whole.finish();
+        result.cells_in_file = places.cells();
+        return with_cells(*filter, std::move(result));
+    }
+
+    /// Nothing where cells are broken: that is told when all are there.
+    static Result<std::optional<ReadResult>> with_cells(ActiveCellFilter& filter, ReadResult result) {
+        auto cells = filter.finish();
+        if (!cells && cells.error().code != ErrorCode::invalid_data) return cells.error();
+        if (!cells) return std::optional<ReadResult>();
+        result.grid.cells = *std::move(cells);
+        return std::optional(std::move(result));
+    }
+
 
     /// Where ghost cells are left out, points that only they have are, too.
     Result<void> find_uses_with_ghosts() {
@@ -132,12 +164,8 @@ private:
         const RepeatedCells repeated = shared.settle(*filter, typed_);
         note_repeated(repeated, all_.pieces, result.notes);
         std::ranges::move(of_fields, std::back_inserter(result.notes));
-        auto cells = filter->finish();
-        if (!cells && cells.error().code != ErrorCode::invalid_data) return cells.error();
-        if (!cells) needs_all_ = true;
-        else result.grid.cells = *std::move(cells);
         result.cells_in_file = kept_cells() - repeated.left_out;
-        return std::optional(std::move(result));
+        return with_cells(*filter, std::move(result));
     }
 
     /// Whether pieces have the same points, so that only their cells could tell which comes first.

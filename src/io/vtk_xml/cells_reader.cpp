@@ -18,7 +18,6 @@
 #include "grid/fixed_corners.hpp"
 #include "io/files/scalars.hpp"
 #include "io/files/text_scanner.hpp"
-#include "io/pieces/active_filter.hpp"
 #include "io/pieces/narrow_indices.hpp"
 #include "io/pieces/shared_faces.hpp"
 #include "io/pieces/uniform_cells.hpp"
@@ -75,12 +74,12 @@ Result<Array> as_indices_of_cells(Array array, std::string_view name) {
 
 class CellsReader {
 public:
-    CellsReader(Document& document, const CellsElement& element, const CellsWish& wish, const Progress& progress)
+    CellsReader(Document& document, const CellsElement& element, bool corners_later, const Progress& progress)
         : document_(document),
           piece_(element.piece),
           count_(element.count),
           step_(element.step),
-          wish_(wish),
+          corners_later_(corners_later),
           progress_(progress) {}
 
     Result<CellsRead> read() {
@@ -91,12 +90,8 @@ public:
         if (!size) return size.error();
         const auto stored = find_stored("connectivity", *size);
         if (!stored) return stored.error();
-        if (places_ && has_blocks_of_indices(*stored)) {
-            if (wish_.corners_later) return CellsRead{std::move(cells), false, *stored, std::move(places_)};
-            auto active = read_active(*stored);
-            if (!active) return active.error();
-            if (*active) return CellsRead{**std::move(active), true};
-        }
+        if (corners_later_ && places_ && has_blocks_of_indices(*stored))
+            return CellsRead{std::move(cells), *stored, std::move(places_)};
         auto connectivity = read_corners(*stored);
         if (!connectivity) return connectivity.error();
         if (places_) cells = cells_at(*places_, cells.types, *std::move(connectivity));
@@ -109,30 +104,6 @@ public:
 private:
     static bool has_blocks_of_indices(const StoredArray& stored) {
         return size_of(stored.array().type) >= 4 && !is_floating(stored.array().type) && stored.has_blocks();
-    }
-
-    /// Nothing where all cells are needed.
-    Result<std::optional<Cells>> read_active(const StoredArray& corners) const {
-        std::optional<Cells> cells;
-        if (!wish_.active) return cells;
-        const ScalarType index = corners.array().type;
-        std::optional<CellType> type;
-        if (places_->are_uniform()) type = static_cast<CellType>(places_->type(0));
-        auto filter = active_filter(wish_.active->grid, type, wish_.active->options);
-        if (!filter) return cells;
-        WholeCells whole(*places_, [&](std::uint64_t first, std::uint64_t count, const Array& of_cells) {
-            filter->add_cells(first, places_->types(first, count), of_cells);
-        });
-        auto done = corners.each_block([&](std::uint64_t first, std::span<const std::byte> bytes) {
-            const Array block(index, bytes.data(), bytes.size() / size_of(index), 1, nullptr);
-            type ? filter->add(first, block) : whole.add(first, block);
-        });
-        if (!done) return done.error();
-        whole.finish();
-        auto kept = filter->finish();
-        if (kept) cells = *std::move(kept);
-        else if (kept.error().code != ErrorCode::invalid_data) return kept.error();
-        return cells; // what is broken is told when all cells are there
     }
 
     bool is_of_vtk_8() const {
@@ -275,7 +246,7 @@ private:
         }
         if (*type)
             if (auto read = read_types(*types, cells); !read) return read.error();
-        if (wish_.active || wish_.corners_later) {
+        if (corners_later_) {
             if (auto found = find_places(*offsets, cells.types); !found) return found.error();
             if (places_) return places_->corners();
         }
@@ -379,7 +350,7 @@ private:
     pugi::xml_node piece_;
     std::uint64_t count_;
     std::size_t step_;
-    CellsWish wish_;
+    bool corners_later_;
     const Progress& progress_;
     Section section_;
     std::optional<CellPlaces> places_; ///< where there are no offsets
@@ -387,9 +358,9 @@ private:
 
 } // namespace
 
-Result<CellsRead> read_cells(Document& document, const CellsElement& element, const CellsWish& wish,
+Result<CellsRead> read_cells(Document& document, const CellsElement& element, bool corners_later,
                              const Progress& progress) {
-    return CellsReader(document, element, wish, progress).read();
+    return CellsReader(document, element, corners_later, progress).read();
 }
 
 Result<Array> read_corners(const StoredArray& stored) {

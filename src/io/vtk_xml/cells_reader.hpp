@@ -10,7 +10,6 @@
 
 #include <isotet/grid.hpp>
 #include <isotet/progress.hpp>
-#include <isotet/read.hpp>
 #include <isotet/result.hpp>
 
 #include "io/pieces/cell_places.hpp"
@@ -25,27 +24,15 @@ struct CellsElement {
     std::size_t step = 0;
 };
 
-/// The grid but for its cells, where active cells do (ReadOptions::active_cells).
-struct ActiveWish {
-    const Grid& grid;
-    const ReadOptions& options;
-};
-
-/// Which cells are to be read.
-struct CellsWish {
-    const ActiveWish* active = nullptr; ///< null: all cells
-    bool corners_later = false;         ///< linear cells may be left where they are
-};
-
 struct CellsRead {
     Cells cells = {};         ///< offsets and types are empty where all cells are of one kind, one after another
-    bool only_active = false; ///< others were left out
     std::optional<StoredArray> corners = {}; ///< where they were left: StoredArray::each_block() can be called
     std::optional<CellPlaces> places = {};   ///< of these, which borrow the types of `cells`
 };
 
-/// Errors     invalid_data: arrays that are missing, too short, of other types; as StoredArray
-Result<CellsRead> read_cells(Document& document, const CellsElement& element, const CellsWish& wish,
+/// `corners_later`   those of linear cells may be left where they are
+/// Errors   invalid_data: arrays that are missing, too short, of other types; as StoredArray
+Result<CellsRead> read_cells(Document& document, const CellsElement& element, bool corners_later,
                              const Progress& progress);
 
 /// Corners as Cells::connectivity, of 32 bits where all fit.

@@ -86,17 +86,12 @@ Result<std::vector<Piece>> load_unstructured(const std::shared_ptr<Document>& do
     whole.grid.points = std::move(*places);
     const Wanted of_pieces{wanted.options, wanted.step, wanted.ids || !alone, wanted.path};
     if (auto read = load_fields(*document, layouts, of_pieces, progress, loaded, whole); !read) return read.error();
-    const ActiveWish active{whole.grid, wanted.options};
-    const bool active_may_do = wanted.options.active_cells && whole.grid.cell_fields.empty(),
-               is_whole = alone && !wanted.ids && whole.left_out.empty();
-    const CellsWish wish{active_may_do && is_whole ? &active : nullptr,
-                         active_may_do && !is_whole && !wanted.path.empty()};
+    const bool later = wanted.options.active_cells && whole.grid.cell_fields.empty() && !wanted.path.empty();
     std::vector<Piece> pieces;
     for (std::size_t i = 0; i < elements.size(); ++i) {
-        auto part = read_cells(*document, {elements[i], cells.tuples[i], wanted.step}, wish, progress);
+        auto part = read_cells(*document, {elements[i], cells.tuples[i], wanted.step}, later, progress);
         if (!part) return part.error();
         Piece& piece = pieces.emplace_back(alone ? whole : part_of(whole, points, cells, i));
-        if (part->only_active) piece.cells_in_file = cells.total;
         if (part->corners)
             piece.unread = std::make_shared<const UnreadCells>(
                 CellsInFile{wanted.path, document, *std::move(part->places), part->cells.types}, *part->corners);

@@ -18,21 +18,20 @@ struct RowsShape {
     std::uint64_t rows = 0;
     std::size_t columns = 1;
     ScalarType type = ScalarType::float32;
-    std::uint64_t chunk_rows = 1; ///< stored together
 };
 
-/// An open file. Links and outside storage are followed: check_hdf5_names() first.
-/// Threads   one call at a time: HDF5 is not safe from several
+/// An open file. Copies share it. Links and outside storage are followed: check_hdf5_names() first.
+/// Threads   safe from many threads, while nothing else calls HDF5
 class Hdf5Rows {
 public:
     /// Errors   invalid_data: not an HDF5 file; as ByteSource::open()
     static Result<Hdf5Rows> open(const std::string& path);
-    Hdf5Rows(Hdf5Rows&&) noexcept;
-    Hdf5Rows& operator=(Hdf5Rows&&) noexcept;
-    ~Hdf5Rows();
 
     /// Nothing where there is no data set of this name with one or two dimensions of numbers.
     std::optional<RowsShape> shape(const std::string& name) const;
+
+    /// Errors   invalid_data: no such data set, rows that it does not have
+    Result<void> check(const std::string& name, std::uint64_t first, std::uint64_t rows) const;
 
     /// Some rows of a data set, in the type of the file, one tuple a row.
     ///
@@ -48,21 +47,21 @@ public:
     /// Cost     as read(), and no more memory than the int32 and a few MB a thread
     Result<Array> read_indices(const std::string& name, std::uint64_t first, std::uint64_t rows) const;
 
-    /// Some values of a data set with one column, as they are in the file: take(first, values) for one piece after another,
-    /// `first` counted from the first of them.
+    /// Some values of a data set as they are in the file, which are not kept: visit(first, values) for blocks of whole
+    /// rows, in any order, from many threads. `first`: how many of the values come before.
     ///
     /// Errors   as read()
-    /// Cost     as read(), and a few MB
-    Result<void> each_piece(const std::string& name, std::uint64_t first, std::uint64_t rows,
-                            const std::function<void(std::uint64_t first, const Array& values)>& take) const;
+    /// Cost     as read(), and a few MB a thread
+    using Visit = std::function<void(std::uint64_t first, const Array& values)>;
+    Result<void> each_block(const std::string& name, std::uint64_t first, std::uint64_t rows, const Visit& visit) const;
 
     /// The whole data set.
     Result<Array> read(const std::string& name) const;
 
 private:
     struct File;
-    explicit Hdf5Rows(std::unique_ptr<File> file);
-    std::unique_ptr<File> file_;
+    explicit Hdf5Rows(std::shared_ptr<const File> file);
+    std::shared_ptr<const File> file_;
 };
 
 } // namespace isotet::io::confined

@@ -2,18 +2,19 @@
 #include "io/confined/hdf5/vtkhdf_grid.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "base/parallel.hpp"
 #include "grid/cell_faces.hpp"
+#include "grid/fixed_corners.hpp"
 #include "io/confined/hdf5/hdf5_array.hpp"
+#include "io/confined/hdf5/hdf5_cells.hpp"
 #include "io/files/escape.hpp"
-#include "io/pieces/active_filter.hpp"
 #include "io/pieces/shared_faces.hpp"
-#include "io/pieces/uniform_cells.hpp"
 #include "io/vtk_xml/columns.hpp"
 
 namespace isotet::io::confined {
@@ -27,13 +28,18 @@ const char* data_group_of(Association association) {
     return association == Association::point ? "PointData" : "CellData";
 }
 
-void add_side_by_side(ActiveCellFilter& filter, std::uint64_t first, const Array& corners) {
-    constexpr std::size_t at_once = std::size_t{1} << 15;
-    const auto* const bytes = static_cast<const std::byte*>(corners.data());
-    const std::size_t size = size_of(corners.type());
-    core::parallel_ranges(corners.size(), at_once, [&](std::size_t begin, std::size_t end) {
-        filter.add(first + begin, Array(corners.type(), bytes + begin * size, end - begin, 1, nullptr));
-    });
+/// Whether offset `first` + i is where the corners of that cell begin, and the last one where they end.
+template <class Offset>
+bool are_begins_of(const CellPlaces& places, std::uint64_t first, std::span<const Offset> offsets) {
+    if constexpr (!std::is_integral_v<Offset>) return false;
+    else {
+        std::uint64_t next = places.begin(first), wrong = 0;
+        for (std::size_t i = 0; i < offsets.size(); ++i) {
+            wrong |= core::widened(offsets[i]) ^ next;
+            if (first + i < places.cells()) next += core::fixed_corners_of(places.type(first + i));
+        }
+        return wrong == 0;
+    }
 }
 
 } // namespace
@@ -204,62 +210,71 @@ Result<void> HdfGrid::find_faces(const HdfStepPlace& place, std::size_t step, st
     return {};
 }
 
-/// Neither types nor offsets, where they say nothing.
-Result<void> HdfGrid::load_types(const HdfPartition& part, Cells& cells) const {
+/// Offsets are not read where the types tell as much, nor types kept where all cells are of one.
+Result<void> HdfGrid::load_types(const HdfPartition& part, HdfCells& cells) const {
     if (part.cells == 0) return {};
-    auto offsets = rows_.read_indices(group_ + "Offsets", part.first_offset, part.cells + 1);
-    if (!offsets) return offsets.error();
+    if (auto there = rows_.check(group_ + "Offsets", part.first_offset, part.cells + 1); !there) return there;
     auto types = rows_.read(group_ + "Types", part.first_cell, part.cells);
     if (!types) return types.error();
     if (types->type() != ScalarType::uint8)
         return wrong(fmt::format("\"Types\" are {}, but must be uint8", name_of(types->type())));
-    cells.offsets = *std::move(offsets);
     cells.types = *std::move(types);
-    vtk_xml::simplify(cells);
+    if (auto places = CellPlaces::make(cells.types.as<std::uint8_t>())) {
+        const auto told = are_offsets_told(part, *places);
+        if (!told) return told.error();
+        if (*told) {
+            if (places->are_uniform()) cells.types = Array();
+            cells.places = std::move(places);
+            return {};
+        }
+    }
+    auto offsets = rows_.read_indices(group_ + "Offsets", part.first_offset, part.cells + 1);
+    if (!offsets) return offsets.error();
+    cells.offsets = *std::move(offsets);
     return {};
 }
 
-/// Nothing where all cells are needed.
-Result<std::optional<Cells>> HdfGrid::active_cells(const HdfPartition& part, const ReadOptions& options,
-                                                   const Piece& piece) const {
-    std::optional<Cells> cells;
-    const Cells& known = piece.grid.cells;
-    const std::string name = group_ + "Connectivity";
-    const auto shape = rows_.shape(name);
-    const auto corners = vtk_xml::corners_of_uniform(static_cast<std::uint8_t>(known.uniform_type));
-    if (!known.offsets.empty() || !known.types.empty() || !piece.left_out.empty() || !shape || shape->columns != 1 ||
-        is_floating(shape->type) || size_of(shape->type) < 4 || !corners || part.corners != part.cells * *corners)
-        return cells;
-    auto filter = active_filter(piece.grid, known.uniform_type, options);
-    if (!filter) return cells;
-    const auto done =
-        rows_.each_piece(name, part.first_corner, part.corners,
-                         [&](std::uint64_t first, const Array& values) { add_side_by_side(*filter, first, values); });
+Result<bool> HdfGrid::are_offsets_told(const HdfPartition& part, const CellPlaces& places) const {
+    std::atomic<bool> same = true;
+    const auto done = rows_.each_block(
+        group_ + "Offsets", part.first_offset, part.cells + 1, [&](std::uint64_t first, const Array& offsets) {
+            if (!offsets.visit([&](auto values) { return are_begins_of(places, first, values); })) same = false;
+        });
     if (!done) return done.error();
-    auto kept = filter->finish();
-    if (kept) cells = *std::move(kept);
-    else if (kept.error().code != ErrorCode::invalid_data) return kept.error();
-    return cells; // what is broken is told when all cells are there
+    return same.load();
 }
 
-Result<void> HdfGrid::load_corners(const HdfPartition& part, const ReadOptions& options, bool alone,
+/// Whether the corners may wait until points and fields are there.
+bool HdfGrid::may_be_left(const HdfPartition& part, const ReadOptions& options, const HdfCells& cells,
+                          const Piece& piece) const {
+    const auto shape = rows_.shape(group_ + "Connectivity");
+    return options.active_cells && piece.grid.cell_fields.empty() && cells.places &&
+           cells.places->corners() == part.corners && shape && shape->columns == 1 && !is_floating(shape->type) &&
+           size_of(shape->type) >= 4 && part.first_corner <= shape->rows &&
+           part.corners <= shape->rows - part.first_corner;
+}
+
+Result<void> HdfGrid::load_corners(const HdfPartition& part, const ReadOptions& options, HdfCells cells,
                                    Piece& piece) const {
+    const std::string name = group_ + "Connectivity";
     if (part.cells == 0) {
         piece.grid.cells.connectivity = Array(ScalarType::int32, nullptr, 0, 1, nullptr);
         return {};
     }
-    if (alone && options.active_cells) {
-        auto active = active_cells(part, options, piece);
-        if (!active) return active.error();
-        if (*active) {
-            piece.grid.cells = **std::move(active);
-            piece.cells_in_file = part.cells;
-            return {};
-        }
+    if (may_be_left(part, options, cells, piece)) {
+        piece.unread = std::make_shared<const Hdf5Cells>(*std::move(cells.places), std::move(cells.types), rows_, name,
+                                                         part.first_corner);
+        return {};
     }
-    auto connectivity = rows_.read_indices(group_ + "Connectivity", part.first_corner, part.corners);
+    auto connectivity = rows_.read_indices(name, part.first_corner, part.corners);
     if (!connectivity) return connectivity.error();
+    if (cells.places) {
+        piece.grid.cells = cells_at(*cells.places, cells.types, *std::move(connectivity));
+        return {};
+    }
     piece.grid.cells.connectivity = *std::move(connectivity);
+    piece.grid.cells.types = std::move(cells.types);
+    piece.grid.cells.offsets = std::move(cells.offsets);
     return load_faces(part, piece.grid.cells);
 }
 
@@ -342,11 +357,12 @@ Result<void> HdfGrid::load(const ReadOptions& options, std::size_t step, const s
         auto points = read_points(part);
         if (!points) return points.error();
         piece.grid.points = *std::move(points);
-        if (auto done = load_types(part, piece.grid.cells); !done) return done;
+        HdfCells cells;
+        if (auto done = load_types(part, cells); !done) return done;
         for (const auto association : {Association::point, Association::cell})
             if (auto done = load_fields(part, *place, step, association, options, piece, loaded.info); !done)
                 return done;
-        if (auto done = load_corners(part, options, parts->size() == 1, piece); !done) return done;
+        if (auto done = load_corners(part, options, std::move(cells), piece); !done) return done;
     }
     return {};
 }

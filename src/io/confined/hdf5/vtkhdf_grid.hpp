@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "io/confined/hdf5/hdf5_rows.hpp"
+#include "io/pieces/cell_places.hpp"
 #include "io/pieces/loaded.hpp"
 #include "io/reader.hpp"
 
@@ -30,6 +31,12 @@ struct HdfPartition {
 struct HdfStepPlace {
     std::uint64_t first_part = 0, parts = 0;
     std::uint64_t first_point = 0, first_cell = 0, first_corner = 0;
+};
+
+/// The cells of a partition but for their corners.
+struct HdfCells {
+    Array types, offsets;                    ///< offsets: empty where there are places
+    std::optional<CellPlaces> places = {}; ///< of linear cells one after another; borrow the types
 };
 
 /// An unstructured grid in an open file, which must outlive it.
@@ -58,10 +65,11 @@ private:
     void note_rows_left_over(const std::vector<HdfPartition>& parts, std::vector<std::string>& notes) const;
     Result<Array> read_points(const HdfPartition& part) const;
     Result<void> find_faces(const HdfStepPlace& place, std::size_t step, std::vector<HdfPartition>& parts) const;
-    Result<void> load_types(const HdfPartition& part, Cells& cells) const;
-    Result<void> load_corners(const HdfPartition& part, const ReadOptions& options, bool alone, Piece& piece) const;
-    Result<std::optional<Cells>> active_cells(const HdfPartition& part, const ReadOptions& options,
-                                              const Piece& piece) const;
+    Result<void> load_types(const HdfPartition& part, HdfCells& cells) const;
+    Result<bool> are_offsets_told(const HdfPartition& part, const CellPlaces& places) const;
+    bool may_be_left(const HdfPartition& part, const ReadOptions& options, const HdfCells& cells,
+                     const Piece& piece) const;
+    Result<void> load_corners(const HdfPartition& part, const ReadOptions& options, HdfCells cells, Piece& piece) const;
     Result<void> load_faces(const HdfPartition& part, Cells& cells) const;
     Result<void> load_fields(const HdfPartition& part, const HdfStepPlace& place, std::size_t step,
                              Association association, const ReadOptions& options, Piece& piece, FileInfo& info) const;

@@ -1,0 +1,50 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Files of which active cells only are read.
+#pragma once
+
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <isotet/extract_direct.hpp>
+#include <isotet/read.hpp>
+
+namespace isotet::test {
+
+inline bool are_same(const Array& a, const Array& b) {
+    return a.type() == b.type() && a.bytes() == b.bytes() &&
+           (a.bytes() == 0 || std::memcmp(a.data(), b.data(), a.bytes()) == 0);
+}
+
+/// Points, fields, notes and surfaces of the file with active cells are those with all.
+inline void expect_same_of_active_cells(const std::string& file, const std::string& field_name,
+                                        const std::vector<double>& isovalues, ReadOptions options = {}) {
+    options.cell_fields = std::vector<std::string>{};
+    const auto all = read(file, options);
+    options.active_cells = ReadActiveCells{field_name, isovalues, {}};
+    const auto some = read(file, options);
+    ASSERT_TRUE(some) << some.error().message;
+    ASSERT_TRUE(all) << all.error().message;
+    EXPECT_EQ(some->cells_in_file, all->grid.cells.count());
+    EXPECT_LE(some->grid.cells.count(), all->grid.cells.count());
+    EXPECT_EQ(some->notes, all->notes);
+    EXPECT_TRUE(are_same(some->grid.points, all->grid.points));
+    ASSERT_EQ(some->grid.point_fields.size(), all->grid.point_fields.size());
+    for (std::size_t i = 0; i < all->grid.point_fields.size(); ++i)
+        EXPECT_TRUE(are_same(some->grid.point_fields[i].values, all->grid.point_fields[i].values));
+    const auto field = find_field(all->grid, field_name).value();
+    DirectOptions direct;
+    const auto expected = extract_direct(all->grid, field, isovalues, direct).value();
+    direct.active_cells_only = true;
+    const auto found = extract_direct(some->grid, field, isovalues, direct).value();
+    ASSERT_FALSE(found.needs_all_cells);
+    for (std::size_t i = 0; i < isovalues.size(); ++i) {
+        EXPECT_GT(expected.surfaces[i].surface.triangle_count(), 0u);
+        EXPECT_TRUE(are_same(found.surfaces[i].surface.positions, expected.surfaces[i].surface.positions));
+        EXPECT_TRUE(are_same(found.surfaces[i].surface.triangles, expected.surfaces[i].surface.triangles));
+    }
+}
+
+} // namespace isotet::test
