@@ -108,7 +108,7 @@ struct ReadOptions {
     std::vector<std::string> more_files; ///< of the steps behind that of the path; times are then numbers of the files
     bool patches = false; ///< Grid::patches: of Gmsh, MED, OpenFOAM, Exodus and CGNS
     std::optional<ReadActiveCells> active_cells = {}; ///< where that can be done while reading (VTU, PVTU, VTM, PVD,
-                                                      ///< VTKHDF, binary legacy VTK; linear cells, no cell
+                                                      ///< VTKHDF, Exodus, binary legacy VTK; linear cells, no cell
                                                       ///< fields, points that do not coincide); else all are read
     std::shared_ptr<KeptFiles> kept = {}; ///< keep_files(); the same for inspect() and the read() behind it
 };

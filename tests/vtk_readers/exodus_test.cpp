@@ -1,14 +1,20 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Exodus II files, alone and in parts, whole and broken.
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <random>
 
 #include <gtest/gtest.h>
 #include <vtk_exodusII.h>
 
+#include <isotet/make.hpp>
 #include <isotet/read.hpp>
 #include <isotet/solid.hpp>
 
 #include "support/places.hpp"
+#include "pieces/partition.hpp"
+#include "vtk_readers/active_cells.hpp"
 #include "vtk_readers/sample_exodus.hpp"
 #include "vtk_readers/sample_grid.hpp"
 #include "support/temporary_folder.hpp"
@@ -135,6 +141,69 @@ TEST_P(ReadExodus, IsAnErrorWhenAnElementHasANodeThatIsNotThere) {
         ASSERT_FALSE(result) << node;
         EXPECT_NE(result.error().message.find("block 20 has node"), std::string::npos) << result.error().message;
     }
+}
+
+/// Parts of a grid with cells of all types, a block each; the last part has none.
+void write_mixed_parts(const TemporaryFolder& folder, int format) {
+    const Grid whole = make_grid({.shape = "mixed", .side = 4, .fields = {"plane"}}).value();
+    const PointField field{"plane", whole.point_fields[0].values, false, {}};
+    const core::CellReader reader = core::CellReader::open(whole).value();
+    constexpr std::size_t parts = 3;
+    std::mt19937 random(5);
+    for (std::size_t part = 0; part < parts; ++part) {
+        std::vector<std::uint64_t> cells;
+        for (std::uint64_t cell = part; part + 1 < parts && cell < whole.cells.count(); cell += parts - 1)
+            cells.push_back(cell);
+        const GridPiece piece = piece_of(whole, field, cells, random);
+        ExodusSample sample;
+        sample.format = format;
+        sample.steps = 0;
+        sample.nodes.clear();
+        sample.node_ids.clear();
+        for (std::size_t i = 0; i < piece.points.size(); ++i) {
+            const Array& points = piece.grid.points;
+            sample.nodes.push_back({points.at(i, 0), points.at(i, 1), points.at(i, 2)});
+            sample.node_ids.push_back(static_cast<int>(piece.points[i]) + 1);
+        }
+        sample.blocks = {{}, {}, {}, {}};
+        sample.corners = {8, 4, 6, 5};
+        std::uint64_t corner = 0;
+        for (const std::uint64_t cell : cells) {
+            const auto count = reader.corners(cell);
+            const auto block = std::ranges::find(sample.corners, static_cast<int>(count)) - sample.corners.begin();
+            for (std::uint64_t i = 0; i < count; ++i)
+                sample.blocks[static_cast<std::size_t>(block)].push_back(
+                    static_cast<int>(piece.grid.cells.connectivity.at(corner++)) + 1);
+            sample.cell_ids.push_back(static_cast<int>(cell) + 1);
+        }
+        sample.cell_ids.erase(sample.cell_ids.begin(), sample.cell_ids.begin() + 2);
+        write_exodus(sample, folder.file("mixed.e.3." + std::to_string(part)));
+    }
+}
+
+TEST_P(ReadExodus, GivesTheSurfacesOfActiveCells) {
+    write_mixed_parts(folder_, GetParam());
+    ReadOptions options;
+    options.format = "exodus";
+    expect_same_of_active_cells(folder_.file("mixed.e.3.0"), "x", {0.13, -0.4}, options);
+    const auto all = read(folder_.file("mixed.e.3.0"), options);
+    options.active_cells = ReadActiveCells{"no such field", {0}, {}}; // then all cells are read
+    const auto read_later = read(folder_.file("mixed.e.3.0"), options);
+    ASSERT_TRUE(all && read_later);
+    EXPECT_TRUE(are_same(read_later->grid.cells.connectivity, all->grid.cells.connectivity));
+    std::filesystem::rename(folder_.file("mixed.e.3.1"), folder_.file("one.e"));
+    expect_same_of_active_cells(folder_.file("one.e"), "y", {0.2});
+}
+
+TEST_P(ReadExodus, TellsOfActiveCellsWhatIsBroken) {
+    ExodusSample sample;
+    sample.blocks[1][2] = 6;
+    ReadOptions options;
+    options.cell_fields = std::vector<std::string>{};
+    options.active_cells = ReadActiveCells{"x", {0.1}, {}};
+    const auto result = read(written(sample), options);
+    ASSERT_FALSE(result);
+    EXPECT_NE(result.error().message.find("block 20 has node 6"), std::string::npos) << result.error().message;
 }
 
 ExodusSample named_blocks() {

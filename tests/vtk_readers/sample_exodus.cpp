@@ -7,6 +7,14 @@
 namespace isotet::test {
 namespace {
 
+int corners_of(const ExodusSample& sample, std::size_t block) {
+    return sample.corners.empty() ? 4 : sample.corners[block];
+}
+
+std::int64_t cells_of(const ExodusSample& sample, std::size_t block) {
+    return static_cast<std::int64_t>(sample.blocks[block].size()) / corners_of(sample, block);
+}
+
 template <class Real>
 void write(const ExodusSample& sample, const std::string& path) {
     int word = sizeof(Real), stored = sizeof(Real);
@@ -14,7 +22,7 @@ void write(const ExodusSample& sample, const std::string& path) {
     ASSERT_GE(file, 0);
     const auto count = static_cast<std::int64_t>(sample.nodes.size());
     std::int64_t cells = 0;
-    for (const auto& block : sample.blocks) cells += static_cast<std::int64_t>(block.size() / 4);
+    for (std::size_t b = 0; b < sample.blocks.size(); ++b) cells += cells_of(sample, b);
     ex_init_params sizes{};
     sizes.num_dim = 3;
     sizes.num_nodes = count;
@@ -28,8 +36,9 @@ void write(const ExodusSample& sample, const std::string& path) {
     ex_put_coord(file, axes[0].data(), axes[1].data(), axes[2].data());
     for (std::size_t b = 0; b < sample.blocks.size(); ++b) {
         const auto id = static_cast<ex_entity_id>(10 * (b + 1));
-        ex_put_block(file, EX_ELEM_BLOCK, id, "TETRA", static_cast<std::int64_t>(sample.blocks[b].size() / 4), 4, 0, 0,
-                     0);
+        const int corners = corners_of(sample, b);
+        constexpr const char* names[] = {"TETRA", "PYRAMID", "WEDGE", "", "HEX"};
+        ex_put_block(file, EX_ELEM_BLOCK, id, names[corners - 4], cells_of(sample, b), corners, 0, 0, 0);
         ex_put_conn(file, EX_ELEM_BLOCK, id, sample.blocks[b].data(), nullptr, nullptr);
         if (b < sample.block_names.size()) ex_put_name(file, EX_ELEM_BLOCK, id, sample.block_names[b].c_str());
     }
@@ -61,8 +70,7 @@ void write(const ExodusSample& sample, const std::string& path) {
             values.push_back(static_cast<Real>(10 * step + static_cast<int>(node)));
         for (int variable = 1; variable <= 4; ++variable)
             ex_put_var(file, step + 1, EX_NODAL, variable, 1, count, values.data());
-        ex_put_var(file, step + 1, EX_ELEM_BLOCK, 1, 10, static_cast<std::int64_t>(sample.blocks[0].size() / 4),
-                   values.data());
+        ex_put_var(file, step + 1, EX_ELEM_BLOCK, 1, 10, cells_of(sample, 0), values.data());
     }
     ASSERT_GE(ex_close(file), 0);
 }

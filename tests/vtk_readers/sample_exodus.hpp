@@ -11,7 +11,8 @@ namespace isotet::test {
 
 struct ExodusSample {
     std::vector<std::array<double, 3>> nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}};
-    std::vector<std::vector<int>> blocks = {{1, 2, 3, 4}, {1, 3, 2, 5}}; ///< corners from 1, four a cell
+    std::vector<std::vector<int>> blocks = {{1, 2, 3, 4}, {1, 3, 2, 5}}; ///< corners from 1
+    std::vector<int> corners = {}; ///< of each cell of a block: 4 to 8; empty: 4 of all
     std::vector<int> node_ids = {1, 2, 3, 4, 5};
     std::vector<int> cell_ids = {1, 2};
     bool single = false; ///< float32

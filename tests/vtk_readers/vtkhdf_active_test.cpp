@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <filesystem>
 #include <random>
 #include <string>
 #include <vector>
@@ -163,6 +164,22 @@ TEST(ActiveCellsOfVtkhdf, AreThoseOfAllGridsOfACollection) {
         }
     }
     expect_same_of_active_cells(folder.file("a.vtkhdf"), "gyroid", {0.2});
+}
+
+TEST(ActiveCellsOfVtkhdf, MayBeOfAFileLargerThanMemory) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("a.vtkhdf");
+    {
+        Hdf5Writer file(path);
+        write_partitions(file, {}, parts_of({}, 3));
+    }
+    std::filesystem::resize_file(path, std::uintmax_t{1} << 36); // a hole
+    ReadOptions options;
+    options.active_cells = ReadActiveCells{"gyroid", {0.1}, {}};
+    options.memory_limit = std::uint64_t{1} << 33;
+    const auto result = read(path, options);
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_TRUE(result->cells_in_file);
 }
 
 TEST(ActiveCellsOfVtkhdf, TellWhichPartIsBroken) {

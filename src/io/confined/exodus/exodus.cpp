@@ -2,16 +2,15 @@
 // Exodus II: the blocks of a file share their nodes; the files of a parallel run ("name.4.0" to "name.4.3") are joined
 // by the global numbers of their nodes.
 #include <algorithm>
-#include <array>
 #include <map>
-#include <span>
+#include <memory>
 
 #include <fmt/format.h>
 
 #include "io/reader.hpp"
 #include "io/pieces/block_choice.hpp"
 #include "io/files/escape.hpp"
-#include "io/pieces/shared_faces.hpp"
+#include "io/confined/exodus/exodus_cells.hpp"
 #include "io/confined/exodus/exodus_file.hpp"
 #include "io/confined/exodus/exodus_parts.hpp"
 #include "io/confined/exodus/exodus_sides.hpp"
@@ -23,133 +22,14 @@
 namespace isotet::io::confined {
 namespace {
 
+constexpr std::size_t most_open = 200; ///< parts, of up to two files each: a process may have 1024
+
 FileInfo describe(const ExodusFile& file) {
     FileInfo info;
     info.times = file.times();
     for (const auto& name : file.point_variables()) announce(info, {name, Association::point, file.type(), 1});
     for (const auto& name : file.cell_variables()) announce(info, {name, Association::cell, file.type(), 1});
     return info;
-}
-
-/// All blocks hold cells of one of isotet's types: types and offsets need not be stored.
-bool is_uniform(const std::vector<ExodusFile::Block>& blocks, std::uint8_t& type) {
-    type = 0;
-    for (const auto& block : blocks) {
-        if (block.cells == 0) continue;
-        const std::uint8_t here = exodus_element(block.topology, block.corners).type;
-        if (here < 10 || here > 14 || (type != 0 && here != type)) return false;
-        type = here;
-    }
-    return type != 0;
-}
-
-/// For each node in VTK's order its position in Exodus's; empty: the same. Upright edges come before those of the top, and the
-/// hexahedron's centre before its faces.
-std::span<const std::uint8_t> node_order(std::uint8_t type) {
-    static constexpr std::array<std::uint8_t, 27> hexahedron{0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 16, 17,
-                                                             18, 19, 12, 13, 14, 15, 23, 24, 25, 26, 21, 22, 20};
-    static constexpr std::array<std::uint8_t, 18> wedge{0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11, 15, 16, 17};
-    switch (type) {
-    case 25: return std::span(hexahedron).first(20);
-    case 29: return hexahedron;
-    case 26: return std::span(wedge).first(15);
-    case 32: return wedge;
-    default: return {};
-    }
-}
-
-/// Node numbers of the file, from 1, to point numbers from 0, appended; of each element those that are read.
-Result<void> append_corners(const std::vector<std::int64_t>& nodes, const ExodusFile::Block& block,
-                            std::uint64_t points, std::vector<std::int64_t>& connectivity) {
-    for (std::size_t i = 0; i < nodes.size(); ++i)
-        if (nodes[i] < 1 || static_cast<std::uint64_t>(nodes[i]) > points)
-            return Error{ErrorCode::invalid_data,
-                         fmt::format("element {} of block {} has node {}, but the nodes are 1 to {}", i / block.corners,
-                                     block.id, nodes[i], points)};
-    const ExodusElement element = exodus_element(block.topology, block.corners);
-    const auto order = node_order(element.type);
-    for (std::size_t first = 0; first + block.corners <= nodes.size() && block.corners > 0; first += block.corners)
-        for (std::size_t i = 0; i < element.nodes; ++i)
-            connectivity.push_back(nodes[first + (order.empty() ? i : order[i])] - 1);
-    return {};
-}
-
-/// Numbers of the file, from 1 to `most`, become numbers from 0.
-Result<void> count_from_0(std::vector<std::int64_t>& numbers, std::uint64_t most, const std::string& owner,
-                          const char* what) {
-    for (std::int64_t& number : numbers) {
-        if (number < 1 || static_cast<std::uint64_t>(number) > most)
-            return Error{ErrorCode::invalid_data,
-                         fmt::format("{} has {} {}, but the {}s are 1 to {}", owner, what, number, what, most)};
-        --number;
-    }
-    return {};
-}
-
-void append_offsets(const std::vector<int>& counts, std::vector<std::int64_t>& offsets) {
-    for (const int count : counts) offsets.push_back(offsets.back() + count);
-}
-
-/// Gives polyhedra their faces, and the points of these.
-Result<void> read_faces(ExodusFile& file, Cells& cells) {
-    auto faces = file.faces();
-    if (!faces) return faces.error();
-    const std::uint64_t face_count = faces->counts.size();
-    if (auto fits = count_from_0(faces->numbers, file.points(), "a face", "node"); !fits) return fits;
-    std::vector<std::int64_t> face_offsets{0}, of_cells, cell_offsets{0};
-    append_offsets(faces->counts, face_offsets);
-    for (const auto& block : file.blocks()) {
-        if (!block.has_faces()) {
-            cell_offsets.insert(cell_offsets.end(), block.cells, cell_offsets.back());
-            continue;
-        }
-        auto own = file.faces_of(block);
-        if (!own) return own.error();
-        if (auto fits = count_from_0(own->numbers, face_count, fmt::format("an element of block {}", block.id), "face");
-            !fits)
-            return fits;
-        append_offsets(own->counts, cell_offsets);
-        of_cells.insert(of_cells.end(), own->numbers.begin(), own->numbers.end());
-    }
-    const SharedFaces shared{Array::own(std::move(faces->numbers)), Array::own(std::move(face_offsets)),
-                             Array::own(std::move(of_cells)), Array::own(std::move(cell_offsets))};
-    if (auto done = write_out_faces(shared, cells); !done) return done;
-    return list_points_of_faces(file.points(), cells);
-}
-
-Result<Cells> read_cells(ExodusFile& file) {
-    Cells cells;
-    std::uint8_t uniform_type = 0;
-    const bool uniform = is_uniform(file.blocks(), uniform_type);
-    std::uint64_t corner_count = 0;
-    for (const auto& block : file.blocks())
-        corner_count += block.cells * exodus_element(block.topology, block.corners).nodes;
-    std::vector<std::int64_t> connectivity, offsets;
-    std::vector<std::uint8_t> types;
-    connectivity.reserve(corner_count);
-    if (!uniform) offsets.push_back(0);
-    for (const auto& block : file.blocks()) {
-        const ExodusElement element = exodus_element(block.topology, block.corners);
-        if (element.nodes > 0) {
-            auto nodes = file.connectivity(block);
-            if (!nodes) return nodes.error();
-            if (auto appended = append_corners(*nodes, block, file.points(), connectivity); !appended)
-                return appended.error();
-        }
-        if (uniform) continue;
-        types.insert(types.end(), block.cells, element.type);
-        for (std::uint64_t i = 0; i < block.cells; ++i)
-            offsets.push_back(offsets.back() + static_cast<std::int64_t>(element.nodes));
-    }
-    cells.connectivity = Array::own(std::move(connectivity));
-    if (uniform) cells.uniform_type = static_cast<CellType>(uniform_type);
-    else {
-        cells.offsets = Array::own(std::move(offsets));
-        cells.types = Array::own(std::move(types));
-    }
-    if (std::ranges::any_of(file.blocks(), &ExodusFile::Block::has_faces))
-        if (auto read = read_faces(file, cells); !read) return read.error();
-    return cells;
 }
 
 /// A variable that cannot be read is left out.
@@ -278,21 +158,38 @@ Result<void> leave_out_others(const ExodusFile& file, const std::vector<bool>& c
     return {};
 }
 
-Result<Piece> read_piece(ExodusFile& file, const std::string& path, const ReadOptions& options, Loaded& loaded,
-                         bool with_ids) {
+/// Whether active cells may do.
+bool may_be_left(const ExodusFile& file, const ReadOptions& options) {
+    return options.active_cells && options.blocks.empty() && !options.patches &&
+           std::ranges::none_of(file.cell_variables(), [&](const std::string& name) {
+               return !file.times().empty() && wanted(options, Association::cell, name);
+           });
+}
+
+struct PartRead {
+    std::string path;
+    bool with_ids = false;
+    bool stays_open = false; ///< may do so, until its cells are read
+};
+
+Result<Piece> read_piece(const std::shared_ptr<ExodusFile>& opened, const PartRead& part, const ReadOptions& options,
+                         Loaded& loaded) {
+    ExodusFile& file = *opened;
     Piece piece;
-    piece.name = path;
+    piece.name = part.path;
     auto points = file.coordinates();
     if (!points) return points.error();
     piece.grid.points = std::move(*points);
-    auto cells = read_cells(file);
-    if (!cells) // what the library says names the file already
-        return cells.error().message.starts_with(escaped(path)) ? cells.error() : broken(path, cells.error().message);
-    piece.grid.cells = std::move(*cells);
+    if (part.stays_open && may_be_left(file, options)) piece.unread = unread_exodus_cells(opened, part.path);
+    if (!piece.unread) {
+        auto cells = read_exodus_cells(file, part.path);
+        if (!cells) return cells.error();
+        piece.grid.cells = std::move(*cells);
+    }
     say_what_is_read(file, loaded);
     if (auto read = read_side_sets(file, options, loaded, piece.grid); !read) return read.error();
     if (auto read = read_fields(file, options, loaded, piece.grid); !read) return read.error();
-    if (!with_ids) return piece;
+    if (!part.with_ids) return piece;
     auto point_ids = file.point_ids();
     if (!point_ids) return point_ids.error();
     auto cell_ids = file.cell_ids();
@@ -302,13 +199,14 @@ Result<Piece> read_piece(ExodusFile& file, const std::string& path, const ReadOp
     return piece;
 }
 
-Result<Piece> read_chosen(ExodusFile& file, const std::string& path, const ReadOptions& options,
-                          const std::vector<bool>& chosen, Loaded& loaded, bool with_ids) {
+Result<Piece> read_chosen(const std::shared_ptr<ExodusFile>& opened, const PartRead& part, const ReadOptions& options,
+                          const std::vector<bool>& chosen, Loaded& loaded) {
+    ExodusFile& file = *opened;
     const std::vector<bool> here = chosen_here(file, loaded.info, chosen);
     const auto sets = here.begin() + static_cast<std::ptrdiff_t>(file.blocks().size());
     const bool all_blocks = std::find(sets, here.end(), true) != here.end();
     if (!all_blocks) file.choose({here.begin(), sets});
-    auto piece = read_piece(file, path, options, loaded, with_ids);
+    auto piece = read_piece(opened, part, options, loaded);
     if (!piece) return piece;
     if (all_blocks) {
         if (auto left_out = leave_out_others(file, here, *piece); !left_out) return left_out.error();
@@ -335,11 +233,12 @@ Result<Loaded> load_exodus(const std::string& path, const ReadOptions& options, 
     if (!step) return step.error();
     loaded.step = *step;
     for (std::size_t i = 0; i < parts->size(); ++i) {
-        const std::string& part = (*parts)[i];
-        auto file = open_part(part, options);
-        if (!file) return file.error();
-        auto piece = options.blocks.empty() ? read_piece(*file, part, options, loaded, parts->size() > 1)
-                                            : read_chosen(*file, part, options, *chosen, loaded, parts->size() > 1);
+        const PartRead part{(*parts)[i], parts->size() > 1, parts->size() <= most_open};
+        auto opened = open_part(part.path, options);
+        if (!opened) return opened.error();
+        const auto file = std::make_shared<ExodusFile>(*std::move(opened));
+        auto piece = options.blocks.empty() ? read_piece(file, part, options, loaded)
+                                            : read_chosen(file, part, options, *chosen, loaded);
         if (!piece) return piece.error();
         loaded.pieces.push_back(std::move(*piece));
         report_progress(static_cast<double>(i + 1) / static_cast<double>(parts->size()));

@@ -218,10 +218,18 @@ Result<Array> ExodusFile::coordinates() { return is_single_ ? read_coordinates<f
 
 Result<std::vector<std::int64_t>> ExodusFile::connectivity(const Block& block) {
     if (block.cells == 0 || block.corners == 0) return std::vector<std::int64_t>();
-    auto nodes = file_->numbers<std::int64_t>(fmt::format("connect{}", block.number));
-    if (!nodes || nodes->size() != block.cells * block.corners)
+    const auto all = nodes(block, 0, block.cells);
+    if (!all) return all.error();
+    std::vector<std::int64_t> numbers(all->size());
+    convert_scalars(*all, ScalarType::int64, reinterpret_cast<std::byte*>(numbers.data()));
+    return numbers;
+}
+
+Result<Array> ExodusFile::nodes(const Block& block, std::uint64_t first, std::uint64_t count) const {
+    auto nodes = file_->rows(fmt::format("connect{}", block.number), first, count);
+    if (!nodes || nodes->size() != count * block.corners)
         return failed(fmt::format("the nodes of element block {}", block.id));
-    return *std::move(nodes);
+    return nodes;
 }
 
 Result<Array> ExodusFile::point_variable(std::size_t variable, std::size_t step) {

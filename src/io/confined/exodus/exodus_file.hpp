@@ -62,8 +62,10 @@ public:
     ScalarType type() const noexcept; ///< of coordinates and variables
 
     Result<Array> coordinates();
-    /// Node numbers from 1, of all cells of a block; empty where `corners` is 0.
+    /// Node numbers from 1, of all cells of a block; empty where `corners` is 0. Safe from many threads.
     Result<std::vector<std::int64_t>> connectivity(const Block& block);
+    /// Of some cells, in the type of the file, not checked. Safe from many threads.
+    Result<Array> nodes(const Block& block, std::uint64_t first, std::uint64_t count) const;
     /// Numbers from 1, and how many belong to each face or cell.
     struct Ragged {
         std::vector<std::int64_t> numbers;

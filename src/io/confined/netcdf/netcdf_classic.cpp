@@ -2,10 +2,12 @@
 // netCDF classic: a header that tells where each variable begins and how large it is, then the variables, big-endian. Source:
 // NetCDF Classic Format Specification, Unidata.
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 #include <map>
-#include <type_traits>
+#include <span>
+#include <string_view>
 #include <utility>
 
 #include <fmt/core.h>
@@ -13,9 +15,10 @@
 #include "base/buffer.hpp"
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
-#include "io/confined/mapped_file.hpp"
 #include "io/confined/netcdf/netcdf_file.hpp"
+#include "io/files/byte_source.hpp"
 #include "io/files/escape.hpp"
+#include "io/files/first_error.hpp"
 #include "io/pieces/loaded.hpp"
 
 namespace isotet::io::confined {
@@ -65,7 +68,7 @@ T big_endian_value(const char* bytes) {
 
 struct NetcdfAttribute {
     NetcdfType type = NetcdfType::none;
-    std::string_view bytes;
+    std::string bytes;
 };
 using NetcdfAttributes = std::map<std::string, NetcdfAttribute, std::less<>>;
 
@@ -89,9 +92,12 @@ struct NetcdfHeader {
 /// Walks through the header; after the first thing that does not fit it only fails.
 class NetcdfHeaderWalk {
 public:
-    NetcdfHeaderWalk(std::string_view bytes, int version) : bytes_(bytes), version_(version) {}
+    /// `bytes`      from the beginning of the file on
+    /// `file_size`   of all of it
+    NetcdfHeaderWalk(std::string_view bytes, int version, std::uint64_t file_size)
+        : bytes_(bytes), version_(version), file_size_(file_size) {}
 
-    /// Nothing where the header is broken.
+    /// Nothing where the header is broken, or longer than the bytes.
     std::optional<NetcdfHeader> walk() {
         NetcdfHeader header;
         const std::uint64_t records = count();
@@ -161,7 +167,7 @@ private:
             const NetcdfType type = type_of_tag(big_endian(4));
             const std::uint64_t values = count();
             if (type == NetcdfType::none || values > enough / 8) fail();
-            else found[own] = {type, padded(size_of_type(type) * values)};
+            else found[own] = {type, std::string(padded(size_of_type(type) * values))};
         }
         return found;
     }
@@ -191,13 +197,13 @@ private:
     /// Records hold a row of each of their variables, each filled up to 4 bytes unless it is the only one.
     void place_records(NetcdfHeader& header, const std::vector<NetcdfVariable*>& of_records,
                        std::optional<std::uint64_t> records) {
-        std::uint64_t size = 0, begin = bytes_.size();
+        std::uint64_t size = 0, begin = file_size_;
         for (const NetcdfVariable* variable : of_records) {
             size += of_records.size() == 1 ? variable->row : (variable->row + 3) / 4 * 4;
             begin = std::min(begin, variable->begin);
             if (size > enough) return void(fail());
         }
-        header.records = records ? *records : size == 0 ? 0 : (bytes_.size() - begin) / size;
+        header.records = records ? *records : size == 0 ? 0 : (file_size_ - begin) / size;
         if (!record_dimension_.empty()) header.dimensions[record_dimension_] = header.records;
         for (NetcdfVariable* variable : of_records) {
             variable->dimensions.front() = header.records;
@@ -207,6 +213,7 @@ private:
 
     std::string_view bytes_;
     int version_;
+    std::uint64_t file_size_;
     std::size_t at_ = 4;
     bool good_ = true;
     std::vector<std::uint64_t> lengths_;
@@ -227,7 +234,7 @@ std::optional<std::uint64_t> needed_length(const NetcdfHeader& header) {
 
 class NetcdfClassic final : public NetcdfFile {
 public:
-    NetcdfClassic(std::string path, MappedFile file, NetcdfHeader header)
+    NetcdfClassic(std::string path, ByteSource file, NetcdfHeader header)
         : path_(std::move(path)), file_(std::move(file)), header_(std::move(header)) {}
 
     std::optional<std::uint64_t> dimension(const std::string& name) const override {
@@ -243,12 +250,14 @@ public:
     std::vector<std::string> texts(const std::string& name) const override {
         const NetcdfVariable* const found = variable(name);
         if (!found || found->type != NetcdfType::letters || found->dimensions.size() != 2 || found->is_record) return {};
-        return rows_of_letters(file_.text().data() + found->begin, found->dimensions[0], found->dimensions[1]);
+        std::string letters(found->dimensions[0] * found->row, '\0');
+        if (!file_.read(found->begin, std::as_writable_bytes(std::span(letters)))) return {};
+        return rows_of_letters(letters.data(), found->dimensions[0], found->dimensions[1]);
     }
     std::optional<std::string> text_attribute(const std::string& name, const char* attribute) const override {
         const NetcdfAttribute* const found = this->attribute(name, attribute);
         if (!found || found->type != NetcdfType::letters) return std::nullopt;
-        return std::string(found->bytes.substr(0, found->bytes.find('\0')));
+        return found->bytes.substr(0, found->bytes.find('\0'));
     }
     std::optional<double> number_attribute(const std::string& name, const char* attribute) const override {
         const NetcdfAttribute* const found = this->attribute(name, attribute);
@@ -273,7 +282,7 @@ private:
     }
 
     std::string path_;
-    MappedFile file_;
+    ByteSource file_;
     NetcdfHeader header_;
 };
 
@@ -285,34 +294,53 @@ Result<Array> NetcdfClassic::rows(const std::string& name, std::uint64_t first, 
         return broken(path_, fmt::format("the variable \"{}\" is not there, or has not all that is wanted", escaped(name)));
     const std::uint64_t bytes = count * found->row, row = found->row / size_of(*type);
     if (auto room = core::require_memory("reading a variable", bytes); !room) return room.error();
-    const char* const from = file_.text().data() + found->begin + first * found->stride;
+    const bool together = found->stride == found->row; // no other variables between the rows
     return Array(*type, nullptr, 0, 1, nullptr).visit([&]<class T>(std::span<const T>) -> Result<Array> {
         core::Buffer<T> values(count * row);
-        T* const to = values.data();
+        FirstError failed;
         core::parallel_ranges(values.size(), at_once, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                to[i] = big_endian_value<T>(from + i / row * found->stride + i % row * sizeof(T));
+            for (std::size_t i = begin, more = 0; i < end && !failed; i += more) {
+                more = together ? end - i : std::min<std::size_t>(end - i, row - i % row);
+                const std::span<T> part(values.data() + i, more);
+                const std::uint64_t place = found->begin + (first + i / row) * found->stride + i % row * sizeof(T);
+                if (auto read = file_.read(place, std::as_writable_bytes(part)); !read) failed.add(begin, read.error());
+                for (T& value : part) value = big_endian_value<T>(reinterpret_cast<const char*>(&value));
+            }
         });
+        if (auto done = failed.result(); !done) return in_file(path_, done.error());
         return std::move(values).to_array();
     });
+}
+
+/// Reads so much of the file as the header takes; nothing where it is broken.
+Result<std::optional<NetcdfHeader>> read_netcdf_header(const ByteSource& file) {
+    constexpr std::size_t most = std::size_t{64} << 20;
+    Scratch scratch;
+    for (std::size_t size = std::size_t{1} << 16;; size *= 8) {
+        const auto bytes = file.view(0, std::min(size, file.size()), scratch);
+        if (!bytes) return bytes.error();
+        const int version = bytes->size() < 4 || !bytes->starts_with("CDF") ? 0 : (*bytes)[3];
+        if (version != 1 && version != 2 && version != 5)
+            return Error{ErrorCode::invalid_data, "it is no netCDF file"};
+        auto header = NetcdfHeaderWalk(*bytes, version, file.size()).walk();
+        if (header || size >= std::min(most, file.size())) return header;
+    }
 }
 
 } // namespace
 
 Result<std::unique_ptr<NetcdfFile>> open_netcdf_classic(const std::string& path) {
-    auto file = MappedFile::open(path);
+    auto file = ByteSource::open(path);
     if (!file) return file.error();
-    const std::string_view bytes = file->text();
-    const int version = bytes.size() < 4 || !bytes.starts_with("CDF") ? 0 : bytes[3];
-    if (version != 1 && version != 2 && version != 5) return broken(path, "it is no netCDF file");
-    auto header = NetcdfHeaderWalk(bytes, version).walk();
-    const auto needed = header ? needed_length(*header) : std::nullopt;
+    auto header = read_netcdf_header(*file);
+    if (!header) return in_file(path, header.error());
+    const auto needed = *header ? needed_length(**header) : std::nullopt;
     if (!needed) return broken(path, "its netCDF header is broken or cut short");
-    if (*needed > bytes.size())
-        return broken(path, fmt::format("the file has {} bytes, but its header needs {}: it is cut short", bytes.size(),
+    if (*needed > file->size())
+        return broken(path, fmt::format("the file has {} bytes, but its header needs {}: it is cut short", file->size(),
                                         *needed));
     return std::unique_ptr<NetcdfFile>(
-        std::make_unique<NetcdfClassic>(path, *std::move(file), *std::move(header)));
+        std::make_unique<NetcdfClassic>(path, *std::move(file), **std::move(header)));
 }
 
 } // namespace isotet::io::confined

@@ -17,7 +17,7 @@ namespace isotet::io::confined {
 /// The classic formats are read here and not by netCDF's library, which gives zeros beyond the end of a file and brings curl
 /// and libxml2 into a process that is to open nothing but its file.
 ///
-/// Threads   one call at a time
+/// Threads   one call at a time; rows() is safe from many threads
 class NetcdfFile {
 public:
     /// Errors   invalid_data: no such file, a header that is broken, a file that is shorter than its header says
