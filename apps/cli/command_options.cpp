@@ -30,7 +30,7 @@ constexpr const char* program_details = R"(
 isotet FILE is short for isotet info FILE. FILE may be make:SHAPE:SIDE[:FIELDS] wherever a grid is read: a test grid
 made in memory, make:kuhn:64:gyroid for example.
 
-Tables go to standard output, notes and errors to standard error. Ctrl-C stops within a second and leaves no half
+Tables go to standard output, notes and errors to standard error. Ctrl-C stops within 0.3 s and leaves no half
 written file; a second Ctrl-C ends the program at once.
 
 Exit status:

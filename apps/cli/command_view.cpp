@@ -141,6 +141,7 @@ Result<ExitCode> run_view(const ViewCommand& command) {
     if (!viewer) return viewer.error();
     Browser browser;
     if (Result<void> told = tell_address(command, **viewer, browser, console); !told) return told.error();
+    take_time_to_stop();
     const Result<void> served = (*viewer)->run(stop_requested);
     if (!served && !stop_requested) return exit_code_of(served.error().code); // told already
     if (!served) return served.error();

@@ -87,7 +87,8 @@ ExitCode run_program(std::vector<std::string> words) {
     if (result) return *result;
     // Whatever error an operation returned when it was stopped, Ctrl-C was the cause.
     if (stop_requested || result.error().code == ErrorCode::cancelled) {
-        say_error("interrupted: no file was left half written");
+        take_time_to_stop(); // what is told is not told again
+        write_to_stderr(interrupted_sentence);
         return ExitCode::interrupted;
     }
     say_error(result.error().message);

@@ -22,6 +22,10 @@ ISOTET_API Result<void> write_text(std::string_view text, const std::string& pat
 /// Errors   as write_text()
 ISOTET_API Result<void> check_writable(const std::string& path);
 
+/// Removes what is being written and not whole, in all threads: for a signal handler that ends the program. A signal
+/// handler may call it.
+ISOTET_API void remove_unfinished_files() noexcept;
+
 /// A file of a series, and when it is.
 struct CollectionEntry {
     double time = 0;

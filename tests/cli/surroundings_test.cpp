@@ -1,9 +1,11 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Hostile surroundings: signals, closed streams, full devices, locales, names that are no text.
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <chrono>
+#include <filesystem>
 #include <random>
 #include <thread>
 
@@ -53,6 +55,48 @@ TEST_F(Program, CtrlCEndsASurveyAtAnyMoment) {
     }
     EXPECT_GE(sent, std::getenv("ISOTET_SEED") ? 0 : 6);
     EXPECT_LE(ignored, 1);
+}
+
+/// Standard output that nobody reads: no operation is there that could be asked to stop.
+TEST_F(Program, CtrlCEndsWhatDoesNotStop) {
+    const std::string pipe = path("pipe");
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    const int end = ::open(pipe.c_str(), O_RDWR | O_CLOEXEC);
+    ASSERT_GE(end, 0);
+    ASSERT_GE(::fcntl(end, F_SETPIPE_SZ, 4096), 0);
+    RunResult run;
+    for (const int moment : {150, 1000, 5000}) { // later where the program had not begun
+        run = isotet({"help", "render"}, {.stdout_file = pipe, .interrupt_after = std::chrono::milliseconds(moment)});
+        if (run.signal == 0) break;
+    }
+    ::close(end);
+    EXPECT_EQ(run.status, 130);
+    EXPECT_EQ(run.err, "isotet: interrupted: no file was left half written\n");
+}
+
+TEST_F(Program, CtrlCEndsEveryCommandAtAnyMoment) {
+    const std::vector<std::vector<std::string>> commands{
+        {"extract", "make:kelvin:14:gyroid", path("OUT.vtp"), "-i", "0.1", "--edge-ends"},
+        {"extract", "make:kuhn:40:gyroid", path("OUT_{value}.vtp"), "--levels", "9", "--normals", "gradient"},
+        {"extract", "make:tet10:7:gyroid", path("OUT.vtp"), "-i", "0.1"},
+        {"extract", "make:kuhn:40:gyroid", path("OUT.stl"), "-i", "0.1", "--solid", "above"},
+        {"clip", "make:mixed:30:gyroid", path("OUT.vtu"), "-i", "0.1"},
+        {"render", "make:hex:40:gyroid", "-o", path("OUT.png"), "-i", "0.1"},
+        {"pack", "make:kuhn:40:gyroid", "-o", path("OUT.isotet")},
+        {"make", "kelvin", "--side", "14", "-o", path("OUT.vtu")}};
+    std::mt19937 random(7);
+    for (std::size_t i = 0; i < commands.size(); i += seed_share) {
+        std::vector<std::string> command = commands[i];
+        command.insert(command.end(), {"-j", "1"});
+        const auto moment = std::chrono::milliseconds(30 + random() % 200);
+        const RunResult run = isotet(command, {.interrupt_after = moment});
+        if (!run.interrupted || run.status == 0) continue; // it was faster
+        SCOPED_TRACE(testing::Message() << command[0] << " " << command[1] << " after " << moment.count() << " ms");
+        EXPECT_EQ(run.status, 130) << run.err;
+        EXPECT_NE(run.err.find("isotet: interrupted"), std::string::npos) << run.err;
+        for (const auto& entry : std::filesystem::directory_iterator(path(".")))
+            EXPECT_NE(entry.path().extension(), ".part") << entry.path();
+    }
 }
 
 TEST_F(Program, CtrlCLeavesTheOldFile) {

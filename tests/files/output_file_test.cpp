@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // OutputFile: the old file or the whole new one, and nothing beside it.
+#include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -7,8 +8,11 @@
 
 #include <csignal>
 
+#include <isotet/write_file.hpp>
+
 #include "files/sample_files.hpp"
 #include "io/files/output_file.hpp"
+#include "io/files/unfinished_files.hpp"
 
 namespace isotet::test {
 namespace {
@@ -49,6 +53,25 @@ TEST(OutputFile, HoldsMoreThanOneBufferInOrder) {
     EXPECT_EQ(file->bytes(), expected.size());
     ASSERT_TRUE(file->commit());
     EXPECT_TRUE(content_of(folder / "out") == expected);
+}
+
+TEST(OutputFile, IsRemovedByRemoveUnfinishedFiles) {
+    const Folder folder;
+    const int descriptor = ::open((folder / ".").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    ASSERT_GE(descriptor, 0);
+    for (const char* name : {"begun", "done", "other"}) put_content(folder / name, "x");
+    io::note_unfinished_file(descriptor, "begun");
+    io::note_unfinished_file(descriptor, "done");
+    io::forget_unfinished_file(descriptor, "done");
+    remove_unfinished_files();
+    EXPECT_EQ(folder.entries(), 2U);
+    EXPECT_EQ(content_of(folder / "done"), "x");
+    io::forget_unfinished_file(descriptor, "begun");
+    auto file = OutputFile::open(folder / "out"); // with a name before it is whole, or without one
+    ASSERT_TRUE(file);
+    remove_unfinished_files();
+    EXPECT_EQ(folder.entries(), 2U);
+    ::close(descriptor);
 }
 
 TEST(OutputFile, KeepsTheOldFileUntilCommitted) {

@@ -17,6 +17,8 @@
 
 #include <fmt/core.h>
 
+#include "io/files/unfinished_files.hpp"
+
 namespace isotet::io {
 namespace {
 
@@ -142,7 +144,7 @@ Result<OutputFile> OutputFile::open(const std::string& path) {
         std::string candidate = temporary_name();
         out.file_ = Descriptor(
             ::openat(out.folder_.number(), candidate.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode));
-        if (out.file_) out.temporary_name_ = std::move(candidate);
+        if (out.file_) out.take_temporary_name(std::move(candidate));
         else if (errno != EEXIST) break;
     }
     if (!out.file_) return system_error(path, fmt::format("cannot write in the folder {}", folder), errno);
@@ -203,7 +205,7 @@ Result<void> OutputFile::commit() {
     if (::renameat(folder_.number(), temporary_name_.c_str(), folder_.number(), name_.c_str()) != 0) {
         return fail("cannot be replaced", errno);
     }
-    temporary_name_.clear();
+    leave_temporary_name();
     // The new name, too, should survive a power cut; where a folder cannot be synced it need not.
     ::fsync(folder_.number());
     return {};
@@ -214,7 +216,7 @@ bool OutputFile::give_name() {
     for (int i = 0; i < max_names && temporary_name_.empty(); ++i) {
         std::string candidate = temporary_name();
         if (::linkat(AT_FDCWD, itself.c_str(), folder_.number(), candidate.c_str(), AT_SYMLINK_FOLLOW) == 0)
-            temporary_name_ = std::move(candidate);
+            take_temporary_name(std::move(candidate));
         else if (errno != EEXIST) return false;
     }
     return !temporary_name_.empty();
@@ -229,6 +231,16 @@ Error OutputFile::fail(std::string_view what, int number) {
 void OutputFile::discard() noexcept {
     file_.reset();
     if (!temporary_name_.empty()) ::unlinkat(folder_.number(), temporary_name_.c_str(), 0);
+    leave_temporary_name();
+}
+
+void OutputFile::take_temporary_name(std::string name) {
+    temporary_name_ = std::move(name);
+    note_unfinished_file(folder_.number(), temporary_name_);
+}
+
+void OutputFile::leave_temporary_name() noexcept {
+    if (!temporary_name_.empty()) forget_unfinished_file(folder_.number(), temporary_name_);
     temporary_name_.clear();
 }
 

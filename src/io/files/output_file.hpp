@@ -51,6 +51,8 @@ private:
     bool give_name();
     Error fail(std::string_view what, int number);
     void discard() noexcept;
+    void take_temporary_name(std::string name);
+    void leave_temporary_name() noexcept;
 
     std::string path_;           ///< as the user gave it, for messages
     std::string name_;           ///< final name inside the folder
