@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -122,6 +123,11 @@ struct IsosurfaceOptions {
     PictureOptions picture;                   ///< of the pictures to come: `draw` leaves device memory free for them
     bool split_cells = false;                 ///< as PackOptions::split_cells
     std::optional<RefineOptions> refine = {}; ///< as ContourOptions::refine; a device takes cells split at their nodes
+    /// Set where the grid has only the cells that an ActiveCellFilter kept for the first isovalues that are shown:
+    /// gives it with all. Neither boundary nor slices are drawn then, and all is as large as the bounds say.
+    std::function<Result<Grid>(const Run& run)> all_cells = {};
+    std::vector<double> expected_isovalues = {}; ///< these
+    Box bounds = {};                             ///< of the points that any cell has
 };
 
 /// A surface that is shown, or the tets that stand for it.

@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <memory>
@@ -81,6 +82,7 @@ struct ReadActiveCells {
     std::vector<double> isovalues;
     DirectOptions options; ///< of the extraction; the point fields that are read count as carried ones
     std::optional<SliceShape> shape = {}; ///< slice_field() in place of `field`
+    bool bounds = false;                  ///< ReadResult::bounds are wanted
 };
 
 /// Where inspect() leaves a file that it had to read whole, so that read() need not read it again. Nothing of it is left
@@ -118,6 +120,8 @@ struct ReadResult {
     FileInfo info;
     std::size_t step = 0;                            ///< the step that was read
     std::optional<std::uint64_t> cells_in_file = {}; ///< where only active cells were read
+    std::optional<std::array<double, 6>> bounds = {}; ///< then, if they were asked for, and not of legacy VTK: least x,
+                                                      ///< y and z of the points that any cell has, then the greatest
     std::vector<std::string> notes; ///< sentences for the user: ghost cells left out, blocks joined and so on
 };
 

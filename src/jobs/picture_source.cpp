@@ -74,6 +74,9 @@ struct PictureSource::Contents {
     std::optional<VolumeLook> volume;
     std::optional<ColorField> volume_colors;
     bool model = false; ///< the boundary is what is shown: opaque, coloured where there are colours
+    std::uint64_t cells = 0; ///< of the grid in the file
+    Box bounds = {};         ///< where `all_cells` is set: the grid has only the active cells
+    std::function<Result<Grid>(const Run& run)> all_cells = {};
 };
 
 Result<PictureSource> PictureSource::open(const DrawJob& job, Caller& caller) {
@@ -289,8 +292,61 @@ Result<void> PictureSource::take_first_view(bool& contours, std::string& field, 
     return {};
 }
 
+/// The cells that do where nothing but a few isosurfaces is drawn; nothing where all are needed.
+std::optional<ReadActiveCells> PictureSource::active_cells(const Contents& contents, const FoundField& field,
+                                                           const FieldsToRead& read) const {
+    constexpr std::size_t most_isovalues = 8; // each takes another pass over the points
+    const bool draws_more = contents.model || job_.boundary != 0.0 || !job_.slices.empty() || draws_volume(job_) ||
+                            job_.solid || job_.method.draw;
+    const bool decided_later = job_.isovalues.empty() || !job_.shares.empty() || !job_.sweep.empty();
+    ContourOptions options;
+    options.method = job_.method.extract;
+    options.surfaces = job_.isovalues.size();
+    options.expected_isovalues = job_.isovalues;
+    options.normals = job_.shade_by == ShadeBy::gradient ? Normals::gradient : Normals::none;
+    if (draws_more || decided_later || job_.isovalues.size() > most_isovalues || !job_.stretch.empty() ||
+        field.neighbours || !read.cell->empty() || !Contour::can_do_with_active_cells(options))
+        return std::nullopt;
+    ReadActiveCells active{field.name, job_.isovalues, {}};
+    active.bounds = true;
+    return active;
+}
+
+/// Fills in the grid: all cells or, if they do, active ones.
+Result<void> PictureSource::read_cells(const FieldsToRead& fields, std::size_t step,
+                                       const std::optional<ReadActiveCells>& active, Contents& contents,
+                                       Caller& caller) {
+    if (active) {
+        Result<ReadResult> some = source_->read_active(fields, step, *active, caller);
+        if (!some) return some.error();
+        contents.grid = std::move(some->grid);
+        contents.cells = some->cells_in_file.value_or(contents.grid.cells.count());
+        if (!some->cells_in_file) return {};
+        const auto all = [source = *source_, fields, step](const Run& run) {
+            return source.read_the_rest(fields, step, run);
+        };
+        if (some->bounds) {
+            const auto& [x, y, z, far_x, far_y, far_z] = *some->bounds;
+            contents.bounds = {{x, y, z}, {far_x, far_y, far_z}};
+            contents.all_cells = all;
+            caller.detail(fmt::format("{} of {} cells were kept: the isovalues meet no others",
+                                      contents.grid.cells.count(), contents.cells));
+            return {};
+        }
+        Result<Grid> whole = all(caller.run());
+        if (!whole) return whole.error();
+        contents.grid = *std::move(whole);
+        return {};
+    }
+    Result<Grid> grid = read_grid(fields, step, caller);
+    if (!grid) return grid.error();
+    contents.grid = *std::move(grid);
+    contents.cells = contents.grid.cells.count();
+    return {};
+}
+
 /// Reads what the picture needs of a step, and decides what it shows.
-Result<PictureSource::Contents> PictureSource::read_contents(std::size_t step, Caller& caller) {
+Result<PictureSource::Contents> PictureSource::read_contents(std::size_t step, bool on_cpu, Caller& caller) {
     Contents contents;
     std::string color = job_.color_by.empty() ? job_.boundary_color_by : job_.color_by;
     std::string field = job_.field.name;
@@ -301,16 +357,20 @@ Result<PictureSource::Contents> PictureSource::read_contents(std::size_t step, C
         if (auto taken = take_first_view(contours, field, color, contents, caller); !taken) return taken.error();
 
     FieldsToRead read{std::vector<std::string>(), std::vector<std::string>()};
+    FoundField contoured;
+    bool around = false; ///< colours follow from all cells around a point
     for (const auto& [name, is_contoured] : {std::pair(field, true), std::pair(color, false)}) {
         if (name.empty() || (is_contoured && !contours)) continue;
         const Result<FoundField> found = choose_field(*source_, {name, is_contoured && job_.field.cell_field});
         if (!found) return found.error();
         add_names(*read.point, found->point);
         add_names(*read.cell, found->cell);
+        if (is_contoured) contoured = *found;
+        else around = found->neighbours;
     }
-    Result<Grid> grid = read_grid(read, step, caller);
-    if (!grid) return grid.error();
-    contents.grid = *std::move(grid);
+    const bool some_may_do = contours && on_cpu && !around;
+    const auto active = some_may_do ? active_cells(contents, contoured, read) : std::nullopt;
+    if (auto done = read_cells(read, step, active, contents, caller); !done) return done.error();
     if (contours) {
         Result<PointField> found = find_chosen(contents.grid, field, job_.field, caller);
         if (!found) return found.error();
@@ -390,16 +450,17 @@ Result<DrawInput> PictureSource::read(std::size_t which, const std::optional<Dev
     DrawInput input;
     const core::Stopwatch reading;
     const std::size_t step = steps_[which];
-    Result<Contents> contents = read_contents(step, caller);
+    Result<Contents> contents = read_contents(step, !device, caller);
     if (!contents) return contents.error();
     input.read_seconds = reading.seconds();
     if (auto found = find_sweep(*contents, caller); !found) return found.error();
     input.sweep = job_.sweep;
-    if (which + 1 < steps_.size() && caller.run().threads != 1) read_ahead(steps_[which + 1], caller);
+    const bool is_last = which + 1 == steps_.size();
+    if (!is_last && caller.run().threads != 1 && !contents->all_cells) read_ahead(steps_[which + 1], caller);
     input.format = source_->info().format;
     input.time = time_of(source_->info(), step);
     if (source_->info().times.size() > 1) input.step = step;
-    input.cells = contents->grid.cells.count();
+    input.cells = contents->cells;
     input.colors = contents->volume ? contents->volume_colors : contents->colors;
     input.volume = contents->volume;
     IsosurfaceOptions options;
@@ -410,6 +471,9 @@ Result<DrawInput> PictureSource::read(std::size_t which, const std::optional<Dev
         options.field = *contents->field;
     }
     options.grid = contents->grid;
+    options.all_cells = contents->all_cells;
+    options.bounds = contents->bounds;
+    if (options.all_cells) options.expected_isovalues = input.isovalues;
     if (!job_.stretch.empty()) options.grid.points = stretched(options.grid.points, job_.stretch);
     options.surfaces = job_.sweep.empty() ? input.isovalues.size() : static_cast<std::uint64_t>(job_.sweep[2]);
     options.method = job_.method.extract;

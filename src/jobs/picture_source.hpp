@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <isotet/jobs/draw_files.hpp>
+#include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/first_choice.hpp>
 
 namespace isotet::jobs {
@@ -39,7 +40,11 @@ private:
     Result<void> take_first_view(bool& contours, std::string& field, std::string& color, Contents& contents,
                                  Caller& caller) const;
     Result<void> keep_steps_with_fields(Caller& caller);
-    Result<Contents> read_contents(std::size_t step, Caller& caller);
+    Result<Contents> read_contents(std::size_t step, bool on_cpu, Caller& caller);
+    std::optional<ReadActiveCells> active_cells(const Contents& contents, const FoundField& field,
+                                                const FieldsToRead& read) const;
+    Result<void> read_cells(const FieldsToRead& fields, std::size_t step, const std::optional<ReadActiveCells>& active,
+                            Contents& contents, Caller& caller);
     Result<void> take_volume(Contents& contents, Caller& caller);
     Result<void> find_sweep(const Contents& contents, Caller& caller);
     Result<void> choose_isovalues(const Contents& contents, DrawInput& input, Caller& caller);

@@ -23,7 +23,9 @@ Result<IsosurfaceScene> IsosurfaceScene::create(const std::optional<Device>& dev
             return invalid_argument(options.field.values.empty() ? "a volume without a field"
                                                                  : "a volume on a device, but the CPU draws volumes");
         options.grid.point_fields = options.grid.cell_fields = {};
-        if (auto looked = data->look_around(options.grid, run); !looked) return looked.error();
+        data->bounds = options.bounds;
+        if (!options.all_cells)
+            if (auto looked = data->look_around(options.grid, run); !looked) return looked.error();
         const IsosurfaceOptions tets{{}, {}, 1, {}, ExtractOn::cpu, options.draw, options.index, options.picture};
         if (!options.field.values.empty())
             if (auto started = data->start(std::move(options), run); !started) return started.error();

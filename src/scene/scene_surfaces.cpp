@@ -37,6 +37,15 @@ Result<void> IsosurfaceScene::Data::start(IsosurfaceOptions wanted, const Run& r
     ContourInput plain{std::move(wanted.grid), std::move(wanted.field), {}, {}}, carrying = plain;
     if (by_points) carrying.point_fields.push_back({look.colors->name, look.colors->values});
     if (by_cells) carrying.cell_fields.push_back({look.colors->name, look.colors->values});
+    if (wanted.all_cells)
+        carrying.all_cells = [all = carrying, read = wanted.all_cells](const Run& reading) -> Result<ContourInput> {
+            Result<Grid> grid = read(reading);
+            if (!grid) return grid.error();
+            ContourInput input = all;
+            input.grid = *std::move(grid);
+            return input;
+        };
+    options.expected_isovalues = wanted.expected_isovalues;
     required = wanted.where == ExtractOn::device;
     if (!device && (required || wanted.draw))
         return invalid_argument("a scene without a device, but it is to extract, or to draw tets, on one");

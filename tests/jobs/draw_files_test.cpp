@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <isotet/jobs/draw_files.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -53,6 +54,41 @@ TEST(DrawFiles, TheCameraToldDrawsTheSamePicture) {
     job.out = folder.file("b.png");
     job.reference = folder.file("a.png");
     EXPECT_EQ(draw_files(job, listener).value().pictures.differs, 0);
+}
+
+/// Without boundary only the cells that the isovalues meet are read; axes that are stretched by 1 need all.
+TEST(DrawFiles, DrawsThePictureOfAllCellsFromActiveOnes) {
+    const test::TemporaryFolder folder;
+    Grid grid = make_grid({.shape = "mixed", .side = 9, .fields = {"gyroid", "plane"}}).value();
+    std::vector<float> points(grid.points.as<float>().begin(), grid.points.as<float>().end());
+    points.insert(points.end(), {9, 9, 9}); // which no cell has
+    grid.points = Array::own(std::move(points), 3);
+    for (Field& field : grid.point_fields) {
+        std::vector<float> values(field.values.as<float>().begin(), field.values.as<float>().end());
+        values.push_back(0);
+        field.values = Array::own(std::move(values));
+    }
+    ASSERT_TRUE(write_grid(grid, folder.file("grid.vtu")));
+    for (const bool colored : {false, true}) {
+        DrawJob job = small_picture(folder.file("grid.vtu"), folder.file("a.png"));
+        job.field.name = "gyroid";
+        job.isovalues = {0.1, -0.3};
+        job.boundary = 0;
+        job.outline = colored;
+        if (colored) job.color_by = "plane";
+        Listener active, all;
+        const DrawReport report = draw_files(job, active).value();
+        job.stretch = {1, 1, 1};
+        job.out = folder.file("b.png");
+        const DrawReport expected = draw_files(job, all).value();
+        const auto told = [](const std::string& detail) { return detail.find("cells were kept") != detail.npos; };
+        EXPECT_TRUE(std::ranges::any_of(active.details, told));
+        EXPECT_FALSE(std::ranges::any_of(all.details, told));
+        EXPECT_EQ(report.input.cells, expected.input.cells);
+        EXPECT_EQ(report.pictures.camera, expected.pictures.camera);
+        EXPECT_EQ(active.noted, all.noted);
+        EXPECT_TRUE(test::content_of(folder.file("a.png")) == test::content_of(folder.file("b.png")));
+    }
 }
 
 TEST(DrawFiles, NumbersThePicturesOfASweep) {

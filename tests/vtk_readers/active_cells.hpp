@@ -18,17 +18,24 @@ inline bool are_same(const Array& a, const Array& b) {
            (a.bytes() == 0 || std::memcmp(a.data(), b.data(), a.bytes()) == 0);
 }
 
-/// Points, fields, notes and surfaces of the file with active cells are those with all.
+/// Points, their bounds, fields, notes and surfaces of the file with active cells are those with all.
 inline void expect_same_of_active_cells(const std::string& file, const std::string& field_name,
                                         const std::vector<double>& isovalues, ReadOptions options = {}) {
     options.cell_fields = std::vector<std::string>{};
     const auto all = read(file, options);
     options.active_cells = ReadActiveCells{field_name, isovalues, {}};
+    options.active_cells->bounds = true;
     const auto some = read(file, options);
     ASSERT_TRUE(some) << some.error().message;
     ASSERT_TRUE(all) << all.error().message;
     EXPECT_EQ(some->cells_in_file, all->grid.cells.count());
     EXPECT_LE(some->grid.cells.count(), all->grid.cells.count());
+    const GridReport report = survey(all->grid, {.faces = false}).value();
+    ASSERT_TRUE(some->bounds);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        EXPECT_EQ((*some->bounds)[axis], report.lower[axis]);
+        EXPECT_EQ((*some->bounds)[axis + 3], report.upper[axis]);
+    }
     EXPECT_EQ(some->notes, all->notes);
     EXPECT_TRUE(are_same(some->grid.points, all->grid.points));
     ASSERT_EQ(some->grid.point_fields.size(), all->grid.point_fields.size());

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <iterator>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "base/memory.hpp"
@@ -91,7 +92,7 @@ private:
     }
 
     /// A piece alone is the grid, if no cell is left out.
-    Result<std::optional<ReadResult>> take_one() const {
+    Result<std::optional<ReadResult>> take_one() {
         const Piece& piece = all_.pieces[0];
         const CellPlaces& places = piece.unread->places();
         ReadResult result = begun_;
@@ -102,8 +103,10 @@ private:
         WholeCells whole(places, [&](std::uint64_t first, std::uint64_t count, const Array& corners) {
             filter->add_cells(first, places.types(first, count), corners);
         });
+        if (options_.active_cells->bounds) used_.assign(piece.grid.points.tuples(), PointUse::none);
         const auto done = piece.unread->each_block([&](std::uint64_t first, const Array& corners) {
             type_ ? filter->add(first, corners) : whole.add(first, corners);
+            if (!used_.empty()) mark_corners(corners);
         });
         if (!done) return done.error();
         whole.finish();
@@ -112,14 +115,31 @@ private:
     }
 
     /// Nothing where cells are broken: that is told when all are there.
-    static Result<std::optional<ReadResult>> with_cells(ActiveCellFilter& filter, ReadResult result) {
+    Result<std::optional<ReadResult>> with_cells(ActiveCellFilter& filter, ReadResult result) const {
         auto cells = filter.finish();
         if (!cells && cells.error().code != ErrorCode::invalid_data) return cells.error();
         if (!cells) return std::optional<ReadResult>();
         result.grid.cells = *std::move(cells);
+        if (!used_.empty()) {
+            const Box box = box_of(result.grid.points, used_);
+            result.bounds = {box.lower[0], box.lower[1], box.lower[2], box.upper[0], box.upper[1], box.upper[2]};
+        }
         return std::optional(std::move(result));
     }
 
+    void mark(std::uint64_t point) {
+        if (point < used_.size()) std::atomic_ref(used_[point]).store(PointUse::kept, std::memory_order_relaxed);
+    }
+    void mark_corners(const Array& corners) {
+        corners.visit([&]<class Index>(std::span<const Index> points) {
+            if constexpr (std::is_integral_v<Index>)
+                for (const Index point : points) mark(core::widened(point));
+        });
+    }
+    void mark_used(const std::vector<PointUse>& use, const PieceNumbers& numbers) {
+        for (std::size_t i = 0; i < use.size(); ++i)
+            if (use[i] == PointUse::kept) mark(numbers(i));
+    }
 
     /// Where ghost cells are left out, points that only they have are, too.
     Result<void> find_uses_with_ghosts() {
@@ -158,6 +178,7 @@ private:
         auto filter = active_filter(result.grid, type_, options_);
         if (!filter) needs_all_ = true;
         if (needs_all_) return std::optional<ReadResult>();
+        if (options_.active_cells->bounds) used_.assign(joined->numbers.count, PointUse::none);
         SharedCells shared;
         if (auto done = pass_all(joined->numbers, *filter, shared, again); !done) return done.error();
         if (needs_all_ || again) return std::optional<ReadResult>();
@@ -247,6 +268,7 @@ private:
                       0.7 + 0.3 * static_cast<double>(++done_pieces) / static_cast<double>(all_.size()));
             if (!pass.finish()) needs_all_ = true;
             else if (assumed && !pass.uses_all_points()) found[p] = pass.use();
+            if (!used_.empty()) mark_used(pass.use(), numbers.pieces[p]);
         });
         if (auto done = failed.result(); !done) return done;
         for (std::size_t p = 0; p < all_.size() && !needs_all_; ++p) {
@@ -263,6 +285,7 @@ private:
     OrderedPieces all_;
     bool typed_ = false;           ///< not all cells are of one type
     std::optional<CellType> type_; ///< of all
+    std::vector<PointUse> used_;   ///< of the joined points, where their bounds are asked for
     std::atomic<bool> needs_all_ = false;
 };
 

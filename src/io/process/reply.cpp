@@ -116,13 +116,15 @@ public:
         });
     }
     void describe(ReadResult& result) {
-        [[maybe_unused]] const auto& [whole, info, step, cells_in_file, notes] = result;
+        [[maybe_unused]] const auto& [whole, info, step, cells_in_file, bounds, notes] = result;
         [[maybe_unused]] const auto& [points, cells, point_fields, cell_fields, point_numbers, patches] = result.grid;
         [[maybe_unused]] const auto& [connectivity, offsets, types, uniform_type, faces, face_offsets] = result.grid.cells;
         describe(result.info);
         out_.number<std::uint64_t>(result.step);
         out_.number<std::uint8_t>(result.cells_in_file.has_value());
         out_.number<std::uint64_t>(result.cells_in_file.value_or(0));
+        out_.number<std::uint8_t>(result.bounds.has_value());
+        for (const double bound : result.bounds.value_or(std::array<double, 6>{})) out_.number(bound);
         out_.list(result.notes, [&](const std::string& note) { out_.text(note); });
         Grid& grid = result.grid;
         array(grid.points);
@@ -222,6 +224,10 @@ public:
         const bool only_active = in_.number<std::uint8_t>() != 0;
         const auto cells_in_file = in_.number<std::uint64_t>();
         if (only_active) result.cells_in_file = cells_in_file;
+        const bool has_bounds = in_.number<std::uint8_t>() != 0;
+        std::array<double, 6> bounds;
+        for (double& bound : bounds) bound = in_.number<double>();
+        if (has_bounds) result.bounds = bounds;
         in_.list([&] { result.notes.push_back(in_.text()); });
         Grid& grid = result.grid;
         grid.points = array();

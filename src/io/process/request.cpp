@@ -11,7 +11,7 @@
 namespace isotet::io::confined {
 namespace {
 
-constexpr std::uint32_t request_version = 0x69730006;
+constexpr std::uint32_t request_version = 0x69730007;
 
 using Names = std::optional<std::vector<std::string>>;
 
@@ -75,6 +75,7 @@ void encode_active(Encoder& out, const std::optional<ReadActiveCells>& active) {
     out.list(active->isovalues, [&](double isovalue) { out.number(isovalue); });
     out.number<std::uint8_t>(active->options.extract.ties == Ties::keep);
     out.number<std::uint8_t>(active->options.precision == Precision::float64);
+    out.number<std::uint8_t>(active->bounds);
     encode_shape(out, active->shape);
 }
 
@@ -85,6 +86,7 @@ std::optional<ReadActiveCells> decode_active(Decoder& in) {
     in.list([&] { active.isovalues.push_back(in.number<double>()); });
     if (in.number<std::uint8_t>() != 0) active.options.extract.ties = Ties::keep;
     if (in.number<std::uint8_t>() != 0) active.options.precision = Precision::float64;
+    active.bounds = in.number<std::uint8_t>() != 0;
     active.shape = decode_shape(in);
     return active;
 }
