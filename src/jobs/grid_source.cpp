@@ -159,7 +159,7 @@ Result<std::size_t> step_at(const std::vector<double>& times, double time) {
     }
     if (std::abs(times[nearest] - time) <= tolerance * std::max(std::abs(time), std::abs(times[nearest])))
         return nearest;
-    if (static_cast<double>(static_cast<float>(time)) == times[nearest]) return nearest; // a file of single precision
+    if (static_cast<float>(time) == static_cast<float>(times[nearest])) return nearest; // a file of single precision
     return refusal("time {} was asked for, but the file has {} times: {}; the nearest is {}", shortest(time),
                    times.size(), list_of(times), shortest(times[nearest]));
 }

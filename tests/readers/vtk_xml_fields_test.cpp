@@ -12,6 +12,7 @@
 #include <isotet/read.hpp>
 
 #include "io/files/byte_source.hpp"
+#include "io/files/time_values.hpp"
 #include "io/pieces/common_type.hpp"
 #include "io/pieces/join.hpp"
 #include "io/vtk_xml/base64.hpp"
@@ -406,8 +407,20 @@ TEST(VtkXmlCells, PointsMayBeOfAnyType) {
               "the points have 2 components, not 3");
 }
 
-TEST(VtkXmlCells, WithoutAPieceAreAnError) {
-    EXPECT_EQ(error_of_grid(vtu("")), "the UnstructuredGrid has no Piece");
+TEST(VtkXmlCells, WithoutAPieceAreNone) {
+    const Loaded nothing = loaded(vtu(""));
+    EXPECT_EQ(nothing.info.cells, 0u);
+    ASSERT_EQ(nothing.pieces.size(), 1u);
+    EXPECT_EQ(nothing.pieces[0].grid.points.components(), 3u);
+}
+
+TEST(TimeValues, AreTakenAsTheyWereWritten) {
+    EXPECT_EQ(io::time_values(Array::own(std::vector<float>{0.1F, 1e30F, 2097152.5F, -0.3F})),
+              (std::vector<double>{0.1, 1e30, 2097152.5, -0.3}));
+    const std::vector<double> doubles{static_cast<double>(0.1F), 1.0 / 3};
+    EXPECT_EQ(io::time_values(Array::own(std::vector<double>(doubles))), doubles);
+    EXPECT_EQ(io::time_values(Array::own(std::vector<std::int32_t>{7, -1})), (std::vector<double>{7, -1}));
+    EXPECT_TRUE(std::isnan(io::time_values(Array::own(std::vector<float>{NAN})).at(0)));
 }
 
 TEST(CommonType, HoldsTheValuesOfBothWhateverTheirOrder) {

@@ -58,6 +58,7 @@ public:
     struct Storage {
         std::vector<hsize_t> chunk = {};
         bool shuffled = false, deflated = false, checksums = false, big_endian = false;
+        H5Z_filter_t filter = 0; ///< another one; 0: none
         hsize_t unwritten = 0;     ///< rows at the end, which are filled
         bool never_filled = false; ///< they are not: reading leaves memory as it was
     };
@@ -71,6 +72,7 @@ public:
         if (storage.shuffled) H5Pset_shuffle(list);
         if (storage.deflated) H5Pset_deflate(list, 4);
         if (storage.checksums) H5Pset_fletcher32(list);
+        if (storage.filter != 0) H5Pset_filter(list, storage.filter, H5Z_FLAG_MANDATORY, 0, nullptr);
         if (storage.never_filled) H5Pset_fill_time(list, H5D_FILL_TIME_NEVER);
         const hid_t file_type = H5Tcopy(type<T>());
         if (storage.big_endian) H5Tset_order(file_type, H5T_ORDER_BE);

@@ -189,6 +189,25 @@ TEST_F(Collections, SeriesTakeTheLastFileOfATime) {
     EXPECT_EQ(second->notes.at(0), "1 of 3 files of the series is replaced by a later one of the same time");
 }
 
+TEST_F(Collections, SeriesTakeTimesThatAreTexts) {
+    const std::string path = folder_.write("run.vtu.series", R"({"file-series-version": "1.0", "files": [
+        {"name": "t1.vtu", "time": "0.5"}, {"name": "t2.vtu", "time": "1e1"}]})");
+    EXPECT_EQ(inspect(path).value().times, (std::vector<double>{0.5, 10}));
+    EXPECT_NE(inspect(folder_.write("x.vtu.series", R"({"files": [{"name": "t1.vtu", "time": "1 s"}]})"))
+                  .error()
+                  .message.find("no number as its \"time\""),
+              std::string::npos);
+}
+
+TEST_F(IndexFiles, PiecesWithoutAPieceHaveNoCells) {
+    folder_.write("case/none.vtu", "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid/></VTKFile>");
+    expect_sample(read(folder_.write("case/grid.pvtu", pvtu({"none.vtu", "parts/a.vtu", "none.vtu"}))));
+}
+
+TEST_F(IndexFiles, NamesMayClimbInsideOfTheFolder) {
+    expect_sample(read(folder_.write("case/grid.pvtu", pvtu({"./parts/../parts/a.vtu"}))));
+}
+
 TEST_F(IndexFiles, OutsideOfTheFolderIsRefusedUnlessAllowed) {
     const std::string absolute = folder_.file("outside.vtu");
     for (const std::string& name : {std::string("../outside.vtu"), std::string("parts/../../outside.vtu"), absolute}) {
@@ -203,7 +222,7 @@ TEST_F(IndexFiles, OutsideOfTheFolderIsRefusedUnlessAllowed) {
 TEST_F(IndexFiles, LinksThatLeadOutsideAreRefused) {
     std::filesystem::create_symlink("../outside.vtu", folder_.file("case/link.vtu"));
     std::filesystem::create_directory_symlink("..", folder_.file("case/up"));
-    for (const char* name : {"link.vtu", "up/outside.vtu"})
+    for (const char* name : {"link.vtu", "up/outside.vtu", "up/case/../outside.vtu"})
         EXPECT_NE(error_of("case/a.pvtu", pvtu({name})).find("only files below its own folder"), std::string::npos)
             << name;
 }

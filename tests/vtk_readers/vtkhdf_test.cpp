@@ -174,6 +174,48 @@ TEST(ReadVtkhdf, KeepsOnlyActiveCellsWhereAsked) {
     EXPECT_EQ(some.error().message, all.error().message);
 }
 
+/// With a compressor that only the program that writes has.
+TEST(ReadVtkhdf, NamesAFilterThatIsMissing) {
+    constexpr H5Z_filter_t number = 300; // of those that HDF5 leaves to tests
+    const H5Z_class2_t squeeze{H5Z_CLASS_T_VERS,
+                               number,
+                               1,
+                               1,
+                               "squeeze",
+                               nullptr,
+                               nullptr,
+                               [](unsigned, std::size_t, const unsigned*, std::size_t bytes, std::size_t*, void**) {
+                                   return bytes;
+                               }};
+    ASSERT_GE(H5Zregister(&squeeze), 0);
+    const Strip strip(17);
+    const TemporaryFolder folder;
+    const auto write = [&](const std::string& name, const Storage& of_points, const Storage& of_values) {
+        Hdf5Writer file(folder.file(name));
+        write_groups(file, 1);
+        write_counts(file, {20}, {17});
+        file.stored("/VTKHDF/Points", strip.points, {20, 3}, of_points);
+        file.data("/VTKHDF/Connectivity", strip.connectivity, {68});
+        file.data("/VTKHDF/Offsets", strip.offsets, {18});
+        file.data("/VTKHDF/Types", strip.types, {17});
+        file.stored("/VTKHDF/PointData/p", strip.values, {20}, of_values);
+        file.data("/VTKHDF/PointData/q", strip.values, {20});
+    };
+    write("field.vtkhdf", {}, {.chunk = {5}, .filter = number});
+    write("points.vtkhdf", {.chunk = {5, 3}, .filter = number}, {});
+    ASSERT_GE(H5Zunregister(number), 0);
+
+    const std::string reason = "HDF5 filter 300 \"squeeze\", which is not installed: \"h5repack";
+    const auto result = read(folder.file("field.vtkhdf"));
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(result->grid.point_fields.at(0).name, "q") << "one field does not spoil the rest";
+    ASSERT_EQ(result->info.left_out.size(), 1u);
+    EXPECT_NE(result->info.left_out[0].reason.find(reason), std::string::npos) << result->info.left_out[0].reason;
+    const auto broken = read(folder.file("points.vtkhdf"));
+    ASSERT_FALSE(broken);
+    EXPECT_NE(broken.error().message.find(reason), std::string::npos) << broken.error().message;
+}
+
 TEST(ReadVtkhdf, FillsInWhatWasNotWritten) {
     const Strip strip(17);
     const TemporaryFolder folder;
@@ -248,7 +290,7 @@ TEST(ReadVtkhdf, ReadsStepsOfAMeshThatMoves) {
         file.data<double>("/VTKHDF/PointData/p", {0, 1, 2, 3, 4, 10, 11, 12, 13, 14, 20, 21, 22, 23, 24}, {15});
         for (const char* name : {"/VTKHDF/Steps", "/VTKHDF/Steps/PointDataOffsets", "/VTKHDF/Steps/CellDataOffsets"})
             file.group(name);
-        file.data<double>("/VTKHDF/Steps/Values", {0, 0.5, 2}, {3});
+        file.data<float>("/VTKHDF/Steps/Values", {0, 0.1F, 2}, {3});
         file.data<std::int64_t>("/VTKHDF/Steps/PartOffsets", {0, 0, 0}, {3});
         file.data<std::int64_t>("/VTKHDF/Steps/NumberOfParts", {1, 1, 1}, {3});
         file.data<std::int64_t>("/VTKHDF/Steps/PointOffsets", {0, 0, 5}, {3});
@@ -256,7 +298,7 @@ TEST(ReadVtkhdf, ReadsStepsOfAMeshThatMoves) {
         file.data<std::int64_t>("/VTKHDF/Steps/ConnectivityIdOffsets", {0, 0, 0}, {3, 1});
         file.data<std::int64_t>("/VTKHDF/Steps/PointDataOffsets/p", {0, 5, 10}, {3});
     }
-    EXPECT_EQ(inspect(folder.file("a.vtkhdf")).value().times, (std::vector<double>{0, 0.5, 2}));
+    EXPECT_EQ(inspect(folder.file("a.vtkhdf")).value().times, (std::vector<double>{0, 0.1, 2}));
     for (const std::size_t step : {0, 1, 2}) {
         ReadOptions options;
         options.step = step;

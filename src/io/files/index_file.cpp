@@ -28,7 +28,7 @@ Result<void> check_name(const std::string& index, std::string_view name, bool al
     if (allow_outside) return {};
     const fs::path path(name);
     if (path.is_absolute()) return refused(index, name, "an absolute path");
-    if (std::find(path.begin(), path.end(), "..") != path.end())
+    if (const fs::path plain = path.lexically_normal(); *plain.begin() == "..")
         return refused(index, name, "which climbs out with \"..\"");
     return {};
 }

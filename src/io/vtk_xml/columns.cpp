@@ -13,6 +13,7 @@
 #include "base/parallel.hpp"
 #include "io/files/scalars.hpp"
 #include "io/files/text_scanner.hpp"
+#include "io/files/time_values.hpp"
 #include "io/pieces/common_type.hpp"
 #include "io/reader.hpp"
 #include "io/vtk_xml/vtk_attributes.hpp"
@@ -376,7 +377,7 @@ Result<void> read_time(Document& document, const pugi::xml_node& parent, const P
         const auto array = describe_array(document, element);
         if (!array || !*array) continue;
         const auto time = load_array(document, **array, 1, progress);
-        if (time) loaded.info.times.push_back(time->at(0));
+        if (time) loaded.info.times.push_back(time_values(*time).front());
         else if (time.error().code != ErrorCode::invalid_data) return time.error();
         else loaded.notes.push_back("the time of the file cannot be read: " + time.error().message);
     }

@@ -27,11 +27,21 @@ void note_odd_lengths(const Document& document, std::vector<std::string>& notes)
                                 fmt::join(names, ", ")));
 }
 
+Array no_points() { return {ScalarType::float32, nullptr, 0, 3, nullptr}; }
+
+/// What a process without cells writes that leaves out the Piece, too.
+Loaded without_pieces(Depth depth) {
+    Loaded loaded;
+    if (depth == Depth::arrays) loaded.pieces.emplace_back().grid.points = no_points();
+    return loaded;
+}
+
 /// Describes the document, and reads the grid of the step that is wanted.
 Result<Loaded> load_document(const std::shared_ptr<Document>& shared, const std::string& path,
                              const ReadOptions& options, Depth depth, bool ids, const Progress& progress) {
     Document& document = *shared;
     const bool unstructured = document.type == "UnstructuredGrid";
+    if (unstructured && !document.primary().child("Piece")) return without_pieces(depth);
     const auto layouts = unstructured ? layouts_of_unstructured(document) : layouts_of_structured(document);
     if (!layouts) return layouts.error();
     const auto cells = unstructured ? Result<std::uint64_t>(layouts->cells.total) : count_structured(document);
@@ -51,7 +61,7 @@ Result<Loaded> load_document(const std::shared_ptr<Document>& shared, const std:
         loaded.pieces.push_back(std::move(*piece));
     }
     for (Piece& piece : loaded.pieces)
-        if (piece.grid.points.empty()) piece.grid.points = Array(ScalarType::float32, nullptr, 0, 3, nullptr);
+        if (piece.grid.points.empty()) piece.grid.points = no_points();
     note_odd_lengths(document, loaded.notes);
     return loaded;
 }

@@ -1,9 +1,12 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // A file series of ParaView, as OpenFOAM writes them: JSON that names a file of each time.
+#include <optional>
+
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "io/files/escape.hpp"
+#include "io/files/text_scanner.hpp"
 #include "io/files/whole_file.hpp"
 #include "io/pieces/join.hpp"
 #include "io/vtk_xml/read_vtk_xml.hpp"
@@ -14,6 +17,16 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr const char* version_key = "file-series-version";
+
+/// A number, or, as scripts write it, a text that is one.
+std::optional<double> time_of(const Json& file) {
+    const auto time = file.find("time");
+    if (time == file.end()) return std::nullopt;
+    if (time->is_number()) return time->get<double>();
+    double value = 0;
+    if (!time->is_string() || !parse_number(std::string_view(time->get_ref<const std::string&>()), value)) return {};
+    return value;
+}
 
 /// Of several files of one time the last counts, as where a run was restarted.
 Result<NamesByTime> entries(const std::string& path, std::string_view text, std::vector<std::string>& notes) {
@@ -27,10 +40,10 @@ Result<NamesByTime> entries(const std::string& path, std::string_view text, std:
         if (!file.is_object() || !file.contains("name") || !file["name"].is_string())
             return broken(path, "an entry of \"files\" has no \"name\"");
         const auto& name = file["name"].get_ref<const std::string&>();
-        const auto time = file.find("time");
-        if (time == file.end() || !time->is_number())
+        const auto time = time_of(file);
+        if (!time)
             return broken(path, fmt::format("the entry \"{}\" has no number as its \"time\"", escaped(name)));
-        names[time->get<double>()] = {name};
+        names[*time] = {name};
     }
     if (const std::size_t replaced = files->size() - names.size(); replaced > 0)
         notes.push_back(fmt::format("{} of {} files of the series {} replaced by a later one of the same time",

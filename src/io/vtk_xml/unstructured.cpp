@@ -68,7 +68,6 @@ Piece part_of(const Piece& whole, const Layout& points, const Layout& cells, std
 } // namespace
 
 Result<Layouts> layouts_of_unstructured(const Document& document) {
-    if (!document.primary().child("Piece")) return invalid_data(fmt::format("the {} has no Piece", document.type));
     auto points = layout_by(document, "NumberOfPoints"), cells = layout_by(document, "NumberOfCells");
     if (!points) return points.error();
     if (!cells) return cells.error();

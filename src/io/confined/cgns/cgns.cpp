@@ -13,6 +13,7 @@
 #include "io/confined/loaders.hpp"
 #include "io/confined/progress.hpp"
 #include "io/files/escape.hpp"
+#include "io/files/time_values.hpp"
 #include "io/pieces/block_choice.hpp"
 #include "io/reader.hpp"
 #include "io/vtk_xml/load.hpp"
@@ -32,8 +33,7 @@ void read_steps(const CgnsTree& tree, const CgnsNode& iterative, CgnsBase& base)
     auto node = child_named(parts, "TimeValues");
     if (!node) node = child_named(parts, "IterationValues");
     if (node)
-        if (const auto times = tree.numbers(*node))
-            times->visit([&](auto values) { base.times.assign(values.begin(), values.end()); });
+        if (const auto times = tree.numbers(*node)) base.times = time_values(*times);
     const auto pointers = child_named(parts, "ZonePointers");
     if (!pointers || base.times.empty()) return;
     const std::vector<std::string> names = tree.texts(*pointers, letters_of_name);

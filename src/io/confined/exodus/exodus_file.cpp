@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "io/files/escape.hpp"
+#include "io/files/time_values.hpp"
 #include "io/pieces/common_type.hpp"
 #include "io/pieces/loaded.hpp"
 
@@ -70,9 +71,11 @@ Result<void> ExodusFile::read_contents() {
     if (points_ > max_plausible) return failed(fmt::format("a count of {}", points_));
     if (auto read = read_blocks(); !read) return read;
     if (auto read = read_sets(); !read) return read;
-    auto times = file_->numbers<double>("time_whole");
-    if (!times || times->empty()) return {}; // variables that have never been written
-    times_ = *std::move(times);
+    const auto steps = file_->shape("time_whole");
+    if (!steps || steps->empty() || steps->front() == 0) return {}; // variables that have never been written
+    const auto times = file_->rows("time_whole", 0, steps->front());
+    if (!times) return {};
+    times_ = time_values(*times);
     point_variables_ = file_->texts("name_nod_var");
     cell_variables_ = file_->texts("name_elem_var");
     return {};

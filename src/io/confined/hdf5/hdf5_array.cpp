@@ -9,6 +9,7 @@
 
 #include "io/files/escape.hpp"
 #include "io/confined/hdf5/hdf5_array.hpp"
+#include "io/confined/hdf5/hdf5_filters.hpp"
 #include "io/confined/hdf5/hdf5_handle.hpp"
 #include "io/confined/hdf5/hdf5_unwritten.hpp"
 #include "io/confined/length_check.hpp"
@@ -21,8 +22,7 @@ constexpr std::uint64_t too_many = std::uint64_t(1) << 50;
 
 /// How data sets are looked up: a link to another file fails.
 hid_t access_inside_file() {
-    const /// How data sets are looked up: a link to another file fails.
-        hid_t access = H5Pcreate(H5P_DATASET_ACCESS);
+    const hid_t access = H5Pcreate(H5P_DATASET_ACCESS);
     H5Pset_elink_cb(
         access,
         [](const char*, const char*, const char*, const char*, unsigned*, hid_t, void*) -> herr_t { return -1; },
@@ -118,7 +118,7 @@ Result<ShapedValues> read_hdf5_array(const std::string& file, const std::string&
         std::vector<std::remove_const_t<T>> values(count);
         const HdfRead read = read_written(data, native_type<std::remove_const_t<T>>(), memory, space,
                                           std::as_writable_bytes(std::span(values)));
-        if (read == HdfRead::failed) return failed("cannot be read");
+        if (read == HdfRead::failed) return failed(why_not_read(data));
         if (read == HdfRead::unwritten) return failed("has values that were never written");
         result.values = Array::own(std::move(values));
         return std::move(result);

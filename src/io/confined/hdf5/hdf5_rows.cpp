@@ -11,6 +11,7 @@
 
 #include "base/buffer.hpp"
 #include "base/memory.hpp"
+#include "io/confined/hdf5/hdf5_filters.hpp"
 #include "io/confined/hdf5/hdf5_handle.hpp"
 #include "io/confined/hdf5/hdf5_stored_rows.hpp"
 #include "io/confined/hdf5/hdf5_unwritten.hpp"
@@ -155,7 +156,10 @@ Result<void> Hdf5Rows::File::by_library(const std::string& name, const DataSet& 
     const HdfRead read = Array(set.shape.type, nullptr, 0, 1, nullptr).visit([&]<class T>(std::span<const T>) {
         return read_by_library(set, native_type<T>(), range, to);
     });
-    if (read == HdfRead::failed) return wrong(name, "cannot be read");
+    if (read == HdfRead::failed) {
+        const std::scoped_lock lock(hdf5_calls());
+        return wrong(name, why_not_read(set.data));
+    }
     if (read == HdfRead::unwritten) return wrong(name, "has values that were never written");
     return {};
 }

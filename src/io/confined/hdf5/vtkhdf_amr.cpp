@@ -12,6 +12,7 @@
 #include "io/confined/hdf5/hdf5_array.hpp"
 #include "io/confined/hdf5/hdf5_rows.hpp"
 #include "io/files/text_scanner.hpp"
+#include "io/files/time_values.hpp"
 #include "io/vtk_xml/columns.hpp"
 
 namespace isotet::io::confined {
@@ -67,7 +68,7 @@ Result<void> HdfAmr::announce_all(FileInfo& info) {
     if (!has_steps()) return {};
     const auto times = rows_.read("/VTKHDF/Steps/Values");
     if (!times) return times.error();
-    for (std::size_t i = 0; i < times->size(); ++i) info.times.push_back(times->at(i));
+    info.times = time_values(*times);
     return {};
 }
 

@@ -14,6 +14,7 @@
 #include "io/confined/hdf5/hdf5_array.hpp"
 #include "io/confined/hdf5/hdf5_cells.hpp"
 #include "io/files/escape.hpp"
+#include "io/files/time_values.hpp"
 #include "io/pieces/shared_faces.hpp"
 #include "io/vtk_xml/columns.hpp"
 
@@ -55,8 +56,7 @@ Result<void> HdfGrid::announce_all(FileInfo& info) const {
     if (!has_steps()) return {};
     const auto times = rows_.read(group_ + "Steps/Values");
     if (!times) return times.error();
-    info.times.clear();
-    for (std::size_t i = 0; i < times->size(); ++i) info.times.push_back(times->at(i));
+    info.times = time_values(*times);
     return {};
 }
 

@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 
 #include "io/confined/hdf5/hdf5_array.hpp"
+#include "io/files/time_values.hpp"
 #include "io/vtk_xml/columns.hpp"
 #include "io/vtk_xml/load.hpp"
 
@@ -40,7 +41,7 @@ Result<HdfImage> HdfImage::open(const std::string& path, const std::string& root
     const std::string steps = root + "/Steps";
     if (const auto times = read_hdf5_array(path, steps + "/Values", {}, Depth::arrays)) {
         image.has_steps_ = true;
-        for (std::size_t i = 0; i < times->values.size(); ++i) image.times_.push_back(times->values.at(i));
+        image.times_ = time_values(times->values);
     }
     return image;
 }
