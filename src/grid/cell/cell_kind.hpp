@@ -25,6 +25,12 @@ struct CellFace {
     std::array<std::uint8_t, 4> corners{};
 
     constexpr std::span<const std::uint8_t> all() const { return {corners.data(), count}; }
+    /// A bit for each of its corners.
+    constexpr std::uint32_t bits() const {
+        std::uint32_t all_bits = 0;
+        for (const std::uint8_t corner : all()) all_bits |= 1U << corner;
+        return all_bits;
+    }
 };
 
 struct CellShape {

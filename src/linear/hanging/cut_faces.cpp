@@ -2,6 +2,7 @@
 #include "linear/hanging/cut_faces.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
 #include <cmath>
@@ -66,55 +67,94 @@ public:
 
     /// All faces of cells near the middles of faces of others.
     std::vector<OpenFaces::Place> beside(const OpenFaces& cut, const PlaceTree& middles) const {
-        return gathered<OpenFaces::Place>([&](FaceWalk& walk, std::size_t cell, std::vector<OpenFaces::Place>& part) {
-            Box box;
-            const std::uint64_t first = cells_.first(cell), end = first + cells_.corners(cell);
-            for (std::uint64_t i = first; i < end; ++i) box.add(points_[cells_.corner(i)]);
-            box.widen();
-            bool is_near = false;
-            middles.each_in(box.lower, box.upper,
-                            [&](std::uint32_t other) { is_near = is_near || cut.place(other).cell != cell; });
-            if (!is_near) return;
-            walk.each_hash(cell, [&](std::size_t face, const FaceHash&) {
-                part.push_back({cell, static_cast<std::uint32_t>(face)});
-            });
+        constexpr std::size_t together =
+            32; // cells that follow each other are mostly far from all, and near each other
+        using Part = std::vector<OpenFaces::Place>;
+        return gathered<OpenFaces::Place>([&](FaceWalk& walk, std::size_t first, std::size_t last, Part& part) {
+            std::array<Box, together> boxes;
+            for (std::size_t begin = first; begin < last; begin += together) {
+                const std::size_t count = std::min(together, last - begin);
+                Box around;
+                for (std::size_t i = 0; i < count; ++i) {
+                    boxes[i] = box_of(begin + i);
+                    around.add(boxes[i].lower);
+                    around.add(boxes[i].upper);
+                }
+                if (!has_place_in(middles, around, [](std::uint32_t) { return true; })) continue;
+                for (std::size_t i = 0; i < count; ++i) {
+                    const std::size_t cell = begin + i;
+                    if (!has_place_in(middles, boxes[i], [&](std::uint32_t at) { return cut.place(at).cell != cell; }))
+                        continue;
+                    if (!walk.open(cell)) continue;
+                    for (std::size_t face = 0; face < walk.face_count(); ++face)
+                        part.push_back({cell, static_cast<std::uint32_t>(face)});
+                }
+            }
         });
     }
 
 private:
-    /// Calls use(face, hash) for each face of a cell that is cut.
+    /// Calls use(place, loop) for each face of a cell that is cut.
     template <class Use>
     void each_cut(FaceWalk& walk, std::size_t cell, const Use& use) const {
-        walk.each_hash(cell, [&](std::size_t face, const FaceHash& hash) {
+        if (!walk.open(cell)) return;
+        if (const core::WholeCell* const whole = walk.whole()) {
+            for (std::uint32_t cut = rule_.cut_faces(*whole); cut != 0; cut &= cut - 1) {
+                const OpenFaces::Place place{cell, static_cast<std::uint32_t>(std::countr_zero(cut))};
+                use(place, walk.loop(place));
+            }
+            return;
+        }
+        for (std::size_t face = 0; face < walk.face_count(); ++face) {
             const OpenFaces::Place place{cell, static_cast<std::uint32_t>(face)};
-            if (rule_.cuts(walk.loop(place))) use(place, hash.hash);
-        });
+            if (const auto loop = walk.loop(place); rule_.cuts(loop)) use(place, loop);
+        }
     }
 
-    std::uint64_t& sum_of(std::uint64_t hash) { return sums_[hash & (sums_.size() - 1)]; }
-    const std::uint64_t& sum_of(std::uint64_t hash) const { return sums_[hash & (sums_.size() - 1)]; }
+    /// Around a cell and its curved neighbours.
+    Box box_of(std::size_t cell) const {
+        Box box;
+        const std::uint64_t first = cells_.first(cell), end = first + cells_.corners(cell);
+        for (std::uint64_t i = first; i < end; ++i) box.add(points_[cells_.corner(i)]);
+        box.widen();
+        return box;
+    }
+
+    template <class Counts>
+    static bool has_place_in(const PlaceTree& middles, const Box& box, const Counts& counts) {
+        bool found = false;
+        middles.each_in(box.lower, box.upper, [&](std::uint32_t at) { found = found || counts(at); });
+        return found;
+    }
+
+    /// Cells that follow each other have points near each other: places of sums do so, too.
+    std::uint64_t& sum_at(std::uint64_t lowest) { return sums_[lowest & (sums_.size() - 1)]; }
+    const std::uint64_t& sum_at(std::uint64_t lowest) const { return sums_[lowest & (sums_.size() - 1)]; }
 
     void add_hashes() {
         std::ranges::fill(sums_, std::uint64_t{0});
         core::parallel_pieces(cells_.count(), cells_per_list, progress_, [&](std::size_t begin, std::size_t end) {
             FaceWalk walk(cells_, faces_);
             for (std::size_t cell = begin; cell < end; ++cell)
-                each_cut(walk, cell, [&](const OpenFaces::Place&, std::uint64_t hash) {
-                    std::atomic_ref(sum_of(hash)).fetch_xor(hash, std::memory_order_relaxed);
+                each_cut(walk, cell, [&](const OpenFaces::Place&, std::span<const std::uint64_t> loop) {
+                    const FaceHash face = hash_of(loop);
+                    std::atomic_ref(sum_at(face.lowest)).fetch_xor(face.hash, std::memory_order_relaxed);
                 });
         });
     }
 
     /// Faces whose sums are not 0.
     std::vector<FoundFace> collect() const {
-        return gathered<FoundFace>([&](FaceWalk& walk, std::size_t cell, std::vector<FoundFace>& part) {
-            each_cut(walk, cell, [&](const OpenFaces::Place& place, std::uint64_t hash) {
-                if (sum_of(hash) != 0) part.push_back({hash, place});
-            });
+        using Found = std::vector<FoundFace>;
+        return gathered<FoundFace>([&](FaceWalk& walk, std::size_t first, std::size_t last, Found& part) {
+            for (std::size_t cell = first; cell < last; ++cell)
+                each_cut(walk, cell, [&](const OpenFaces::Place& place, std::span<const std::uint64_t> loop) {
+                    if (sum_at(std::ranges::min(loop)) != 0) part.push_back({hash_of(loop).hash, place});
+                });
         });
     }
 
-    /// What look(walk, cell, part) adds, in the order of the cells.
+    /// What look(walk, first, last, part) adds for ranges of cells, in the order of the cells.
     template <class Item, class Look>
     std::vector<Item> gathered(const Look& look) const {
         std::vector<std::vector<Item>> parts((cells_.count() + cells_per_list - 1) / cells_per_list);
@@ -122,7 +162,7 @@ private:
             FaceWalk walk(cells_, faces_);
             for (std::size_t part = first; part < last; ++part) {
                 const std::size_t end = std::min((part + 1) * cells_per_list, cells_.count());
-                for (std::size_t cell = part * cells_per_list; cell < end; ++cell) look(walk, cell, parts[part]);
+                look(walk, part * cells_per_list, end, parts[part]);
             }
         });
         std::vector<Item> out;
@@ -135,7 +175,7 @@ private:
     const core::PointReader& points_;
     const CutRule& rule_;
     const Progress& progress_;
-    core::Buffer<std::uint64_t> sums_; ///< of the hashes that have the place's low bits
+    core::Buffer<std::uint64_t> sums_; ///< of the hashes of faces, by the low bits of their lowest points
 };
 
 /// Whether one of the places of `middles` is over a face from number `first` on.
@@ -163,6 +203,8 @@ bool is_some_over(const OpenFaces& faces, std::size_t first, const PlaceTree& mi
 
 CutRule::CutRule(const Array& values, std::span<const double> isovalues)
     : values_(values), isovalues_(isovalues.begin(), isovalues.end()) {
+    if (values.type() == ScalarType::float32) singles_ = values.as<float>().data();
+    if (values.type() == ScalarType::float64) doubles_ = values.as<double>().data();
     std::ranges::sort(isovalues_);
 }
 
@@ -170,13 +212,41 @@ bool CutRule::cuts(std::span<const std::uint64_t> loop) const {
     constexpr double most = std::numeric_limits<double>::infinity();
     double lowest = most, highest = -most;
     for (const std::uint64_t point : loop) {
-        const double value = values_.at(point);
+        const double value = this->value(point);
         if (std::isnan(value)) return false;
         lowest = std::min(lowest, value);
         highest = std::max(highest, value);
     }
     const auto next = std::ranges::lower_bound(isovalues_, lowest);
     return next != isovalues_.end() && *next <= highest;
+}
+
+std::uint32_t CutRule::cut_faces(const core::WholeCell& cell) const {
+    constexpr double most = std::numeric_limits<double>::infinity();
+    const std::size_t corners = core::corner_count(cell.kind);
+    std::array<double, 8> values{};
+    double lowest = most, highest = -most;
+    std::uint32_t missing = 0;
+    for (std::size_t i = 0; i < corners; ++i) {
+        values[i] = value(cell.corners[i]);
+        if (std::isnan(values[i])) missing |= 1U << i;
+        lowest = std::min(lowest, values[i]);
+        highest = std::max(highest, values[i]);
+    }
+    const auto faces = core::shape_of(cell.kind).faces();
+    std::uint32_t cut = 0;
+    for (auto at = std::ranges::lower_bound(isovalues_, lowest); at != isovalues_.end() && *at <= highest; ++at) {
+        std::uint32_t below = 0, above = 0; // those on the isovalue are both
+        for (std::size_t i = 0; i < corners; ++i) {
+            below |= static_cast<std::uint32_t>(values[i] <= *at) << i;
+            above |= static_cast<std::uint32_t>(values[i] >= *at) << i;
+        }
+        for (std::size_t face = 0; face < faces.size(); ++face) {
+            const std::uint32_t bits = faces[face].bits();
+            if ((bits & below) != 0 && (bits & above) != 0 && (bits & missing) == 0) cut |= 1U << face;
+        }
+    }
+    return cut;
 }
 
 Result<bool> has_smaller_cut_faces(const core::CellReader& cells, const core::FaceReader& faces,

@@ -25,9 +25,19 @@ public:
     /// False where a value is no number.
     bool cuts(std::span<const std::uint64_t> loop) const;
 
+    /// A bit for each face of a cell that is cut.
+    std::uint32_t cut_faces(const core::WholeCell& cell) const;
+
 private:
+    double value(std::uint64_t point) const {
+        if (singles_) return singles_[point];
+        return doubles_ ? doubles_[point] : values_.at(point);
+    }
+
     const Array& values_;
-    std::vector<double> isovalues_; ///< ascending
+    const float* singles_ = nullptr;  ///< values_, where it is of this type
+    const double* doubles_ = nullptr; ///< the same
+    std::vector<double> isovalues_;   ///< ascending
 };
 
 /// Whether a face that is cut, and that no other cell has, lies on a larger face of another cell.

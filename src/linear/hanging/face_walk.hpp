@@ -78,20 +78,9 @@ public:
             use(number++, hash_of(whole_, face, hashes));
     }
 
-    std::span<const std::uint64_t> loop(const OpenFaces::Place& place) {
-        if (place.cell != cell_) {
-            open(place.cell);
-            cell_ = place.cell;
-        }
-        if (!is_whole_) return loops_.loop(place.face);
-        const core::CellFace& face = core::shape_of(whole_.kind).faces()[place.face];
-        for (std::size_t i = 0; i < face.count; ++i) corners_[i] = whole_.corners[face.corners[i]];
-        return {corners_.data(), face.count};
-    }
-
-private:
-    /// False: it has no volume that is contoured.
+    /// The cell whose faces follow. False: it has no volume that is contoured.
     bool open(std::size_t cell) {
+        cell_ = cell;
         is_whole_ = core::is_contoured(cells_.type(cell));
         if (is_whole_) {
             whole_ = cells_.whole(cell);
@@ -99,12 +88,27 @@ private:
         }
         return is_whole_ || loops_.read(cell);
     }
+    /// The cell that is open, where it has eight different corners or fewer; else null.
+    const core::WholeCell* whole() const { return is_whole_ ? &whole_ : nullptr; }
+    /// Of the cell that is open.
+    std::size_t face_count() const {
+        return is_whole_ ? core::shape_of(whole_.kind).faces().size() : loops_.count();
+    }
 
+    std::span<const std::uint64_t> loop(const OpenFaces::Place& place) {
+        if (place.cell != cell_) open(place.cell);
+        if (!is_whole_) return loops_.loop(place.face);
+        const core::CellFace& face = core::shape_of(whole_.kind).faces()[place.face];
+        for (std::size_t i = 0; i < face.count; ++i) corners_[i] = whole_.corners[face.corners[i]];
+        return {corners_.data(), face.count};
+    }
+
+private:
     const core::CellReader& cells_;
     CellLoops loops_;
     core::WholeCell whole_{};
     bool is_whole_ = false;
-    std::uint64_t cell_ = std::numeric_limits<std::uint64_t>::max(); ///< of the last loop
+    std::uint64_t cell_ = std::numeric_limits<std::uint64_t>::max(); ///< that is open
     std::array<std::uint64_t, 4> corners_{};
 };
 
