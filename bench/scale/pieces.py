@@ -1,6 +1,10 @@
 # Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-"""A grid of `isotet make` as a PVTU of N x N x N boxes of cells, as parallel solvers write it, with global point numbers."""
+"""A grid of `isotet make` as a PVTU of N x N x N boxes of cells, as parallel solvers write it, with global point numbers.
+
+    python bench/scale/pieces.py GRID.vtu OUT.pvtu N FIELD
+"""
 import pathlib
+import sys
 
 import numpy as np
 import vtk
@@ -76,3 +80,7 @@ def cut(path, out, boxes, field):
     for number, name in enumerate(names):
         write_piece(part_of(grid, order[ends[number] : ends[number + 1]], field), out.parent / name)
     out.write_text(index_of(names, grid, field))
+
+
+if __name__ == "__main__":
+    cut(sys.argv[1], sys.argv[2], int(sys.argv[3]), sys.argv[4])
