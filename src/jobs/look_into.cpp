@@ -25,21 +25,12 @@ Result<std::vector<FieldSummary>> summarize(const Grid& grid, const Run& run) {
     return summaries;
 }
 
-std::vector<VectorSummary> vectors_of(const Grid& grid) {
-    std::vector<VectorSummary> vectors;
-    for (const auto& [fields, association] :
-         {std::pair{&grid.point_fields, Association::point}, {&grid.cell_fields, Association::cell}})
-        for (ComponentGroup& group : component_groups(scalar_names(*fields)))
-            vectors.push_back({std::move(group), association});
-    return vectors;
-}
-
-/// The same of what a file announces.
-std::vector<VectorSummary> vectors_of(const FileInfo& file) {
+/// Vectors that are stored as three scalars.
+std::vector<VectorSummary> vectors_of(const std::vector<FieldInfo>& fields) {
     std::vector<VectorSummary> vectors;
     for (const Association association : {Association::point, Association::cell}) {
         std::vector<std::string> scalars;
-        for (const FieldInfo& field : file.fields)
+        for (const FieldInfo& field : fields)
             if (field.association == association && field.components == 1) scalars.push_back(field.name);
         for (ComponentGroup& group : component_groups(scalars)) vectors.push_back({std::move(group), association});
     }
@@ -54,7 +45,7 @@ Result<GridSummary> look_at_heads(const GridSource& source, const GridOptions& o
         if (!steps) return steps.error();
         summary.step = steps->front();
     }
-    summary.vectors = vectors_of(summary.file);
+    summary.vectors = vectors_of(summary.file.fields);
     return summary;
 }
 
@@ -134,7 +125,7 @@ Result<GridSummary> look_into(const InfoJob& job, Caller& caller) {
     Result<std::vector<FieldSummary>> fields = summarize(*grid, caller.run());
     if (!fields) return fields.error();
     summary.fields = *std::move(fields);
-    summary.vectors = vectors_of(*grid);
+    summary.vectors = vectors_of(describe_fields(*grid));
     summary.first = first_view(*grid, source->info().fields);
     Result<CurvedSummary> curved = look_at_curved_cells(*grid, summary.fields, caller.run());
     if (!curved) return curved.error();
