@@ -13,8 +13,8 @@ namespace isotet {
 /// not counted. Triangles face outwards; a face that is used more than once too often stands there once.
 ///
 /// Guarantees   the same bytes for any thread count
-/// Cost         O(T log T); about 5 to 10 bytes a tet while it works, and the surface
-/// Errors       out_of_memory; cancelled
+/// Cost         O(T log T); about 5 to 10 bytes a tet while it works, and the surface. A grid in a file is read once, in parts
+/// Errors       out_of_memory; of a grid in a file: as PackedFile; cancelled
 /// Threads      safe from many threads on one packed grid
 /// Method       faces cancel within each cluster first; those left over are sorted
 ISOTET_API Result<Surface> boundary_of(const PackedGrid& packed, const Run& run = {});

@@ -136,6 +136,19 @@ ISOTET_API Result<PackedGrid> pack(const Grid& grid, const PointField& field, co
 /// Errors       out_of_memory; of a grid in a file: as PackedFile; cancelled
 ISOTET_API Result<Grid> unpack(const PackedGrid& packed, const Run& run = {});
 
+/// What unpack() gives, with some of the cells.
+struct UnpackedSample {
+    Grid grid;
+    std::uint64_t cells = 0; ///< of all of the packed grid
+};
+
+/// All points and values, and about `cells` of the cells (at most so many), from 256 places spread evenly over the grid.
+///
+/// Guarantees   as unpack()
+/// Cost         of a grid in a file points and values are read, and the chunks at these places
+/// Errors       as unpack()
+ISOTET_API Result<UnpackedSample> unpack_sample(const PackedGrid& packed, std::uint64_t cells, const Run& run = {});
+
 /// The packed field alone, by the user's point numbers, as unpack() gives it.
 ISOTET_API Result<Field> unpack_field(const PackedGrid& packed, const Run& run = {});
 

@@ -86,15 +86,20 @@ void add_faces(const Packed& packed, std::size_t cluster, std::vector<LocalFace>
 Result<std::vector<PackedFace>> packed_boundary(const Packed& packed, const Progress& progress) {
     std::vector<PackedFace> faces;
     std::mutex mutex;
-    parallel_ranges(packed.clusters(), 256, [&](std::size_t begin, std::size_t end) {
-        if (progress.cancelled()) return;
-        std::vector<LocalFace> local;
-        std::vector<PackedFace> found;
-        for (std::size_t cluster = begin; cluster < end; ++cluster) add_faces(packed, cluster, local, found);
-        const std::lock_guard lock(mutex);
-        faces.insert(faces.end(), found.begin(), found.end());
-    });
-    if (progress.cancelled()) return Error{ErrorCode::cancelled, "finding the boundary was cancelled"};
+    const std::vector<std::uint32_t> clusters = all_clusters(packed);
+    const auto add = [&](std::size_t first, std::size_t last) -> Result<void> {
+        parallel_ranges(last - first, 256, [&](std::size_t begin, std::size_t end) {
+            if (progress.cancelled()) return;
+            std::vector<LocalFace> local;
+            std::vector<PackedFace> found;
+            for (std::size_t i = first + begin; i < first + end; ++i) add_faces(packed, clusters[i], local, found);
+            const std::lock_guard lock(mutex);
+            faces.insert(faces.end(), found.begin(), found.end());
+        });
+        if (progress.cancelled()) return Error{ErrorCode::cancelled, "finding the boundary was cancelled"};
+        return {};
+    };
+    if (auto added = in_memory(packed, clusters, Parts::all, progress, add); !added) return added.error();
     tbb::parallel_sort(faces.begin(), faces.end());
     cancel(faces);
     return faces;
@@ -102,28 +107,63 @@ Result<std::vector<PackedFace>> packed_boundary(const Packed& packed, const Prog
 
 bool is_mirrored(const PackedFace& face) { return face.uses < 0; }
 
-Array positions_of(const Packed& packed, const std::vector<std::uint64_t>& points) {
-    return std::visit(
-        [&]<class Real>(const Values<Real>& reals) {
-            const auto positions = [&]<class To>(To, const auto& user) {
-                std::vector<To> out(3 * points.size());
-                parallel_each(points.size(), 1 << 14, [&](std::size_t i) {
-                    for (std::size_t axis = 0; axis < 3; ++axis)
-                        out[3 * i + axis] = user(reals.positions[3 * points[i] + axis], axis);
-                });
-                return Array::own(std::move(out), 3);
-            };
-            if (packed.point_type == ScalarType::float32)
-                return positions(Real{}, [](Real x, std::size_t) { return x; });
-            return positions(double{}, [&](Real x, std::size_t axis) { return x + packed.origin[axis]; });
-        },
-        packed.reals);
+/// Owners of ascending points, and where the points of each begin; one more at the end.
+struct OwnedPoints {
+    std::vector<std::uint32_t> clusters;
+    std::vector<std::size_t> first;
+};
+
+OwnedPoints owners_of(const Packed& packed, const std::vector<std::uint64_t>& points) {
+    OwnedPoints owned;
+    for (std::size_t i = 0, cluster = 0; i < points.size();) {
+        const auto above = std::upper_bound(
+            packed.headers.begin() + static_cast<std::ptrdiff_t>(cluster), packed.headers.end(), points[i],
+            [](std::uint64_t point, const ClusterHeader& h) { return point < h.first_point; });
+        cluster = static_cast<std::size_t>(above - packed.headers.begin()) - 1;
+        owned.clusters.push_back(static_cast<std::uint32_t>(cluster));
+        owned.first.push_back(i);
+        const std::uint64_t end = packed.headers[cluster].first_point + packed.headers[cluster].own_points;
+        while (i < points.size() && points[i] < end) ++i;
+    }
+    owned.first.push_back(points.size());
+    return owned;
 }
 
-Surface surface_of(const Packed& packed, const std::vector<PackedFace>& faces) {
+/// `user(x, axis)`   a stored coordinate as the surface has it
+template <class To, class Real, class User>
+Result<Array> positions_of(const Packed& packed, const std::vector<std::uint64_t>& points, const User& user,
+                           const Progress& progress) {
+    const Real* const positions = packed.as<Real>().positions.data();
+    std::vector<To> out(3 * points.size());
+    const OwnedPoints owned = owners_of(packed, points);
+    const auto write = [&](std::size_t first, std::size_t last) -> Result<void> {
+        const std::size_t begin = owned.first[first];
+        parallel_each(owned.first[last] - begin, 1 << 14, [&](std::size_t k) {
+            const std::size_t i = begin + k;
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                out[3 * i + axis] = user(positions[3 * points[i] + axis], axis);
+        });
+        return {};
+    };
+    if (auto done = in_memory(packed, owned.clusters, Parts::values, progress, write); !done) return done.error();
+    return Array::own(std::move(out), 3);
+}
+
+template <class Real>
+Result<Array> positions_of(const Packed& packed, const std::vector<std::uint64_t>& points, const Progress& progress) {
+    if (packed.point_type == ScalarType::float32)
+        return positions_of<Real, Real>(packed, points, [](Real x, std::size_t) { return x; }, progress);
+    const auto in_place = [&](Real x, std::size_t axis) { return static_cast<double>(x) + packed.origin[axis]; };
+    return positions_of<double, Real>(packed, points, in_place, progress);
+}
+
+Result<Surface> surface_of(const Packed& packed, const std::vector<PackedFace>& faces, const Progress& progress) {
     const std::vector<std::uint64_t> points = points_of_faces(faces);
+    auto positions = packed.single() ? positions_of<float>(packed, points, progress)
+                                     : positions_of<double>(packed, points, progress);
+    if (!positions) return positions.error();
     Surface surface;
-    surface.positions = positions_of(packed, points);
+    surface.positions = *std::move(positions);
     surface.triangles = triangles_of_faces(faces, points);
     return surface;
 }
@@ -133,11 +173,10 @@ Surface surface_of(const Packed& packed, const std::vector<PackedFace>& faces) {
 
 Result<Surface> boundary_of(const PackedGrid& packed, const Run& run) {
     return core::carry_out("finding the boundary", run, [&](const Progress& progress) -> Result<Surface> {
-        const auto whole = core::whole_of(packed.shared_data(), progress);
-        if (!whole) return whole.error();
-        const auto faces = core::packed_boundary(**whole, progress);
+        const core::Packed& data = *packed.shared_data();
+        const auto faces = core::packed_boundary(data, progress);
         if (!faces) return faces.error();
-        return core::surface_of(**whole, *faces);
+        return core::surface_of(data, *faces, progress);
     });
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include <isotet/export.hpp>
 #include <isotet/progress.hpp>
@@ -55,6 +56,8 @@ public:
 /// The grid itself where all is in memory, else the whole of it.
 ISOTET_API Result<std::shared_ptr<const Packed>> whole_of(const std::shared_ptr<const Packed>& packed,
                                                           const Progress& progress);
+
+std::vector<std::uint32_t> all_clusters(const Packed& packed);
 
 /// Calls work(first, last), which returns a Result<void>, for ranges of `clusters`, one after another, that are in memory
 /// meanwhile: one range of all where the grid is, and where all fit.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <type_traits>
 #include <vector>
 
@@ -22,37 +23,54 @@ namespace {
 /// VTK's numbers, by CellKind.
 constexpr std::array<std::uint8_t, cell_kind_count> vtk_types{10, 14, 13, 12};
 
-/// Arrays by the user's point numbers: f(packed point, out) writes `components` of a used point; points that no cell uses
-/// have `unused`.
-template <class To, class F>
-Array by_user_point(const Packed& packed, std::size_t components, const std::array<To, 3>& unused, const F& f) {
+/// An array by the user's point numbers: f(packed point, out) writes `components` of a used point; points that no cell uses
+/// have what unused() gives, once the first cluster is in memory.
+/// Errors   as Residency::bring()
+template <class To, class Unused, class F>
+Result<Array> by_user_point(const Packed& packed, std::size_t components, const Progress& progress,
+                            const Unused& unused, const F& f) {
     Buffer<To> out(components * packed.user_points);
-    parallel_ranges(packed.user_points, 1 << 16, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) std::copy_n(unused.begin(), components, out.data() + components * i);
-    });
-    parallel_ranges(packed.points(), 1 << 14, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t p = begin; p < end; ++p) f(p, out.data() + components * packed.user_point(p));
-    });
+    const auto fill = [&](const std::array<To, 3>& with) {
+        parallel_ranges(packed.user_points, 1 << 16, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                std::copy_n(with.begin(), components, out.data() + components * i);
+        });
+    };
+    const std::vector<std::uint32_t> clusters = all_clusters(packed);
+    if (clusters.empty()) fill({});
+    const auto write = [&](std::size_t first, std::size_t last) -> Result<void> {
+        if (first == 0 && last > 0) fill(unused());
+        parallel_each(last - first, 128, [&](std::size_t i) {
+            const ClusterHeader& h = packed.headers[first + i];
+            for (std::uint64_t p = h.first_point; p < h.first_point + h.own_points; ++p)
+                f(p, out.data() + components * packed.user_point(p));
+        });
+        return {};
+    };
+    if (auto done = in_memory(packed, clusters, Parts::values, progress, write); !done) return done.error();
     return std::move(out).to_array(components);
 }
 
 /// In the coordinates of the user.
 template <class To, class Real>
-Array unpacked_points(const Packed& packed) {
+Result<Array> unpacked_points(const Packed& packed, const Progress& progress) {
     const Real* const positions = packed.as<Real>().positions.data();
     const auto write = [&](std::size_t p, To* to) {
         for (std::size_t axis = 0; axis < 3; ++axis)
             to[axis] = static_cast<To>(static_cast<double>(positions[3 * p + axis]) + packed.origin[axis]);
     };
-    std::array<To, 3> unused{};
-    if (packed.points()) write(0, unused.data()); // no bounds grow by it
-    return by_user_point<To>(packed, 3, unused, write);
+    const auto first = [&] { // no bounds grow by it
+        std::array<To, 3> place{};
+        write(packed.headers[0].first_point, place.data());
+        return place;
+    };
+    return by_user_point<To>(packed, 3, progress, first, write);
 }
 
 template <class Real>
-Array unpacked_points_of(const Packed& packed) {
-    return packed.point_type == ScalarType::float32 ? unpacked_points<float, Real>(packed)
-                                                    : unpacked_points<double, Real>(packed);
+Result<Array> unpacked_points_of(const Packed& packed, const Progress& progress) {
+    return packed.point_type == ScalarType::float32 ? unpacked_points<float, Real>(packed, progress)
+                                                    : unpacked_points<double, Real>(packed, progress);
 }
 
 /// A value in the user's type: integers are rounded, and kept within it.
@@ -71,11 +89,14 @@ To as_user_value(double value) {
 }
 
 template <class To, class Real>
-Array unpacked_values_as(const Packed& packed) {
+Result<Array> unpacked_values_as(const Packed& packed, const Progress& progress) {
     const Real* const values = packed.as<Real>().values.data();
-    std::array<To, 3> unused{};
-    if constexpr (std::is_floating_point_v<To>) unused.fill(std::numeric_limits<To>::quiet_NaN());
-    return by_user_point<To>(packed, 1, unused, [&](std::size_t p, To* to) {
+    const auto no_value = [] {
+        std::array<To, 3> unused{};
+        if constexpr (std::is_floating_point_v<To>) unused.fill(std::numeric_limits<To>::quiet_NaN());
+        return unused;
+    };
+    return by_user_point<To>(packed, 1, progress, no_value, [&](std::size_t p, To* to) {
         const auto stored = static_cast<double>(values[p]);
         if (std::abs(stored) >= stored_infinity) *to = as_user_value<To>(std::copysign(HUGE_VAL, stored));
         else *to = as_user_value<To>(restore_value(stored, packed.storage));
@@ -83,8 +104,9 @@ Array unpacked_values_as(const Packed& packed) {
 }
 
 template <class Real>
-Array unpacked_values_of(const Packed& packed) {
-    return packed.field.visit([&]<class T>(std::span<const T>) { return unpacked_values_as<T, Real>(packed); });
+Result<Array> unpacked_values_of(const Packed& packed, const Progress& progress) {
+    return packed.field.visit(
+        [&]<class T>(std::span<const T>) { return unpacked_values_as<T, Real>(packed, progress); });
 }
 
 /// Where the cells of each cluster begin.
@@ -142,20 +164,113 @@ Cells unpacked_cells(const Packed& packed, const UnpackedCounts& counts) {
     return out;
 }
 
-Field unpacked_field(const Packed& packed) {
-    return {packed.field_report.name,
-            packed.single() ? unpacked_values_of<float>(packed) : unpacked_values_of<double>(packed)};
+Result<Array> unpacked_places(const Packed& packed, const Progress& progress) {
+    return packed.single() ? unpacked_points_of<float>(packed, progress) : unpacked_points_of<double>(packed, progress);
 }
 
-Grid unpacked(const Packed& packed) {
+Result<Field> unpacked_field(const Packed& packed, const Progress& progress) {
+    auto values =
+        packed.single() ? unpacked_values_of<float>(packed, progress) : unpacked_values_of<double>(packed, progress);
+    if (!values) return values.error();
+    return Field{packed.field_report.name, *std::move(values)};
+}
+
+/// Points and the field, without cells.
+Result<Grid> unpacked_places_and_values(const Packed& packed, const Progress& progress) {
+    auto points = unpacked_places(packed, progress);
+    if (!points) return points.error();
+    auto field = unpacked_field(packed, progress);
+    if (!field) return field.error();
+    Grid grid;
+    grid.points = *std::move(points);
+    grid.point_fields.push_back(*std::move(field));
+    return grid;
+}
+
+/// Runs of clusters that follow each other, spread evenly; all where there are few.
+std::vector<std::uint32_t> sampled_clusters(std::size_t clusters) {
+    constexpr std::size_t runs = 256, in_run = 8; // a run is mostly of one chunk
+    std::vector<std::uint32_t> sample(std::min(clusters, runs * in_run));
+    if (sample.size() == clusters) {
+        std::iota(sample.begin(), sample.end(), 0U);
+        return sample;
+    }
+    for (std::size_t run = 0; run < runs; ++run) {
+        // Regular grids repeat themselves: places between even steps are drawn (Weyl's sequence).
+        const double drawn = std::fmod(static_cast<double>(run) * 0.618033988749895, 1.0);
+        const std::size_t begin = run * clusters / runs, width = (run + 1) * clusters / runs - begin;
+        const auto first = begin + static_cast<std::size_t>(drawn * static_cast<double>(width - in_run + 1));
+        for (std::size_t i = 0; i < in_run; ++i) sample[run * in_run + i] = static_cast<std::uint32_t>(first + i);
+    }
+    return sample;
+}
+
+/// About `wanted` cells of the grid, by corners in the user's numbers.
+class CellSampler {
+public:
+    CellSampler(const Packed& packed, std::uint64_t wanted)
+        : packed_(packed), clusters_(sampled_clusters(packed.clusters())) {
+        std::uint64_t cells = 0;
+        for (const std::uint32_t c : clusters_) cells += cells_of(c);
+        each_ = std::max<std::uint64_t>(1, (cells + wanted - 1) / std::max<std::uint64_t>(1, wanted));
+    }
+
+    Result<Cells> take(const Progress& progress) {
+        const auto add = [&](std::size_t first, std::size_t last) -> Result<void> {
+            for (std::size_t i = first; i < last; ++i) add_cluster(clusters_[i]);
+            return {};
+        };
+        if (auto done = in_memory(packed_, clusters_, Parts::all, progress, add); !done) return done.error();
+        Cells cells;
+        cells.connectivity = Array::own(std::move(connectivity_));
+        cells.offsets = Array::own(std::move(offsets_));
+        cells.types = Array::own(std::move(types_));
+        return cells;
+    }
+
+private:
+    std::uint64_t cells_of(std::uint32_t c) const { return packed_.headers[c].tets() + packed_.headers[c].others(); }
+
+    void add_cluster(std::uint32_t c) {
+        std::array<std::uint64_t, max_cluster_points> locals;
+        local_points(packed_, c, locals.data());
+        const auto add = [&](CellKind kind, std::span<const std::uint8_t> corners) {
+            if (met_++ % each_ != 0) return;
+            for (const std::uint8_t local : corners)
+                connectivity_.push_back(static_cast<std::int64_t>(packed_.user_point(locals[local])));
+            offsets_.push_back(static_cast<std::int64_t>(connectivity_.size()));
+            types_.push_back(vtk_types[static_cast<std::size_t>(kind)]);
+        };
+        for (const StoredTet& tet : packed_.cluster_tets(c)) add(CellKind::tetrahedron, tet.corners);
+        packed_.for_other_cells(c, [&](const StoredCell& other) { add(other.kind, other.corners); });
+    }
+
+    const Packed& packed_;
+    std::vector<std::uint32_t> clusters_; ///< that are looked at
+    std::uint64_t each_ = 1, met_ = 0;    ///< every so many of their cells is taken
+    std::vector<std::int64_t> connectivity_, offsets_{0};
+    std::vector<std::uint8_t> types_;
+};
+
+Result<Grid> unpacked(const Packed& packed, const Progress& progress) {
+    auto grid = unpacked_places_and_values(packed, progress);
+    if (!grid) return grid;
     const UnpackedCounts counts = count_stored(packed);
     constexpr std::uint64_t narrow = std::uint64_t{1} << 31;
-    Grid grid;
-    grid.points = packed.single() ? unpacked_points_of<float>(packed) : unpacked_points_of<double>(packed);
-    grid.cells = packed.user_points < narrow ? unpacked_cells<std::int32_t>(packed, counts)
-                                             : unpacked_cells<std::int64_t>(packed, counts);
-    grid.point_fields.push_back(unpacked_field(packed));
+    grid->cells = packed.user_points < narrow ? unpacked_cells<std::int32_t>(packed, counts)
+                                              : unpacked_cells<std::int64_t>(packed, counts);
     return grid;
+}
+
+Result<UnpackedSample> unpacked_sample(const Packed& packed, std::uint64_t cells, const Progress& progress) {
+    auto grid = unpacked_places_and_values(packed, progress);
+    if (!grid) return grid.error();
+    auto some = CellSampler(packed, cells).take(progress);
+    if (!some) return some.error();
+    grid->cells = *std::move(some);
+    UnpackedSample sample{*std::move(grid), 0};
+    for (const ClusterHeader& h : packed.headers) sample.cells += h.tets() + h.others();
+    return sample;
 }
 
 } // namespace
@@ -165,15 +280,19 @@ Result<Grid> unpack(const PackedGrid& packed, const Run& run) {
     return core::carry_out("unpacking", run, [&](const Progress& progress) -> Result<Grid> {
         const auto whole = core::whole_of(packed.shared_data(), progress);
         if (!whole) return whole.error();
-        return core::unpacked(**whole);
+        return core::unpacked(**whole, progress);
+    });
+}
+
+Result<UnpackedSample> unpack_sample(const PackedGrid& packed, std::uint64_t cells, const Run& run) {
+    return core::carry_out("unpacking", run, [&](const Progress& progress) -> Result<UnpackedSample> {
+        return core::unpacked_sample(*packed.shared_data(), cells, progress);
     });
 }
 
 Result<Field> unpack_field(const PackedGrid& packed, const Run& run) {
     return core::carry_out("unpacking a field", run, [&](const Progress& progress) -> Result<Field> {
-        const auto whole = core::whole_of(packed.shared_data(), progress);
-        if (!whole) return whole.error();
-        return core::unpacked_field(**whole);
+        return core::unpacked_field(*packed.shared_data(), progress);
     });
 }
 

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include <isotet/boundary.hpp>
+#include <isotet/grid.hpp>
 #include <isotet/packed_file.hpp>
 
 #include "io/packed/piece_reader.hpp"
@@ -44,7 +46,8 @@ TEST(PackedChunks, GiveTheSurfacesOfTheGridInMemory) {
                 }
         }
         const PackedGrid grid = PackedFile::open(path, {100'000}).value().grid().value();
-        EXPECT_TRUE(bytes_of_all(grid, sample.isovalues, {}, 3) == bytes_of_all(sample.packed, sample.isovalues, {}, 3));
+        EXPECT_TRUE(bytes_of_all(grid, sample.isovalues, {}, 3) ==
+                    bytes_of_all(sample.packed, sample.isovalues, {}, 3));
     }
 }
 
@@ -54,7 +57,8 @@ TEST(PackedChunks, TellTiesAsTheGridInMemoryWhereValuesAreUnchanged) {
     const TemporaryFolder folder;
     const PackedGrid from_file = PackedFile::open(saved(packed, folder), {1}).value().grid().value();
     for (const double isovalue : {1.0, 1.2, 2.0}) {
-        const ExtractReport a = extract(packed, isovalue).value().report, b = extract(from_file, isovalue).value().report;
+        const ExtractReport a = extract(packed, isovalue).value().report,
+                            b = extract(from_file, isovalue).value().report;
         EXPECT_EQ(a.tied_points, b.tied_points);
         EXPECT_EQ(a.false_ties, b.false_ties);
         EXPECT_EQ(a.near_tie, b.near_tie);
@@ -189,6 +193,61 @@ TEST(PackedChunks, AreBroughtForWhatNeedsTheWholeGrid) {
                 bytes_of(packed.with_field(point_field(grid, 1)).value()));
     EXPECT_TRUE(bytes_of(from_file.with_points(grid.points).value()) == bytes_of(packed));
     EXPECT_EQ(unpack(from_file).value().cells.count(), grid.cells.count());
+}
+
+std::string points_and_values(const Grid& grid) {
+    std::string bytes;
+    append_bytes(bytes, grid.points);
+    append_bytes(bytes, grid.point_fields.at(0).values);
+    return bytes;
+}
+
+TEST(PackedChunks, GiveASampleOfCellsWithAllPointsAndValues) {
+    for (const PackedSample& sample : packed_samples()) {
+        SCOPED_TRACE(sample.name);
+        const TemporaryFolder folder;
+        const PackedFile file = PackedFile::open(saved(sample.packed, folder), {1}).value();
+        const PackedGrid from_file = file.grid().value();
+        const Grid all = unpack(sample.packed).value();
+        const UnpackedSample every = unpack_sample(from_file, all.cells.count()).value();
+        EXPECT_EQ(every.cells, all.cells.count());
+        EXPECT_EQ(every.grid.cells.count(), all.cells.count()) << "there are few";
+        EXPECT_EQ(survey(every.grid).value().boundary_faces, survey(all).value().boundary_faces);
+        EXPECT_TRUE(points_and_values(every.grid) == points_and_values(all));
+        const UnpackedSample some = unpack_sample(from_file, 10).value();
+        EXPECT_LE(some.grid.cells.count(), 10u);
+        EXPECT_GT(some.grid.cells.count(), 5u);
+        EXPECT_EQ(some.cells, all.cells.count());
+        EXPECT_TRUE(points_and_values(some.grid) == points_and_values(all));
+    }
+}
+
+TEST(PackedChunks, OfASampleOfManyCellsAreFew) {
+    const Grid grid = made_grid("hex", 52, {"gyroid"}); // more clusters than are looked at
+    const PackedGrid packed = pack(grid, point_field(grid)).value();
+    const TemporaryFolder folder;
+    const PackedFile file = PackedFile::open(saved(packed, folder)).value();
+    const UnpackedSample some = unpack_sample(file.grid().value(), 1'000).value();
+    EXPECT_LE(some.grid.cells.count(), 1'000u);
+    EXPECT_GT(some.grid.cells.count(), 900u);
+    EXPECT_EQ(some.cells, grid.cells.count());
+    EXPECT_LT(file.residency().pieces_read, 3 * file.info().chunks) << "points and values of all, topology of some";
+    double below = 0;
+    for (std::size_t i = 0; i < some.grid.cells.connectivity.size(); ++i)
+        below += some.grid.points.at(static_cast<std::size_t>(some.grid.cells.connectivity.at(i)), 0) < 0 ? 1 : 0;
+    EXPECT_NEAR(below / static_cast<double>(some.grid.cells.connectivity.size()), 0.5, 0.1) << "they are everywhere";
+}
+
+TEST(PackedChunks, HaveTheBoundaryOfTheGridForAnyLimit) {
+    for (const PackedSample& sample : packed_samples(5)) {
+        const std::string expected = bytes_of(boundary_of(sample.packed).value());
+        const TemporaryFolder folder;
+        const std::string path = saved(sample.packed, folder);
+        for (const std::uint64_t memory : {1, 20'000, 1'000'000'000})
+            EXPECT_TRUE(bytes_of(boundary_of(PackedFile::open(path, {memory}).value().grid().value()).value()) ==
+                        expected)
+                << sample.name << ", " << memory;
+    }
 }
 
 } // namespace
