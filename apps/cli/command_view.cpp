@@ -129,9 +129,19 @@ Result<ExitCode> run_view(const ViewCommand& command) {
     }
     options.program = "/proc/self/exe";
     options.listen = command.listen;
-    options.read = [&](const Run& run) { return read_view_input({command.grid, command.field, command.isovalues, command.shares, command.color_by}, *source, console, run); };
+    options.read = [&](const Run& run) {
+        const ViewStart start{command.grid,   command.field,    command.isovalues,
+                              command.shares, command.color_by, FirstCells::some};
+        return read_view_input(start, *source, console, run);
+    };
     std::mutex reading; // steps are read by several threads
-    options.read_step = [&](std::size_t step, const Run& run) {
+    options.read_step = [&](std::size_t step, const Run& run) -> Result<Grid> {
+        const std::lock_guard lock(reading);
+        Result<ReadResult> read = source->read_some({}, step, console, run);
+        if (!read) return read.error();
+        return std::move(read->grid);
+    };
+    options.read_cells = [&](std::size_t step, const Run& run) {
         const std::lock_guard lock(reading);
         return source->read({}, step, console, run);
     };

@@ -14,14 +14,30 @@ void take_first_view(const FirstView& first, bool isovalues_are_given, view::Vie
     console.note(first.field.empty() ? std::string("no field varies: this is the grid") : note_of(first));
 }
 
-Result<void> add_shares(const ViewStart& start, const Grid& grid, const Run& run, view::ViewState& state) {
+/// Shares are those of all cells.
+Result<void> add_shares(const ViewStart& start, const ReadResult& read, const GridSource& source, Console& console,
+                        const Run& run, view::ViewState& state) {
     if (start.shares.empty()) return {};
-    const Result<PointField> field = find_field(grid, state.field, {}, run);
+    const Result<Grid> grid = read.cells_in_file ? source.read({}, read.step, console, run) : read.grid;
+    if (!grid) return grid.error();
+    const Result<PointField> field = find_field(*grid, state.field, {}, run);
     if (!field) return field.error();
-    const auto found = isovalues_at(grid, *field, start.shares, run);
+    const auto found = isovalues_at(*grid, *field, start.shares, run);
     if (!found) return found.error();
     state.isovalues.insert(state.isovalues.end(), found->begin(), found->end());
     return {};
+}
+
+/// All fields.
+Result<ReadResult> read_step(FirstCells cells, const GridSource& source, std::size_t step, Console& console,
+                             const Run& run) {
+    if (cells == FirstCells::some) return source.read_some({}, step, console, run);
+    Result<Grid> grid = source.read({}, step, console, run);
+    if (!grid) return grid.error();
+    ReadResult result;
+    result.grid = *std::move(grid);
+    result.step = step;
+    return result;
 }
 
 } // namespace
@@ -41,20 +57,27 @@ Result<view::ViewerInput> read_view_input(const ViewStart& start, GridSource& so
     if (!choice) return choice.error();
     const std::size_t step = choice->steps.front();
     const std::vector<FieldInfo> fields = source.info().fields;
-    Result<Grid> grid = source.read({}, step, console, run);
-    if (!grid) return grid.error();
+    Result<ReadResult> read = read_step(start.cells, source, step, console, run);
+    if (!read) return read.error();
+    const Grid& grid = read->grid;
     view::ViewerInput input;
+    if (read->cells_in_file) {
+        Result<PackedFile> file = PackedFile::open(start.grid.file, {}, run);
+        if (!file) return file.error();
+        input.packed = *std::move(file);
+        input.cells = *read->cells_in_file;
+    }
     input.state.field = start.field.name;
     if (input.state.field.empty())
-        take_first_view(first_view(*grid, fields), !start.isovalues.empty() || !start.shares.empty(), input.state,
+        take_first_view(first_view(grid, fields), !start.isovalues.empty() || !start.shares.empty(), input.state,
                         console);
     input.state.isovalues = start.isovalues;
-    if (Result<void> added = add_shares(start, *grid, run, input.state); !added) return added.error();
+    if (Result<void> added = add_shares(start, *read, source, console, run, input.state); !added) return added.error();
     input.state.color_by = start.color_by;
     input.times = source.info().times;
     if (input.times.size() > 1) input.state.step = step;
     input.notes = console.noted();
-    input.grid = *std::move(grid);
+    input.grid = std::move(read->grid);
     return input;
 }
 

@@ -2,6 +2,7 @@
 // What a page begins with, of `isotet view` and `isotet export`.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,12 @@
 
 namespace isotet::cli {
 
+/// Which cells ViewerInput::grid has.
+enum class FirstCells : std::uint8_t {
+    all,
+    some ///< of a packed file, which is then open in ViewerInput::packed
+};
+
 /// What the command line says of it.
 struct ViewStart {
     const GridOptions& grid;
@@ -23,6 +30,7 @@ struct ViewStart {
     const std::vector<double>& isovalues;
     const std::vector<IsovalueShare>& shares; ///< more, of the first step
     const std::string& color_by;
+    FirstCells cells = FirstCells::all;
 };
 
 /// Names that are no field's, before anything is read. Errors   as choose_field()

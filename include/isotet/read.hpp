@@ -25,7 +25,7 @@ struct Format {
     std::string title;                   ///< "VTK XML unstructured grid"
     std::vector<std::string> extensions; ///< ".vtu"; lower case
     bool reads_grid = false, writes_grid = false, reads_surface = false, writes_surface = false;
-    bool needs_vtk = false; ///< read by the program isotet-reader (VTK), in a child process
+    bool needs_vtk = false; ///< read by the program isotet-reader, in a child process
 };
 ISOTET_API std::vector<Format> formats();
 
@@ -112,6 +112,8 @@ struct ReadOptions {
     std::optional<ReadActiveCells> active_cells = {}; ///< where that can be done while reading (VTU, PVTU, VTM, PVD,
                                                       ///< VTKHDF, Exodus, binary legacy VTK; linear cells, no cell
                                                       ///< fields, points that do not coincide); else all are read
+    std::uint64_t some_cells = 0; ///< not 0: about so many cells will do, spread evenly; packed files then read no more than
+                                  ///< these, all other formats all
     std::shared_ptr<KeptFiles> kept = {}; ///< keep_files(); the same for inspect() and the read() behind it
 };
 
@@ -119,7 +121,7 @@ struct ReadResult {
     Grid grid;
     FileInfo info;
     std::size_t step = 0;                            ///< the step that was read
-    std::optional<std::uint64_t> cells_in_file = {}; ///< where only active cells were read
+    std::optional<std::uint64_t> cells_in_file = {}; ///< where only active cells or some were read
     std::optional<std::array<double, 6>> bounds = {}; ///< then, if they were asked for, and not of legacy VTK: least x,
                                                       ///< y and z of the points that any cell has, then the greatest
     std::vector<std::string> notes; ///< sentences for the user: ghost cells left out, blocks joined and so on

@@ -41,13 +41,13 @@ private:
         const Result<FoundField> found = choose_field(source_, wish_.field);
         if (!found) return is_missing(found.error());
         FieldsToRead read{found->point, found->cell};
-        const Result<Grid> grid = read_with_others(read, step);
-        if (!grid && grid.error().code == ErrorCode::invalid_argument) return is_missing(grid.error());
-        if (!grid) return grid.error();
+        const Result<ReadResult> some = read_with_others(read, step);
+        if (!some && some.error().code == ErrorCode::invalid_argument) return is_missing(some.error());
+        if (!some) return some.error();
         was_there_ = true;
         missing_.reset();
-        source_.keep(*grid, read, step);
-        return field_varies(*grid, found->name);
+        source_.keep(*some, read, step);
+        return field_varies(some->grid, found->name);
     }
 
     /// Names that are preferred are looked at first: most often one of them is taken.
@@ -63,27 +63,27 @@ private:
             ++named;
         }
         if (named > 0 && fields.size() > most_at_first) {
-            const Result<Grid> grid = read_with_others(read, step);
-            if (!grid) return grid.error();
-            view_ = first_view(*grid, fields);
+            const Result<ReadResult> some = read_with_others(read, step);
+            if (!some) return some.error();
+            view_ = first_view(some->grid, fields);
             if (!view_.rough && (view_.reason == FirstReason::marked || view_.reason == FirstReason::name)) {
-                source_.keep(*grid, read, step);
+                source_.keep(*some, read, step);
                 return true;
             }
         }
-        const Result<Grid> grid = source_.read({}, step, caller_, run_);
-        if (!grid) return grid.error();
-        view_ = first_view(*grid, fields);
-        source_.keep(*grid, {}, step);
+        const Result<ReadResult> some = source_.read_some({}, step, caller_, run_);
+        if (!some) return some.error();
+        view_ = first_view(some->grid, fields);
+        source_.keep(*some, {}, step);
         return view_.draw == FirstDraw::isosurfaces || view_.draw == FirstDraw::field_on_boundary;
     }
 
-    Result<Grid> read_with_others(FieldsToRead& read, std::size_t step) {
+    Result<ReadResult> read_with_others(FieldsToRead& read, std::size_t step) {
         for (const auto& [names, more] : {std::pair(&read.point, &wish_.also.point), {&read.cell, &wish_.also.cell}}) {
             if (!*more) names->reset();
             else if (*names) add_names(**names, **more);
         }
-        return source_.read(read, step, caller_, run_);
+        return source_.read_some(read, step, caller_, run_);
     }
 
     GridSource& source_;

@@ -312,14 +312,14 @@ std::vector<std::string> GridSource::names(Association association) const {
 
 struct GridSource::Kept {
     std::mutex mutex;
-    std::optional<Grid> grid;
+    std::optional<ReadResult> read;
     FieldsToRead fields;
     std::size_t step = 0;
 
-    std::optional<Grid> take(const FieldsToRead& wanted, std::size_t wanted_step);
+    std::optional<ReadResult> take(const FieldsToRead& wanted, std::size_t wanted_step, CellsToRead cells);
     bool is_there() {
         const std::lock_guard lock(mutex);
-        return grid.has_value();
+        return read && !read->cells_in_file;
     }
 };
 
@@ -341,46 +341,71 @@ void leave(std::vector<Field>& fields, const Names& wanted) {
 
 } // namespace
 
-std::optional<Grid> GridSource::Kept::take(const FieldsToRead& wanted, std::size_t wanted_step) {
+std::optional<ReadResult> GridSource::Kept::take(const FieldsToRead& wanted, std::size_t wanted_step,
+                                                 CellsToRead cells) {
     const std::lock_guard lock(mutex);
-    if (!grid || step != wanted_step || !holds_all(fields.point, wanted.point) || !holds_all(fields.cell, wanted.cell))
+    if (!read || step != wanted_step || !holds_all(fields.point, wanted.point) || !holds_all(fields.cell, wanted.cell))
         return std::nullopt;
-    leave(grid->point_fields, wanted.point);
-    leave(grid->cell_fields, wanted.cell);
-    return std::exchange(grid, std::nullopt);
+    if (read->cells_in_file && cells == CellsToRead::all) return std::nullopt;
+    leave(read->grid.point_fields, wanted.point);
+    leave(read->grid.cell_fields, wanted.cell);
+    return std::exchange(read, std::nullopt);
 }
 
-void GridSource::keep(Grid grid, const FieldsToRead& fields, std::size_t step) {
+void GridSource::keep(ReadResult read, const FieldsToRead& fields, std::size_t step) {
     kept_ = std::make_shared<Kept>();
-    kept_->grid = std::move(grid);
+    kept_->read = std::move(read);
     kept_->fields = fields;
     kept_->step = step;
 }
 
-Result<Grid> GridSource::read(const FieldsToRead& fields, std::size_t step, Caller& caller, const Run& run) const {
-    if (kept_)
-        if (auto kept = kept_->take(fields, step)) return *std::move(kept);
-    Grid grid;
+Result<ReadResult> GridSource::read_unclosed(const FieldsToRead& fields, std::size_t step, CellsToRead cells,
+                                             Caller& caller, const Run& run) const {
     if (made_) {
         MakeOptions made = *made_;
         if (fields.point) made.fields = *fields.point;
-        Result<Grid> result = make_grid(made, run);
-        if (!result) return result.error();
-        grid = *std::move(result);
-    } else {
-        Result<ReadResult> result = read_file(fields, step, read_options_, run);
-        if (!result) return result.error();
-        caller.notes(result->notes);
-        grid = std::move(result->grid);
+        Result<Grid> grid = make_grid(made, run);
+        if (!grid) return grid.error();
+        ReadResult result;
+        result.grid = *std::move(grid);
+        return result;
     }
+    ReadOptions options = read_options_;
+    if (cells == CellsToRead::some && !options_.merge_points && options_.displace.empty())
+        options.some_cells = FieldSample::max_cells;
+    Result<ReadResult> result = read_file(fields, step, std::move(options), run);
+    if (result) caller.notes(result->notes);
+    return result;
+}
+
+Result<ReadResult> GridSource::read_cells(const FieldsToRead& fields, std::size_t step, CellsToRead cells,
+                                          Caller& caller, const Run& run) const {
+    if (kept_)
+        if (auto kept = kept_->take(fields, step, cells)) return *std::move(kept);
+    Result<ReadResult> result = read_unclosed(fields, step, cells, caller, run);
+    if (!result || result->cells_in_file) return result;
     if (options_.merge_points) {
-        Result<Grid> joined = merged(grid, {*options_.merge_points, options_.merge_values}, caller, run);
-        if (!joined) return joined;
-        grid = *std::move(joined);
+        Result<Grid> joined = merged(result->grid, {*options_.merge_points, options_.merge_values}, caller, run);
+        if (!joined) return joined.error();
+        result->grid = *std::move(joined);
     } else {
-        caller.note(coincident_points_note(grid));
+        caller.note(coincident_points_note(result->grid));
     }
-    return closed(std::move(grid), options_.hanging_points, caller, run);
+    Result<Grid> grid = closed(std::move(result->grid), options_.hanging_points, caller, run);
+    if (!grid) return grid.error();
+    result->grid = *std::move(grid);
+    return result;
+}
+
+Result<Grid> GridSource::read(const FieldsToRead& fields, std::size_t step, Caller& caller, const Run& run) const {
+    Result<ReadResult> result = read_cells(fields, step, CellsToRead::all, caller, run);
+    if (!result) return result.error();
+    return std::move(result->grid);
+}
+
+Result<ReadResult> GridSource::read_some(const FieldsToRead& fields, std::size_t step, Caller& caller,
+                                         const Run& run) const {
+    return read_cells(fields, step, CellsToRead::some, caller, run);
 }
 
 Result<ReadResult> GridSource::read_active(const FieldsToRead& fields, std::size_t step, const ReadActiveCells& active,

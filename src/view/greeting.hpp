@@ -2,10 +2,13 @@
 // What a page is told first: who is there, and what there is to look at.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <isotet/grid.hpp>
+#include <isotet/packed_file.hpp>
 
 #include "view/grid_view.hpp"
 #include "view/json.hpp"
@@ -19,6 +22,8 @@ struct ViewerInput {
     ViewState state; ///< to begin with; no isovalues: Chart::first
     std::vector<std::string> notes;
     std::vector<double> times; ///< of the file's steps; fewer than two: it has one
+    std::optional<PackedFile> packed = {}; ///< where the grid lies, packed; then `grid` has some of its `cells`
+    std::uint64_t cells = 0;
 };
 
 /// {"say": "welcome", ...}: 64 colours of each map among it.

@@ -12,7 +12,7 @@ Result<Surface> GridView::whole_isosurface(const PartsMessage& message, double i
     if (packed) {
         const Result<PointField> field = field_of(message.state.field, run);
         if (!field) return field.error();
-        return lean_->isosurface(*field, isovalue, {}, run);
+        return lean_->isosurface(*field, step_, isovalue, {}, run);
     }
     if (message.refined && refines()) {
         Result<ContourInput> input = input_of(message.state.field, {}, run);

@@ -31,7 +31,7 @@ Result<Surface> GridView::solid_of_pick(const PickMessage& message, const Run& r
 Result<Surface> GridView::surface_of_pick(const PickMessage& message, const Run& run) {
     const bool packed = is_packed_.load(std::memory_order_acquire) && lean_;
     ExtractOptions with_all;
-    with_all.source_cells = !packed || lean_knows_cells_;
+    with_all.source_cells = !packed || lean_->knows_cells();
     with_all.point_fields = grid_.point_fields;
     with_all.cell_fields = grid_.cell_fields;
     const Plane* plane = message.slice ? &message.state.slices[*message.slice] : nullptr;
@@ -40,7 +40,7 @@ Result<Surface> GridView::surface_of_pick(const PickMessage& message, const Run&
     Result<PointField> field = plane ? slice_field(grid_.points, *plane, run) : field_of(message.state.field, run);
     if (!field) return field.error();
     const double isovalue = plane ? plane->offset : message.state.isovalues.front();
-    if (packed) return lean_->isosurface(*field, isovalue, with_all, run);
+    if (packed) return lean_->isosurface(*field, step_, isovalue, with_all, run);
     ContourOptions options;
     options.method = Method::direct;
     options.source_cells = true;

@@ -95,15 +95,28 @@ Result<std::unique_ptr<GridView>> GridView::create(Grid grid, const GridViewOpti
     view->step_ = options.step;
     if (options.read_step && options.steps > 1)
         view->steps_ = std::make_unique<StepReader>(options.read_step, options.threads);
+    if (options.packed) view->open_packed();
     return view;
+}
+
+/// The cells that are here are a sample.
+void GridView::open_packed() {
+    cell_count_ = options_.cells;
+    const std::uint64_t taken = std::max<std::uint64_t>(1, grid_.cells.count());
+    sample_ = CellSample{{grid_.points, std::exchange(grid_.cells, {}), {}, {}},
+                         static_cast<double>(options_.cells) / static_cast<double>(taken)};
+    has_cells_ = false;
+    lean_.emplace(*options_.packed);
+    is_packed_.store(true, std::memory_order_release);
 }
 
 Result<PointField> GridView::field_of(const std::string& name, const Run& run) {
     constexpr std::size_t max_found = 8; // averaged fields and magnitudes take memory
     if (const auto found = found_.find(name); found != found_.end()) return found->second;
     const auto offered = std::ranges::find(fields_, name, &OfferedField::name);
-    if (offered == fields_.end() || offered->association == Association::cell)
-        if (Result<void> here = need_cells(run); !here) return here.error(); // it may be averaged
+    const bool may_average = offered == fields_.end() || offered->association == Association::cell;
+    if (may_average && !grid_.cell_fields.empty())
+        if (Result<void> here = need_cells(run); !here) return here.error();
     Result<PointField> field = find_field(grid_, name, {}, run);
     if (!field) return field;
     if (found_.size() >= max_found) found_.clear();
@@ -158,7 +171,8 @@ Result<void> GridView::go_to_step(std::optional<std::uint64_t> wanted, const Run
                      fmt::format("step {} is asked for, but the file has steps 0 to {}", *wanted, options_.steps - 1)};
     Result<Grid> grid = steps_->take(*wanted, run);
     if (!grid) return grid.error();
-    const bool same = same_cells(*grid, grid_);
+    if (is_of_file()) grid->cells = grid_.cells; // all steps have the same
+    const bool same = is_of_file() || same_cells(*grid, grid_);
     {
         const std::lock_guard lock(grid_mutex_);
         grid_ = *std::move(grid);
@@ -195,6 +209,7 @@ Result<void> GridView::tell_field(const std::string& field, FrameFacts& facts, c
 }
 
 Result<void> GridView::pack(const std::string& field, const Run& run) {
+    if (is_of_file()) return {};
     // The cache of fields is frame()'s: this thread finds its own, in a copy that shares the arrays.
     std::unique_lock lock(grid_mutex_);
     const Grid grid = grid_;
@@ -222,7 +237,6 @@ Result<void> GridView::take_packed(const PackedGrid& packed, const std::string& 
     Result<PointField> contoured = field_of(field, run);
     if (!contoured) return contoured.error();
     lean_.emplace(packed, *std::move(contoured));
-    lean_knows_cells_ = packed.report().source_bytes > 0;
     packed_.field = field;
     packed_.step = step_;
     is_packed_.store(true, std::memory_order_release);
@@ -234,7 +248,7 @@ Result<void> GridView::find_boundary(const Run& run) {
     const Grid grid = grid_;
     const std::uint64_t number = grid_number_;
     lock.unlock();
-    Result<Surface> boundary = boundary_of(grid, run);
+    Result<Surface> boundary = is_of_file() ? PackedSource(*options_.packed).boundary(run) : boundary_of(grid, run);
     if (!boundary) return boundary.error();
     Result<Mesh> mesh = mesh_of(*boundary, nullptr, run);
     if (!mesh) return mesh.error();
@@ -253,9 +267,10 @@ bool GridView::may_release_cells(const Grid& grid) const {
 /// Reads the file again where the cells were released.
 Result<void> GridView::need_cells(const Run& run) {
     if (has_cells_) return {};
-    Result<Grid> again = options_.read_step(step_, run);
+    Result<Grid> again = (is_of_file() ? options_.read_cells : options_.read_step)(step_, run);
     if (!again) return again.error();
-    if (!same_values(again->points, grid_.points) || sum_of(again->cells) != cells_sum_)
+    const bool first = is_of_file() && cells_sum_ == 0;
+    if (!same_values(again->points, grid_.points) || (!first && sum_of(again->cells) != cells_sum_))
         return Error{ErrorCode::invalid_data, "the file has changed since it was read: it has other points or cells now, "
                                               "so what needs its cells cannot be shown. Start isotet view again"};
     const std::lock_guard lock(grid_mutex_);
@@ -266,10 +281,8 @@ Result<void> GridView::need_cells(const Run& run) {
 
 void GridView::rest() {
     if (is_packed_.load(std::memory_order_acquire) && lean_ && has_cells_ && !solids_) {
-        if (!sample_) {
-            sample_ = sample_of_cells(grid_);
-            cells_sum_ = sum_of(grid_.cells);
-        }
+        if (!sample_) sample_ = sample_of_cells(grid_);
+        if (cells_sum_ == 0) cells_sum_ = sum_of(grid_.cells);
         direct_.contour.reset();
         const std::lock_guard lock(grid_mutex_);
         grid_.cells = {};

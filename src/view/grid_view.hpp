@@ -41,6 +41,9 @@ struct GridViewOptions {
     std::size_t steps = 1;                 ///< of the file
     std::optional<RefineOptions> refine = RefineOptions{}; ///< of curved cells, as ShowMessage::refined asks
     ReadStep read_step; ///< of any step. Nothing: there is one step, and cells stay in memory
+    std::optional<PackedFile> packed; ///< where the grid lies, packed: then read_step need not give all cells
+    std::uint64_t cells = 0;          ///< of it, of which the grid has some
+    ReadStep read_cells;              ///< with `packed`: of any step with all cells
 };
 
 /// A frame in bytes. `known` of GridView::frame() are then the surfaces that the page has.
@@ -80,6 +83,9 @@ public:
     /// Packs the grid for `field`. frame() extracts directly until then, and from the packed grid afterwards.
     /// Errors   as Contour::prepare(); frame() then goes on directly
     Result<void> pack(const std::string& field, const Run& run);
+
+    /// Whether the grid lies in a packed file: pack() does nothing then.
+    bool is_of_file() const noexcept { return options_.packed.has_value(); }
 
     /// Takes a packed grid of the same cells and points, as a packed file holds it, in place of pack().
     /// Errors   as find_field()
@@ -146,6 +152,7 @@ private:
         std::vector<double> isovalues = {}; ///< that `contour` is for, where it has only polyhedra that these meet
     };
     GridView() = default;
+    void open_packed();
     Result<void> need_cells(const Run& run);
     bool may_release_cells(const Grid& grid) const;
     Result<ExtractOptions> carried_fields(const std::string& color_by, const Run& run);
@@ -201,7 +208,6 @@ private:
     std::uint64_t cell_count_ = 0;
     std::optional<Solids> solids_;     ///< of solids_key_, while solids are shown
     std::string solids_key_;
-    bool lean_knows_cells_ = true;     ///< lean_ has source cells
     std::optional<PackedSource> lean_; ///< instead of packed_, where cells may be released
     std::optional<CellSample> sample_; ///< of the cells that were released
     std::uint64_t cells_sum_ = 0;      ///< of these, to know them again

@@ -57,7 +57,7 @@ Result<std::shared_ptr<const Mesh>> GridView::packed_mesh_at(const ViewState& st
     const Result<ExtractOptions> options = carried_fields(state.color_by, run);
     if (!options) return options.error();
     const auto start = std::chrono::steady_clock::now();
-    const Result<Surface> surface = lean_->isosurface(*field, isovalue, *options, run);
+    const Result<Surface> surface = lean_->isosurface(*field, step_, isovalue, *options, run);
     if (!surface) return surface.error();
     making.facts.extract_seconds += seconds_of(start);
     return keep(key, state, *surface, making.facts, run);

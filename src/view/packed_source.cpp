@@ -1,31 +1,65 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "view/packed_source.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include <isotet/boundary.hpp>
 #include <isotet/plan.hpp>
 
 namespace isotet::view {
 
-Result<Surface> PackedSource::isosurface(const PointField& field, double isovalue, const ExtractOptions& options,
-                                         const Run& run) {
-    if (field.name != field_.name || field.values.data() != field_.values.data()) {
-        const Result<PackedGrid> changed = packed_.with_field(field, run);
-        if (!changed) return changed.error();
-        packed_ = *changed;
-        field_ = field;
+/// All arrays in memory, of any field.
+Result<PackedGrid> PackedSource::whole(const Run& run) {
+    if (!file_) return *packed_;
+    if (!whole_) {
+        Result<PackedGrid> loaded = file_->load(file_->info().fields.front().report.name, 0, run);
+        if (!loaded) return loaded;
+        whole_ = *std::move(loaded);
     }
-    Result<Extraction> extracted = extract(packed_, isovalue, options, run);
+    return *whole_;
+}
+
+Result<PackedGrid> PackedSource::grid_of(const PointField& field, std::size_t step, const Run& run) {
+    if (packed_ && field.name == field_.name && field.values.data() == field_.values.data()) return *packed_;
+    const auto is_it = [&](const PackedFieldInfo& one) { return one.step == step && one.report.name == field.name; };
+    Result<PackedGrid> changed = Error{};
+    if (file_ && std::ranges::any_of(file_->info().fields, is_it)) changed = file_->grid(field.name, step, run);
+    else {
+        const Result<PackedGrid> all = whole(run);
+        if (!all) return all;
+        changed = all->with_field(field, run);
+    }
+    if (!changed) return changed;
+    packed_ = *changed;
+    field_ = field;
+    return changed;
+}
+
+Result<Surface> PackedSource::isosurface(const PointField& field, std::size_t step, double isovalue,
+                                         const ExtractOptions& options, const Run& run) {
+    const Result<PackedGrid> packed = grid_of(field, step, run);
+    if (!packed) return packed.error();
+    Result<Extraction> extracted = extract(*packed, isovalue, options, run);
     if (!extracted) return extracted.error();
     return std::move(extracted->surface);
 }
 
+Result<Surface> PackedSource::boundary(const Run& run) {
+    if (!file_) return boundary_of(*packed_, run);
+    const Result<PackedGrid> grid = file_->grid(file_->info().fields.front().report.name, 0, run);
+    if (!grid) return grid.error();
+    return boundary_of(*grid, run);
+}
+
 Result<Surface> PackedSource::slice(const Array& points, const Plane& plane, const ExtractOptions& options,
-                                    const Run& run) const {
+                                    const Run& run) {
     const Result<PointField> field = slice_field(points, plane, run);
     if (!field) return field.error();
-    const Result<PackedGrid> heights = packed_.with_field(*field, run);
+    const Result<PackedGrid> all = whole(run);
+    if (!all) return all.error();
+    const Result<PackedGrid> heights = all->with_field(*field, run);
     if (!heights) return heights.error();
     Result<Extraction> extracted = extract(*heights, plane.offset, options, run);
     if (!extracted) return extracted.error();

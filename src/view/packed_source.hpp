@@ -2,31 +2,52 @@
 // A packed grid without the arrays that it was made of: surfaces of any field, slices.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <utility>
 
 #include <isotet/extract.hpp>
 #include <isotet/isosurface_scene.hpp>
 #include <isotet/pack.hpp>
+#include <isotet/packed_file.hpp>
 
 namespace isotet::view {
 
 /// Threads   one call at a time
 class PackedSource {
 public:
-    /// `packed`   of a grid of linear cells, for `field`, with source cells
-    PackedSource(const PackedGrid& packed, PointField field) : packed_(packed), field_(std::move(field)) {}
+    /// `packed`   of a grid of linear cells, for `field`
+    PackedSource(const PackedGrid& packed, PointField field)
+        : packed_(packed), field_(std::move(field)), knows_cells_(packed.report().source_bytes > 0) {}
+
+    /// Surfaces of the fields of the file read what they meet; other fields, and slices, bring all of it into memory once.
+    explicit PackedSource(const PackedFile& file) : file_(file), knows_cells_(file.info().source_cells) {}
+
+    /// Surfaces can have source cells.
+    bool knows_cells() const noexcept { return knows_cells_; }
 
     /// `options`   fields that the surface carries
-    /// Cost     where `field` is not that of the call before, PackedGrid::with_field(), too
-    /// Errors   as PackedGrid::with_field() and extract()
-    Result<Surface> isosurface(const PointField& field, double isovalue, const ExtractOptions& options, const Run& run);
+    /// `step`      of the field, where it is one of a file
+    /// Cost     where `field` is not that of the call before, PackedFile::grid() or PackedGrid::with_field(), too
+    /// Errors   as these and extract()
+    Result<Surface> isosurface(const PointField& field, std::size_t step, double isovalue,
+                               const ExtractOptions& options, const Run& run);
 
     /// What slice_of() gives, in another order. Cost and errors as above
-    Result<Surface> slice(const Array& points, const Plane& plane, const ExtractOptions& options, const Run& run) const;
+    Result<Surface> slice(const Array& points, const Plane& plane, const ExtractOptions& options, const Run& run);
+
+    /// As boundary_of(). Errors   as there, and as PackedFile::grid()
+    Result<Surface> boundary(const Run& run);
 
 private:
-    PackedGrid packed_;
+    Result<PackedGrid> grid_of(const PointField& field, std::size_t step, const Run& run);
+    Result<PackedGrid> whole(const Run& run);
+
+    std::optional<PackedFile> file_;
+    std::optional<PackedGrid> packed_; ///< of field_
     PointField field_;
+    std::optional<PackedGrid> whole_; ///< of a file, once something needs all
+    bool knows_cells_;
 };
 
 /// A grid of a few cells of another, spread evenly over their numbers; the same points. All cells where there are no more.

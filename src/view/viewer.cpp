@@ -195,6 +195,9 @@ void Viewer::Data::read_and_pack() {
     view_options.step = input->state.step.value_or(0);
     view_options.steps = std::max<std::size_t>(1, input->times.size());
     view_options.read_step = options.read_step;
+    view_options.packed = std::move(input->packed);
+    view_options.cells = input->cells;
+    view_options.read_cells = options.read_cells;
     view_options.refine = options.refine;
     Result<std::unique_ptr<GridView>> made = GridView::create(std::move(input->grid), view_options);
     if (!made) return set_failure(made.error());

@@ -36,7 +36,8 @@ struct ViewerOptions {
     std::size_t max_pages = 4;                           ///< at once
     int threads = 0;                                     ///< at most; 0: all
     std::function<Result<ViewerInput>(const Run&)> read; ///< called by a thread of its own
-    ReadStep read_step;                                  ///< of any step; nothing: the file is not read again
+    ReadStep read_step;  ///< of any step, as ViewerInput has it; nothing: the file is not read again
+    ReadStep read_cells; ///< the same with all cells, where ViewerInput has some
     std::optional<RefineOptions> refine =
         RefineOptions{}; ///< of curved cells where a page rests; nothing: it is not done
     std::string out;     ///< a folder where pages may save files; empty: they may not

@@ -119,8 +119,7 @@ TEST(PackedFile, SaysWhichFieldsThereAre) {
     EXPECT_EQ(file.grid("gyroit").error().message,
               "field 'gyroit' is not in the file at step 0, which has 'gyroid', 'integer'");
     EXPECT_EQ(file.grid("").error().message, "no field was named, but the file has 'gyroid', 'integer'");
-    EXPECT_EQ(file.grid("gyroid", 2).error().message,
-              "step 2 is not there, but the file has 1 step, counted from 0");
+    EXPECT_EQ(file.grid("gyroid", 2).error().message, "step 2 is not there, but the file has 1 step, counted from 0");
 }
 
 TEST(PackedWriter, RefusesFieldsOfOtherCells) {
@@ -168,13 +167,13 @@ TEST(PackedWriter, AddsStepsToAFile) {
     const std::string path = saved(packed, folder);
     const PointField next{"gyroid", grid.point_fields[1].values, false, {}};
     const PackedFile before = PackedFile::open(path).value();
-    for (const PackedGrid& second : {before.load().value().with_field(next).value(), pack(grid, next, options).value()}) {
+    for (const PackedGrid& second :
+         {before.load().value().with_field(next).value(), pack(grid, next, options).value()}) {
         PackedWriter::append(second, path, 2.5).value(); // without commit(): as if it was killed
         EXPECT_EQ(PackedFile::open(path).value().info().steps, 1u);
         const std::size_t step = PackedFile::open(path).value().info().steps;
         PackedWriter writer = PackedWriter::append(second, path, 2.5).value();
-        EXPECT_EQ(PackedWriter::append(second, path, 3).error().message,
-                  path + " is being written by another program");
+        EXPECT_EQ(PackedWriter::append(second, path, 3).error().message, path + " is being written by another program");
         writer.commit().value();
         const PackedFile file = PackedFile::open(path).value();
         file.check().value();
@@ -247,6 +246,23 @@ TEST(PackedFile, IsReadAsAGrid) {
     EXPECT_EQ(result.grid.point_fields[0].values.type(), ScalarType::int32);
     EXPECT_EQ(survey(result.grid).value().boundary_faces, survey(grid).value().boundary_faces);
     EXPECT_EQ(survey(result.grid).value().cells_by_type, survey(grid).value().cells_by_type);
+}
+
+TEST(PackedFile, GivesSomeOfItsCellsToReadersThatNeedNoMore) {
+    const Grid grid = made_grid("mixed", 5, {"gyroid", "integer"});
+    const PackedGrid packed = pack(grid, point_field(grid)).value();
+    const TemporaryFolder folder;
+    const std::string path = saved(packed, folder, 2'000, {packed.with_field(point_field(grid, 1)).value()});
+    ReadOptions options;
+    options.some_cells = 20;
+    const ReadResult some = read(path, options).value();
+    EXPECT_EQ(some.cells_in_file, grid.cells.count());
+    EXPECT_LE(some.grid.cells.count(), 20u);
+    ASSERT_EQ(some.grid.point_fields.size(), 2u);
+    EXPECT_EQ(some.grid.point_fields[1].values.type(), ScalarType::int32);
+    EXPECT_FALSE(read(path).value().cells_in_file);
+    options.point_fields.emplace();
+    EXPECT_TRUE(read(path, options).value().grid.point_fields.empty());
 }
 
 TEST(PackedFile, IsReadByAnotherReaderWrittenFromItsDescription) {

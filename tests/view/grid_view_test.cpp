@@ -6,7 +6,10 @@
 #include <atomic>
 
 #include <isotet/make.hpp>
+#include <isotet/packed_file.hpp>
+#include <isotet/read.hpp>
 
+#include "support/temporary_folder.hpp"
 #include "view/frame_reader.hpp"
 #include "view/grid_view.hpp"
 
@@ -791,6 +794,117 @@ TEST_F(LeanGridView, SaysThatTheFileHasChanged) {
     ASSERT_FALSE(spectrum);
     EXPECT_TRUE(spectrum.error().message.starts_with("the file has changed since it was read"))
         << spectrum.error().message;
+}
+
+/// A grid that lies in a packed file of two steps, beside the same grid in memory.
+class GridViewOfFile : public testing::Test {
+protected:
+    TemporaryFolder folder_;
+    std::string path_ = folder_.file("grid.isotet");
+    int reads_ = 0;
+    Grid grid_ = made_grid(12);
+    std::unique_ptr<GridView> of_file_, full_;
+
+    GridViewOfFile() {
+        grid_.cell_fields.clear();
+        grid_.point_fields.pop_back(); // the vectors: a packed file has scalars
+        const PackedGrid sphere = pack(grid_, find_field(grid_, "sphere").value(), {.source_cells = true}).value();
+        const PackedGrid gyroid = sphere.with_field(find_field(grid_, "gyroid").value()).value();
+        PackedWriter writer = PackedWriter::create(sphere, path_, {.more_fields = {gyroid}, .time = 0}).value();
+        writer.add_step(sphere.with_field(doubled("sphere")).value(), 1).value();
+        writer.add_field(gyroid).value();
+        writer.commit().value();
+        full_ = GridView::create(grid_).value();
+        EXPECT_TRUE(full_->pack("sphere", {}));
+        EXPECT_TRUE(full_->find_boundary({}));
+        GridViewOptions options;
+        options.steps = 2;
+        options.packed = PackedFile::open(path_).value();
+        options.cells = grid_.cells.count();
+        options.read_step = [this](std::size_t step, const isotet::Run&) { return read_step(step, 100); };
+        options.read_cells = [this](std::size_t step, const isotet::Run&) {
+            ++reads_;
+            return read_step(step, 0);
+        };
+        of_file_ = GridView::create(read_step(0, 100).value(), options).value();
+        EXPECT_TRUE(of_file_->pack("sphere", {}));
+        EXPECT_TRUE(of_file_->find_boundary({}));
+    }
+    PointField doubled(const char* name) const {
+        PointField field = find_field(grid_, name).value();
+        std::vector<float> values;
+        for (const float value : field.values.as<float>()) values.push_back(2 * value);
+        field.values = Array::own(std::move(values));
+        return field;
+    }
+    Result<Grid> read_step(std::size_t step, std::uint64_t cells) const {
+        ReadOptions options;
+        options.step = step;
+        options.some_cells = cells;
+        Result<ReadResult> result = read(path_, options);
+        if (!result) return result.error();
+        return std::move(result->grid);
+    }
+    static Json head(GridView& view, const ShowMessage& message) {
+        std::vector<std::string> known;
+        return head_of(view.frame(message, 0, known, {}).value().bytes);
+    }
+    static std::vector<std::uint64_t> triangles(GridView& view, const ShowMessage& message) {
+        std::vector<std::uint64_t> counts;
+        const Json all = head(view, message);
+        for (const Json& surface : all["surfaces"]) counts.push_back(surface["triangles"].get<std::uint64_t>());
+        return counts;
+    }
+};
+
+TEST_F(GridViewOfFile, ShowsTheSameSurfacesSlicesAndBoundaryWithoutReadingCells) {
+    EXPECT_FALSE(of_file_->has_cells());
+    EXPECT_EQ(of_file_->cells(), full_->cells());
+    EXPECT_EQ(of_file_->points(), full_->points());
+    ShowMessage message = show(1, {0.7, 0.4});
+    message.state.slices = {Plane{{1, 2, 0.5}, 0.1}};
+    message.state.boundary = 0.5;
+    for (const char* field : {"gyroid", "sphere", "x", "sphere + gyroid"})
+        for (const char* colors : {"", "gyroid", "sphere"}) {
+            message.state.field = field;
+            message.state.color_by = colors;
+            EXPECT_EQ(triangles(*of_file_, message), triangles(*full_, message)) << field << " by " << colors;
+        }
+    PickMessage pick;
+    pick.state = show(1, {0.7}).state;
+    pick.point = {0.31, 0.42, 0.53};
+    const Picked a = of_file_->pick(pick, {}).value(), b = full_->pick(pick, {}).value();
+    for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(a.point[axis], b.point[axis], 1e-6);
+    EXPECT_EQ(a.cell, b.cell) << "the file has source cells";
+    const Chart chart = of_file_->chart("sphere", {}).value(), expected = full_->chart("sphere", {}).value();
+    EXPECT_EQ(chart.points, expected.points);
+    EXPECT_GT(chart.triangles[Chart::bins / 2], 0);
+    EXPECT_EQ(reads_, 0);
+    EXPECT_FALSE(of_file_->has_cells());
+}
+
+TEST_F(GridViewOfFile, ShowsStepsByTheirValuesAlone) {
+    ShowMessage message = show(1, {1.4});
+    message.state.step = 1;
+    ShowMessage half = show(1, {0.7});
+    EXPECT_EQ(triangles(*of_file_, message), triangles(*full_, half)) << "values are twice as large";
+    EXPECT_EQ(head(*of_file_, message)["range"][1], 2 * full_->chart("sphere", {}).value().upper);
+    message.state.step = 0;
+    EXPECT_EQ(triangles(*of_file_, message), triangles(*full_, show(1, {1.4})));
+    EXPECT_EQ(reads_, 0);
+}
+
+TEST_F(GridViewOfFile, ReadsAllCellsForSolidsAndGivesThemBack) {
+    ShowMessage message = show(1, {0.7});
+    message.state.solid = SolidSide::above;
+    EXPECT_EQ(triangles(*of_file_, message), triangles(*full_, message));
+    EXPECT_EQ(reads_, 1);
+    message.state.solid.reset();
+    EXPECT_EQ(triangles(*of_file_, message), triangles(*full_, message));
+    of_file_->rest();
+    EXPECT_FALSE(of_file_->has_cells());
+    EXPECT_TRUE(of_file_->spectrum("sphere", {}));
+    EXPECT_EQ(reads_, 2);
 }
 
 TEST(SampleOfCells, HasCellsOfTheGridAndSaysHowManyEachStandsFor) {

@@ -79,8 +79,8 @@ public:
     /// The error for a name that is no field's: those that there are, nearest first.
     Error no_such_field(const std::string& name) const;
 
-    /// A step that was read is given out by the next read() of the same step that asks for no more than `fields`.
-    void keep(Grid grid, const FieldsToRead& fields, std::size_t step);
+    /// A step that was read is given out by the next call that reads of the same step no more than these fields and cells.
+    void keep(ReadResult read, const FieldsToRead& fields, std::size_t step);
 
     /// Reads one time step, merges points if asked to, closes the grid at hanging points, and notes what the reader reports, and
     /// points that coincide.
@@ -88,6 +88,9 @@ public:
         return read(fields, step, caller, caller.run());
     }
     Result<Grid> read(const FieldsToRead& fields, std::size_t step, Caller& caller, const Run& run) const;
+
+    /// The same, for looking at fields: of a packed file some cells, spread evenly (ReadResult::cells_in_file).
+    Result<ReadResult> read_some(const FieldsToRead& fields, std::size_t step, Caller& caller, const Run& run) const;
 
     /// The same; where that can be done, only the active cells (ReadResult::cells_in_file). Points are never merged then; where
     /// some of the cells may have hanging points, all are read.
@@ -98,6 +101,11 @@ public:
 
 private:
     struct Kept;
+    enum class CellsToRead : std::uint8_t { all, some };
+    Result<ReadResult> read_cells(const FieldsToRead& fields, std::size_t step, CellsToRead cells, Caller& caller,
+                                  const Run& run) const;
+    Result<ReadResult> read_unclosed(const FieldsToRead& fields, std::size_t step, CellsToRead cells, Caller& caller,
+                                     const Run& run) const;
     Result<ReadResult> read_file(const FieldsToRead& fields, std::size_t step, ReadOptions options,
                                  const Run& run) const;
 

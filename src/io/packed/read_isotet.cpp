@@ -2,10 +2,12 @@
 #include "io/packed/read_isotet.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 #include <isotet/packed_file.hpp>
 
+#include "base/memory.hpp"
 #include "base/parallel.hpp"
 #include "io/packed/file_grid.hpp"
 
@@ -37,6 +39,23 @@ Result<FileInfo> inspect_isotet(const std::string& path, const ReadOptions& opti
     return info;
 }
 
+using LoadField = std::function<Result<std::shared_ptr<const core::Packed>>(const FieldEntry&)>;
+
+/// How the fields of a file become packed grids: whole ones that share their cells, or such as are read in parts.
+Result<LoadField> loader(const std::shared_ptr<const PackedSource>& source, bool in_parts, const Progress& progress) {
+    if (!in_parts)
+        return LoadField([&source = *source, &progress, cells = std::shared_ptr<const core::Packed>()](
+                             const FieldEntry& field) mutable -> Result<std::shared_ptr<const core::Packed>> {
+            auto packed = whole_grid_of_file(source, field, cells.get(), progress);
+            if (packed) cells = *packed;
+            return packed;
+        });
+    auto store = PackedStore::open(source, core::free_memory() / 2, progress);
+    if (!store) return store.error();
+    return LoadField(
+        [store = *store, &progress](const FieldEntry& field) { return grid_of_file(store, field, progress); });
+}
+
 Result<ReadResult> read_isotet(const std::string& path, const ReadOptions& options, const Progress& progress) {
     const auto source = PackedSource::open(path);
     if (!source) return source.error();
@@ -47,26 +66,35 @@ Result<ReadResult> read_isotet(const std::string& path, const ReadOptions& optio
     if (!step) return step.error();
     result.step = *step;
     const Run run{core::threads_here(), progress};
+    const auto load = loader(*source, options.some_cells > 0, progress);
+    if (!load) return load.error();
     std::shared_ptr<const core::Packed> cells;
-    const auto load = [&](const FieldEntry& field) { return whole_grid_of_file(**source, field, cells.get(), progress); };
+    std::vector<Field> fields;
     for (const FieldEntry& field : directory.fields) {
         if (field.step != *step || !wanted(options, Association::point, field.name)) continue;
-        const auto packed = load(field);
+        const auto packed = (*load)(field);
         if (!packed) return packed.error();
         Result<Field> values = unpack_field(PackedGrid(*packed), run);
         if (!values) return values.error();
-        result.grid.point_fields.push_back(*std::move(values));
+        fields.push_back(*std::move(values));
         cells = *packed;
     }
     if (!cells) { // no field is wanted
-        const auto packed = load(directory.fields.front());
+        const auto packed = (*load)(directory.fields.front());
         if (!packed) return packed.error();
         cells = *packed;
     }
-    Result<Grid> grid = unpack(PackedGrid(cells), run);
-    if (!grid) return grid.error();
-    grid->point_fields = std::move(result.grid.point_fields);
-    result.grid = *std::move(grid);
+    if (options.some_cells > 0) {
+        Result<UnpackedSample> sample = unpack_sample(PackedGrid(cells), options.some_cells, run);
+        if (!sample) return sample.error();
+        result.grid = std::move(sample->grid);
+        result.cells_in_file = sample->cells;
+    } else {
+        Result<Grid> grid = unpack(PackedGrid(cells), run);
+        if (!grid) return grid.error();
+        result.grid = *std::move(grid);
+    }
+    result.grid.point_fields = std::move(fields);
     return result;
 }
 

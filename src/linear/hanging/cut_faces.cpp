@@ -137,7 +137,7 @@ private:
             FaceWalk walk(cells_, faces_);
             for (std::size_t cell = begin; cell < end; ++cell)
                 each_cut(walk, cell, [&](const OpenFaces::Place&, std::span<const std::uint64_t> loop) {
-                    const FaceHash face = hash_of(loop);
+                    const FaceHash face = linear::hash_of(loop);
                     std::atomic_ref(sum_at(face.lowest)).fetch_xor(face.hash, std::memory_order_relaxed);
                 });
         });
@@ -149,7 +149,7 @@ private:
         return gathered<FoundFace>([&](FaceWalk& walk, std::size_t first, std::size_t last, Found& part) {
             for (std::size_t cell = first; cell < last; ++cell)
                 each_cut(walk, cell, [&](const OpenFaces::Place& place, std::span<const std::uint64_t> loop) {
-                    if (sum_at(std::ranges::min(loop)) != 0) part.push_back({hash_of(loop).hash, place});
+                    if (sum_at(std::ranges::min(loop)) != 0) part.push_back({linear::hash_of(loop).hash, place});
                 });
         });
     }
