@@ -51,7 +51,13 @@ class CutFaceFinder {
 public:
     CutFaceFinder(const core::CellReader& cells, const core::FaceReader& faces, const core::PointReader& points,
                   const CutRule& rule, const Progress& progress)
-        : cells_(cells), faces_(faces), points_(points), rule_(rule), progress_(progress), sums_(slots(cells)) {}
+        : cells_(cells),
+          faces_(faces),
+          points_(points),
+          rule_(rule),
+          progress_(progress),
+          sums_(slots(cells)),
+          cut_(cells.count()) {}
 
     /// Of the sums of hashes.
     static std::size_t slots(const core::CellReader& cells) { return std::bit_ceil(cells.count() + 1); }
@@ -94,12 +100,16 @@ public:
     }
 
 private:
-    /// Calls use(place, loop) for each face of a cell that is cut.
+    /// Which faces of the open cell are cut: a bit each, or `listed` where they are asked one by one.
+    std::uint8_t cut_faces_of(const FaceWalk& walk) const {
+        return walk.whole() ? static_cast<std::uint8_t>(rule_.cut_faces(*walk.whole())) : listed;
+    }
+
+    /// Calls use(place, loop) for each face that is cut of the open cell.
     template <class Use>
     void each_cut(FaceWalk& walk, std::size_t cell, const Use& use) const {
-        if (!walk.open(cell)) return;
-        if (const core::WholeCell* const whole = walk.whole()) {
-            for (std::uint32_t cut = rule_.cut_faces(*whole); cut != 0; cut &= cut - 1) {
+        if (cut_[cell] != listed) {
+            for (std::uint32_t cut = cut_[cell]; cut != 0; cut &= cut - 1) {
                 const OpenFaces::Place place{cell, static_cast<std::uint32_t>(std::countr_zero(cut))};
                 use(place, walk.loop(place));
             }
@@ -135,11 +145,13 @@ private:
         std::ranges::fill(sums_, std::uint64_t{0});
         core::parallel_pieces(cells_.count(), cells_per_list, progress_, [&](std::size_t begin, std::size_t end) {
             FaceWalk walk(cells_, faces_);
-            for (std::size_t cell = begin; cell < end; ++cell)
+            for (std::size_t cell = begin; cell < end; ++cell) {
+                cut_[cell] = walk.open(cell) ? cut_faces_of(walk) : 0;
                 each_cut(walk, cell, [&](const OpenFaces::Place&, std::span<const std::uint64_t> loop) {
                     const FaceHash face = linear::hash_of(loop);
                     std::atomic_ref(sum_at(face.lowest)).fetch_xor(face.hash, std::memory_order_relaxed);
                 });
+            }
         });
     }
 
@@ -147,10 +159,13 @@ private:
     std::vector<FoundFace> collect() const {
         using Found = std::vector<FoundFace>;
         return gathered<FoundFace>([&](FaceWalk& walk, std::size_t first, std::size_t last, Found& part) {
-            for (std::size_t cell = first; cell < last; ++cell)
+            for (std::size_t cell = first; cell < last; ++cell) {
+                if (cut_[cell] == 0) continue;
+                walk.open(cell);
                 each_cut(walk, cell, [&](const OpenFaces::Place& place, std::span<const std::uint64_t> loop) {
                     if (sum_at(std::ranges::min(loop)) != 0) part.push_back({linear::hash_of(loop).hash, place});
                 });
+            }
         });
     }
 
@@ -175,7 +190,9 @@ private:
     const core::PointReader& points_;
     const CutRule& rule_;
     const Progress& progress_;
-    core::Buffer<std::uint64_t> sums_; ///< of the hashes of faces, by the low bits of their lowest points
+    static constexpr std::uint8_t listed = 0xff; ///< cells have at most six faces, others list them
+    core::Buffer<std::uint64_t> sums_;           ///< of the hashes of faces, by the low bits of their lowest points
+    core::Buffer<std::uint8_t> cut_;             ///< cut_faces_of() each cell; 0 where it has no volume
 };
 
 /// Whether one of the places of `middles` is over a face from number `first` on.
@@ -251,7 +268,8 @@ std::uint32_t CutRule::cut_faces(const core::WholeCell& cell) const {
 
 Result<bool> has_smaller_cut_faces(const core::CellReader& cells, const core::FaceReader& faces,
                                    const core::PointReader& points, const CutRule& rule, const Progress& progress) {
-    if (auto fits = core::require_memory("looking for hanging points", 8 * CutFaceFinder::slots(cells)); !fits)
+    if (auto fits = core::require_memory("looking for hanging points", 8 * CutFaceFinder::slots(cells) + cells.count());
+        !fits)
         return fits.error();
     CutFaceFinder finder(cells, faces, points, rule, progress);
     OpenFaces all = finder.alone();

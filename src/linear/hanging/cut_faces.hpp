@@ -42,7 +42,7 @@ private:
 
 /// Whether a face that is cut, and that no other cell has, lies on a larger face of another cell.
 ///
-/// Cost     two passes over the cells, 8 to 16 bytes each, and their boxes in a tree of the cut faces that one cell has
+/// Cost     two passes over the cells, 9 to 17 bytes each, and their boxes in a tree of the cut faces that one cell has
 /// Errors   out_of_memory; cancelled
 Result<bool> has_smaller_cut_faces(const core::CellReader& cells, const core::FaceReader& faces,
                                    const core::PointReader& points, const CutRule& rule, const Progress& progress);
