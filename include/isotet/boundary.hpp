@@ -12,11 +12,12 @@ namespace isotet {
 /// The boundary of a packed grid: all faces that its tets do not use equally often in both directions, holes of no data
 /// not counted. Triangles face outwards; a face that is used more than once too often stands there once.
 ///
-/// Guarantees   the same bytes for any thread count
-/// Cost         O(T log T); about 5 to 10 bytes a tet while it works, and the surface. A grid in a file is read once, in parts
+/// Guarantees   the same bytes for any thread count; a point's faces are missed with probability 2^-64 (see Method)
+/// Cost         O(T); 8 bytes a point while it works, and the surface. A grid in a file is read in parts, twice where it does
+///              not fit its memory
 /// Errors       out_of_memory; of a grid in a file: as PackedFile; cancelled
 /// Threads      safe from many threads on one packed grid
-/// Method       faces cancel within each cluster first; those left over are sorted
+/// Method       a signed sum of hashes a point, 64 bits, says where faces do not cancel; those there are sorted
 ISOTET_API Result<Surface> boundary_of(const PackedGrid& packed, const Run& run = {});
 
 /// The boundary of a grid that is not packed: all faces that its tets, repeated ones aside, do not use equally often in

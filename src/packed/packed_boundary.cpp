@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <mutex>
 #include <tuple>
@@ -12,9 +13,12 @@
 
 #include <tbb/parallel_sort.h>
 
+#include "base/buffer.hpp"
 #include "base/carry_out.hpp"
+#include "base/memory.hpp"
 #include "base/parallel.hpp"
 #include "grid/boundary_faces.hpp"
+#include "numbers/point_hash.hpp"
 #include "packed/packed.hpp"
 #include "packed/residency.hpp"
 #include "packed/stored_cells.hpp"
@@ -83,23 +87,82 @@ void add_faces(const Packed& packed, std::size_t cluster, std::vector<LocalFace>
     }
 }
 
-Result<std::vector<PackedFace>> packed_boundary(const Packed& packed, const Progress& progress) {
-    std::vector<PackedFace> faces;
-    std::mutex mutex;
+/// Sums of the hashes of faces at their lowest points, signed by how they are used: 0 where all faces cancel.
+class FaceSums {
+public:
+    explicit FaceSums(const Packed& packed) : packed_(packed), sums_(packed.points()) {
+        parallel_ranges(sums_.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+            std::fill(sums_.data() + begin, sums_.data() + end, std::uint64_t{0});
+        });
+    }
+
+    void add(std::size_t cluster) {
+        std::array<std::uint64_t, max_cluster_points> points{}, hashes{}, sums{};
+        const std::size_t count = local_points(packed_, cluster, points.data());
+        for (std::size_t i = 0; i < count; ++i) hashes[i] = mixed(points[i] + 1);
+        for_tets(packed_, cluster, [&](const std::array<std::uint8_t, 4>& corners, std::size_t) {
+            for (const auto& f : tet_faces) { // local indices ascend as packed points do
+                const LocalFace face = LocalFace::make({corners[f[0]], corners[f[1]], corners[f[2]]});
+                const auto& [a, b, c] = face.points;
+                const std::uint64_t hash = mixed(hashes[a] + hashes[b] + hashes[c]);
+                sums[a] += face.uses > 0 ? hash : -hash;
+            }
+        });
+        for (std::size_t i = 0; i < count; ++i)
+            if (sums[i] != 0) std::atomic_ref(sums_[points[i]]).fetch_add(sums[i], std::memory_order_relaxed);
+    }
+
+    bool is_open_at(std::uint64_t lowest) const { return sums_[lowest] != 0; }
+    bool is_open_in(std::size_t cluster) const {
+        std::array<std::uint64_t, max_cluster_points> points;
+        const std::size_t count = local_points(packed_, cluster, points.data());
+        return std::any_of(points.data(), points.data() + count, [&](std::uint64_t p) { return is_open_at(p); });
+    }
+
+private:
+    const Packed& packed_;
+    Buffer<std::uint64_t> sums_; ///< a point
+};
+
+/// Calls work(cluster, scratch) for all clusters, on all threads, and done(scratch) behind several of them.
+template <class Scratch, class Work, class Done>
+Result<void> for_clusters(const Packed& packed, const Progress& progress, const Work& work, const Done& done) {
     const std::vector<std::uint32_t> clusters = all_clusters(packed);
-    const auto add = [&](std::size_t first, std::size_t last) -> Result<void> {
+    return in_memory(packed, clusters, Parts::all, progress, [&](std::size_t first, std::size_t last) -> Result<void> {
         parallel_ranges(last - first, 256, [&](std::size_t begin, std::size_t end) {
             if (progress.cancelled()) return;
-            std::vector<LocalFace> local;
-            std::vector<PackedFace> found;
-            for (std::size_t i = first + begin; i < first + end; ++i) add_faces(packed, clusters[i], local, found);
-            const std::lock_guard lock(mutex);
-            faces.insert(faces.end(), found.begin(), found.end());
+            Scratch scratch;
+            for (std::size_t i = first + begin; i < first + end; ++i) work(clusters[i], scratch);
+            done(scratch);
         });
         if (progress.cancelled()) return Error{ErrorCode::cancelled, "finding the boundary was cancelled"};
         return {};
+    });
+}
+
+Result<std::vector<PackedFace>> packed_boundary(const Packed& packed, const Progress& progress) {
+    if (auto fits = require_memory("finding the boundary", sizeof(std::uint64_t) * packed.points()); !fits)
+        return fits.error();
+    FaceSums sums(packed);
+    struct Nothing {};
+    const auto add = [&](std::uint32_t cluster, Nothing&) { sums.add(cluster); };
+    if (auto added = for_clusters<Nothing>(packed, progress, add, [](Nothing&) {}); !added) return added.error();
+
+    struct Found {
+        std::vector<LocalFace> local;
+        std::vector<PackedFace> faces;
     };
-    if (auto added = in_memory(packed, clusters, Parts::all, progress, add); !added) return added.error();
+    std::vector<PackedFace> faces;
+    std::mutex mutex;
+    const auto look = [&](std::uint32_t cluster, Found& found) {
+        if (sums.is_open_in(cluster)) add_faces(packed, cluster, found.local, found.faces);
+    };
+    const auto keep = [&](Found& found) {
+        std::erase_if(found.faces, [&](const PackedFace& face) { return !sums.is_open_at(face.points[0]); });
+        const std::lock_guard lock(mutex);
+        faces.insert(faces.end(), found.faces.begin(), found.faces.end());
+    };
+    if (auto looked = for_clusters<Found>(packed, progress, look, keep); !looked) return looked.error();
     tbb::parallel_sort(faces.begin(), faces.end());
     cancel(faces);
     return faces;
