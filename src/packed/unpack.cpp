@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <type_traits>
 #include <vector>
 
@@ -109,6 +110,14 @@ Result<Array> unpacked_values_of(const Packed& packed, const Progress& progress)
         [&]<class T>(std::span<const T>) { return unpacked_values_as<T, Real>(packed, progress); });
 }
 
+/// Calls f(kind, local indices) with every cell of a cluster.
+template <class F>
+void for_cells(const Packed& packed, std::size_t cluster, const F& f) {
+    for (const StoredTet& tet : packed.cluster_tets(cluster))
+        f(CellKind::tetrahedron, std::span<const std::uint8_t>(tet.corners));
+    packed.for_other_cells(cluster, [&](const StoredCell& other) { f(other.kind, other.corners); });
+}
+
 /// Where the cells of each cluster begin.
 struct UnpackedCounts {
     std::vector<std::uint64_t> first_cell, first_corner; ///< one more than there are clusters
@@ -152,8 +161,7 @@ Cells unpacked_cells(const Packed& packed, const UnpackedCounts& counts) {
             for (const std::uint8_t local : corners)
                 connectivity[corner++] = static_cast<Index>(packed.user_point(locals[local]));
         };
-        for (const StoredTet& tet : packed.cluster_tets(c)) add(CellKind::tetrahedron, tet.corners);
-        packed.for_other_cells(c, [&](const StoredCell& other) { add(other.kind, other.corners); });
+        for_cells(packed, c, add);
     });
     Cells out;
     out.connectivity = std::move(connectivity).to_array();
@@ -241,8 +249,7 @@ private:
             offsets_.push_back(static_cast<std::int64_t>(connectivity_.size()));
             types_.push_back(vtk_types[static_cast<std::size_t>(kind)]);
         };
-        for (const StoredTet& tet : packed_.cluster_tets(c)) add(CellKind::tetrahedron, tet.corners);
-        packed_.for_other_cells(c, [&](const StoredCell& other) { add(other.kind, other.corners); });
+        for_cells(packed_, c, add);
     }
 
     const Packed& packed_;
