@@ -26,6 +26,11 @@ void add_bytes(const Command& command, const char* name, std::optional<std::uint
         "BYTES", help);
 }
 
+void add_memory(const Command& command, std::optional<std::uint64_t>& memory) {
+    add_bytes(command, "--memory", memory,
+              "Of a packed file, keep at most so much in memory, such as 2GB; default: half of what is free");
+}
+
 constexpr const char* program_details = R"(
 isotet FILE is short for isotet info FILE. FILE may be make:SHAPE:SIDE[:FIELDS] wherever a grid is read: a test grid
 made in memory, make:kuhn:64:gyroid for example.
@@ -305,14 +310,14 @@ void add_extract(const Command& program, ExtractCommand& extract) {
     add_surface_options(command, extract,
                         "Closed solids: the part of the grid where the field is at least the isovalue, below it, or "
                         "from A to B; cell field boundary: 1 on the grid's boundary, 0 on isosurfaces");
-    add_bytes(command, "--memory", extract.memory,
-              "Of a packed file, keep at most so much in memory, such as 2GB; default: half of what is free");
+    add_memory(command, extract.memory);
     add_common(command, extract.common);
     command.set_details(extract_details);
 }
 
 void add_render(const Command& program, RenderCommand& render) {
     const Command command = add_render_command(program, render);
+    add_memory(command, render.memory);
     add_machine_and_input(command, render.device, render.grid, render.common);
     const Option all_steps = command.add_flag("--all-steps", render.all_steps,
                                               "A picture of every time step, with one camera and one colour scale");

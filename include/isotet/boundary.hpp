@@ -1,6 +1,8 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <vector>
+
 #include <isotet/export.hpp>
 #include <isotet/pack.hpp>
 #include <isotet/progress.hpp>
@@ -19,6 +21,12 @@ namespace isotet {
 /// Threads      safe from many threads on one packed grid
 /// Method       a signed sum of hashes a point, 64 bits, says where faces do not cancel; those there are sorted
 ISOTET_API Result<Surface> boundary_of(const PackedGrid& packed, const Run& run = {});
+
+/// The same with the fields of packed grids of the same cells and points (with_field(), or of one PackedFile) as point fields,
+/// their values as unpack_field() gives them.
+/// Errors   as above; invalid_argument: other cells
+ISOTET_API Result<Surface> boundary_of(const PackedGrid& packed, const std::vector<PackedGrid>& fields,
+                                       const Run& run = {});
 
 /// The boundary of a grid that is not packed: all faces that its tets, repeated ones aside, do not use equally often in
 /// both directions: each tetrahedron upright, each other cell as a whole, so a twisted or folded one has no boundary inside.

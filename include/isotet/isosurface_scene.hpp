@@ -111,6 +111,13 @@ enum class ExtractOn : std::uint8_t {
     device, ///< or an error
 };
 
+/// A packed grid to contour, of a PackedFile say: no grid is needed, and surfaces come from the clusters that they meet.
+struct PackedScene {
+    PackedGrid grid;                  ///< with the field to contour
+    std::optional<PackedGrid> colors; ///< with the field of SceneLook::colors or boundary_colors
+    bool contours = true;             ///< else only the boundary is drawn
+};
+
 /// A grid to contour, and how.
 struct IsosurfaceOptions {
     Grid grid;                    ///< its own fields are not looked at
@@ -127,7 +134,9 @@ struct IsosurfaceOptions {
     /// gives it with all. Neither boundary nor slices are drawn then, and all is as large as the bounds say.
     std::function<Result<Grid>(const Run& run)> all_cells = {};
     std::vector<double> expected_isovalues = {}; ///< these
-    Box bounds = {};                             ///< of the points that any cell has
+    Box bounds = {};                             ///< of the points that any cell has; with `packed`, too
+    /// In place of `grid` and `field`. The CPU extracts; there are no slices, solids, volumes and colours of cells.
+    std::optional<PackedScene> packed = {};
 };
 
 /// A surface that is shown, or the tets that stand for it.
@@ -165,7 +174,7 @@ public:
     /// `device`   that will draw the scene; nothing: surfaces stay in the machine's memory, for draw()
     /// Errors   as Contour::create(), Contour::prepare(), Solids::create(), boundary_of(), TetStore::upload() and
     ///          TetIndex::create(); invalid_argument when options need a device and there is none, or a volume is to be
-    ///          drawn by one, or has no field, or solids go with either
+    ///          drawn by one, or has no field, or solids go with either, or a packed grid with what it does not take
     static Result<IsosurfaceScene> create(const std::optional<Device>& device, IsosurfaceOptions options,
                                           SceneLook look, const Run& run = {});
 

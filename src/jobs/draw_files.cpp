@@ -212,6 +212,7 @@ Result<DrawReport> draw_files(const DrawJob& job, Caller& caller) {
     const Result<Picture> last =
         draw_frames(*frames, job, *drawer, *source, report.input, *files, report.pictures, caller);
     if (!last) return last.error();
+    source->tell_what_was_read(caller);
     if (reference)
         if (Result<void> compared = compare(*last, *reference, job, report.pictures, caller); !compared)
             return compared.error();

@@ -15,6 +15,7 @@
 #include <isotet/levels.hpp>
 
 #include "base/stopwatch.hpp"
+#include "jobs/packed_picture.hpp"
 #include "jobs/refuse.hpp"
 #include "jobs/vertex_colors.hpp"
 
@@ -75,8 +76,9 @@ struct PictureSource::Contents {
     std::optional<ColorField> volume_colors;
     bool model = false; ///< the boundary is what is shown: opaque, coloured where there are colours
     std::uint64_t cells = 0; ///< of the grid in the file
-    Box bounds = {};         ///< where `all_cells` is set: the grid has only the active cells
+    Box bounds = {};         ///< where `all_cells` is set: the grid has only the active cells; or of `packed`
     std::function<Result<Grid>(const Run& run)> all_cells = {};
+    std::optional<PackedScene> packed = {}; ///< in place of the grid; `field` has values where they were needed
 };
 
 Result<PictureSource> PictureSource::open(const DrawJob& job, Caller& caller) {
@@ -102,6 +104,11 @@ Result<PictureSource> PictureSource::open(const DrawJob& job, Caller& caller) {
     if (!grid) return grid.error();
     if (auto paths = check_output_paths(grid->info().files, job.other_outputs); !paths) return paths.error();
     source.source_ = *std::move(grid);
+    if (source.source_->info().format == "isotet" && !needs_cells(job)) {
+        Result<PackedFile> file = PackedFile::open(job.grid.file, {job.memory.value_or(0)}, caller.run());
+        if (!file) return file.error();
+        source.packed_ = *std::move(file);
+    }
     if (auto chosen = source.choose_steps_and_view(caller); !chosen) return chosen.error();
     if (auto kept = source.keep_steps_with_fields(caller); !kept) return kept.error();
     return source;
@@ -216,16 +223,49 @@ Result<DrawInput> PictureSource::take_surface(const std::optional<Device>& devic
     return input;
 }
 
+/// The values of the field that is contoured, of all points.
+Result<PointField> PictureSource::field_at(std::size_t step, const std::string& name, Caller& caller) {
+    const Result<FoundField> found = choose_field(*source_, {name, job_.field.cell_field});
+    if (!found) return found.error();
+    const FieldsToRead read{found->point, found->cell};
+    if (packed_) {
+        const Result<ReadResult> some = source_->read_some(read, step, caller, caller.run());
+        if (!some) return some.error();
+        return find_chosen(some->grid, name, job_.field, caller);
+    }
+    const Result<Grid> grid = source_->read(read, step, caller);
+    if (!grid) return grid.error();
+    return find_chosen(*grid, name, job_.field, caller);
+}
+
+/// What a field of a step colours with. The range of a packed one is known; on a logarithmic scale its values count.
+Result<ColorField> PictureSource::colors_at(std::size_t step, const std::string& name, Caller& caller) {
+    const PackedFieldInfo* const packed = packed_ ? packed_field(packed_->info(), name, step, false) : nullptr;
+    if (packed && (!job_.scale.logarithmic || packed->report.lower > 0)) {
+        const Result<ColorOptions> options = color_options(job_.scale, job_.range);
+        if (!options) return options.error();
+        Result<FoundColors> found = colors_of_report(packed->report, *options, caller.run());
+        if (!found) return found.error();
+        caller.notes(found->notes);
+        return std::move(found->field);
+    }
+    const Result<FoundField> found = choose_field(*source_, {name, false});
+    if (!found) return found.error();
+    const FieldsToRead read{found->point, found->cell};
+    Result<ReadResult> some = Error{};
+    if (packed) some = source_->read_some(read, step, caller, caller.run());
+    if (packed && !some) return some.error();
+    const Result<Grid> grid = packed ? std::move(some->grid) : source_->read(read, step, caller);
+    if (!grid) return grid.error();
+    return colors_of(*grid, name, source_->info().regions, job_, caller);
+}
+
 /// The range of a field that colours over all steps becomes --range.
 Result<void> PictureSource::widen_range(const std::string& color, Caller& caller) {
     if (steps_.size() < 2 || color.empty() || !job_.range.empty()) return {};
-    const Result<FoundField> found = choose_field(*source_, {color, false});
-    if (!found) return found.error();
     ValueRange all{INFINITY, -INFINITY};
     for (const std::size_t step : steps_) {
-        const Result<Grid> grid = source_->read({found->point, found->cell}, step, caller);
-        if (!grid) return grid.error();
-        Result<ColorField> colors = colors_of(*grid, color, source_->info().regions, job_, caller);
+        const Result<ColorField> colors = colors_at(step, color, caller);
         if (!colors) return colors.error();
         if (!colors->classes.empty()) return {};
         const Result<ValueRange> one = colored_range(colors->values, job_.scale.logarithmic, caller.run());
@@ -240,12 +280,8 @@ Result<void> PictureSource::widen_range(const std::string& color, Caller& caller
 Result<ValueRange> PictureSource::typical_range_of_steps(const PointField& first, Caller& caller) {
     ValueRange all = typical_range(first.values);
     if (steps_.size() < 2) return all;
-    const Result<FoundField> found = choose_field(*source_, {first.name, job_.field.cell_field});
-    if (!found) return found.error();
     for (std::size_t which = 1; which < steps_.size(); ++which) {
-        const Result<Grid> grid = source_->read({found->point, found->cell}, steps_[which], caller);
-        if (!grid) return grid.error();
-        const Result<PointField> field = find_chosen(*grid, first.name, job_.field, caller);
+        const Result<PointField> field = field_at(steps_[which], first.name, caller);
         if (!field) return field.error();
         const ValueRange one = typical_range(field->values);
         if (!(one.lower <= one.upper)) continue; // no finite value
@@ -345,6 +381,48 @@ Result<void> PictureSource::read_cells(const FieldsToRead& fields, std::size_t s
     return {};
 }
 
+/// Whether all that is drawn of a step is in the packed file as it is drawn. An empty name is no field.
+bool PictureSource::is_packed(std::size_t step, const FoundField& contoured, const FoundField& colored) const {
+    if (!packed_) return false;
+    const auto has = [&](const FoundField& field, bool gradients) {
+        return field.name.empty() || packed_field(packed_->info(), field.name, step, gradients);
+    };
+    return has(contoured, job_.shade_by == ShadeBy::gradient) && has(colored, false);
+}
+
+/// Takes packed fields in place of a grid. Values are read only where isovalues follow from them.
+Result<void> PictureSource::take_packed(const FoundField& contoured, const FoundField& colored, std::size_t step,
+                                        Contents& contents, Caller& caller) {
+    const PackedFileInfo& info = packed_->info();
+    const auto grid_of = [&](const std::string& name) { return packed_->grid(name, step, caller.run()); };
+    const bool contours = !contoured.name.empty();
+    const auto first = std::ranges::find(info.fields, step, &PackedFieldInfo::step);
+    Result<PackedGrid> grid = grid_of(contours                 ? contoured.name
+                                      : !colored.name.empty() ? colored.name
+                                                              : first->report.name);
+    if (!grid) return grid.error();
+    contents.packed = PackedScene{*grid, {}, contours};
+    contents.cells = info.user_cells;
+    contents.bounds = {info.lower, info.upper};
+    if (contours) {
+        contents.field = PointField{contoured.name, {}, false, {}};
+        if (job_.isovalues.empty()) {
+            Result<PointField> values = field_at(step, contoured.name, caller);
+            if (!values) return values.error();
+            contents.field = *std::move(values);
+        }
+    }
+    if (colored.name.empty()) return {};
+    Result<PackedGrid> colors = colored.name == contoured.name ? grid : grid_of(colored.name);
+    if (!colors) return colors.error();
+    contents.packed->colors = *std::move(colors);
+    if (auto widened = widen_range(colored.name, caller); !widened) return widened;
+    Result<ColorField> field = colors_at(step, colored.name, caller);
+    if (!field) return field.error();
+    contents.colors = *std::move(field);
+    return {};
+}
+
 /// Reads what the picture needs of a step, and decides what it shows.
 Result<PictureSource::Contents> PictureSource::read_contents(std::size_t step, bool on_cpu, Caller& caller) {
     Contents contents;
@@ -357,18 +435,22 @@ Result<PictureSource::Contents> PictureSource::read_contents(std::size_t step, b
         if (auto taken = take_first_view(contours, field, color, contents, caller); !taken) return taken.error();
 
     FieldsToRead read{std::vector<std::string>(), std::vector<std::string>()};
-    FoundField contoured;
-    bool around = false; ///< colours follow from all cells around a point
+    FoundField contoured, colored;
     for (const auto& [name, is_contoured] : {std::pair(field, true), std::pair(color, false)}) {
         if (name.empty() || (is_contoured && !contours)) continue;
         const Result<FoundField> found = choose_field(*source_, {name, is_contoured && job_.field.cell_field});
         if (!found) return found.error();
         add_names(*read.point, found->point);
         add_names(*read.cell, found->cell);
-        if (is_contoured) contoured = *found;
-        else around = found->neighbours;
+        (is_contoured ? contoured : colored) = *found;
     }
-    const bool some_may_do = contours && on_cpu && !around;
+    if (is_packed(step, contoured, colored)) {
+        if (auto taken = take_packed(contoured, colored, step, contents, caller); !taken) return taken.error();
+        return contents;
+    }
+    if (source_->info().format == "isotet" && !std::exchange(told_of_cells_, true))
+        caller.note("all of the packed file is read and unpacked: what was asked for needs its cells, or is not packed");
+    const bool some_may_do = contours && on_cpu && !colored.neighbours; // else colours follow from all cells around
     const auto active = some_may_do ? active_cells(contents, contoured, read) : std::nullopt;
     if (auto done = read_cells(read, step, active, contents, caller); !done) return done.error();
     if (contours) {
@@ -438,9 +520,10 @@ Result<void> PictureSource::choose_isovalues(const Contents& contents, DrawInput
         if (steps_.size() > 1) job_.isovalues = input.isovalues;
         return {};
     }
+    input.isovalues = job_.isovalues;
+    if (job_.shares.empty()) return {};
     const auto found = isovalues_at(contents.grid, *contents.field, job_.shares, caller.run());
     if (!found) return found.error();
-    input.isovalues = job_.isovalues;
     input.isovalues.insert(input.isovalues.end(), found->begin(), found->end());
     return {};
 }
@@ -456,7 +539,7 @@ Result<DrawInput> PictureSource::read(std::size_t which, const std::optional<Dev
     if (auto found = find_sweep(*contents, caller); !found) return found.error();
     input.sweep = job_.sweep;
     const bool is_last = which + 1 == steps_.size();
-    if (!is_last && caller.run().threads != 1 && !contents->all_cells) read_ahead(steps_[which + 1], caller);
+    if (!is_last && caller.run().threads != 1 && !contents->all_cells && !contents->packed) read_ahead(steps_[which + 1], caller);
     input.format = source_->info().format;
     input.time = time_of(source_->info(), step);
     if (source_->info().times.size() > 1) input.step = step;
@@ -473,6 +556,7 @@ Result<DrawInput> PictureSource::read(std::size_t which, const std::optional<Dev
     options.grid = contents->grid;
     options.all_cells = contents->all_cells;
     options.bounds = contents->bounds;
+    options.packed = std::move(contents->packed);
     if (options.all_cells) options.expected_isovalues = input.isovalues;
     if (!job_.stretch.empty()) options.grid.points = stretched(options.grid.points, job_.stretch);
     options.surfaces = job_.sweep.empty() ? input.isovalues.size() : static_cast<std::uint64_t>(job_.sweep[2]);
@@ -493,6 +577,12 @@ Result<DrawInput> PictureSource::read(std::size_t which, const std::optional<Dev
     if (!scene) return scene.error();
     input.scene = *std::move(scene);
     return input;
+}
+
+void PictureSource::tell_what_was_read(Caller& caller) const {
+    if (!packed_) return;
+    caller.detail(fmt::format("{} of the {} bytes of the packed file were read", grouped(packed_->residency().bytes_read),
+                              grouped(packed_->info().file_bytes)));
 }
 
 } // namespace isotet::jobs

@@ -10,6 +10,7 @@
 #include <isotet/jobs/draw_files.hpp>
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/first_choice.hpp>
+#include <isotet/packed_file.hpp>
 
 namespace isotet::jobs {
 
@@ -30,6 +31,9 @@ public:
     /// Errors     as of reading and packing; invalid_argument where a field to colour by is none
     Result<DrawInput> read(std::size_t which, const std::optional<Device>& device, Caller& caller);
 
+    /// How much of a packed file the pictures took.
+    void tell_what_was_read(Caller& caller) const;
+
 private:
     struct Contents; ///< of one step
     explicit PictureSource(const DrawJob& job) : job_(job) {}
@@ -45,6 +49,11 @@ private:
                                                 const FieldsToRead& read) const;
     Result<void> read_cells(const FieldsToRead& fields, std::size_t step, const std::optional<ReadActiveCells>& active,
                             Contents& contents, Caller& caller);
+    bool is_packed(std::size_t step, const FoundField& contoured, const FoundField& colored) const;
+    Result<void> take_packed(const FoundField& contoured, const FoundField& colored, std::size_t step,
+                             Contents& contents, Caller& caller);
+    Result<ColorField> colors_at(std::size_t step, const std::string& name, Caller& caller);
+    Result<PointField> field_at(std::size_t step, const std::string& name, Caller& caller);
     Result<void> take_volume(Contents& contents, Caller& caller);
     Result<void> find_sweep(const Contents& contents, Caller& caller);
     Result<void> choose_isovalues(const Contents& contents, DrawInput& input, Caller& caller);
@@ -59,6 +68,8 @@ private:
     std::optional<Surface> surface_;
     double surface_seconds_ = 0;
     std::optional<GridSource> source_;
+    std::optional<PackedFile> packed_; ///< that is drawn without its grid
+    bool told_of_cells_ = false;       ///< that all of a packed file is needed
     std::vector<std::size_t> steps_;
     FirstView first_; ///< where no field is named
     std::optional<OpacityCurve> volume_opacity_; ///< of the first step

@@ -11,17 +11,21 @@
 #include <variant>
 #include <vector>
 
+#include <fmt/core.h>
 #include <tbb/parallel_sort.h>
 
 #include "base/buffer.hpp"
 #include "base/carry_out.hpp"
+#include "base/errors.hpp"
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
 #include "grid/boundary_faces.hpp"
 #include "numbers/point_hash.hpp"
+#include "packed/boundary_points.hpp"
 #include "packed/packed.hpp"
 #include "packed/residency.hpp"
 #include "packed/stored_cells.hpp"
+#include "packed/user_value.hpp"
 
 namespace isotet {
 
@@ -140,7 +144,7 @@ Result<void> for_clusters(const Packed& packed, const Progress& progress, const 
     });
 }
 
-Result<std::vector<PackedFace>> packed_boundary(const Packed& packed, const Progress& progress) {
+Result<std::vector<PackedFace>> boundary_faces(const Packed& packed, const Progress& progress) {
     if (auto fits = require_memory("finding the boundary", sizeof(std::uint64_t) * packed.points()); !fits)
         return fits.error();
     FaceSums sums(packed);
@@ -192,54 +196,91 @@ OwnedPoints owners_of(const Packed& packed, const std::vector<std::uint64_t>& po
     return owned;
 }
 
-/// `user(x, axis)`   a stored coordinate as the surface has it
-template <class To, class Real, class User>
-Result<Array> positions_of(const Packed& packed, const std::vector<std::uint64_t>& points, const User& user,
-                           const Progress& progress) {
-    const Real* const positions = packed.as<Real>().positions.data();
-    std::vector<To> out(3 * points.size());
+/// f(packed point, out) writes `components` numbers of each point.
+/// Errors   as Residency::bring()
+template <class To, class F>
+Result<Array> at_points(const Packed& packed, const std::vector<std::uint64_t>& points, std::size_t components,
+                        const Progress& progress, const F& f) {
+    std::vector<To> out(components * points.size());
     const OwnedPoints owned = owners_of(packed, points);
     const auto write = [&](std::size_t first, std::size_t last) -> Result<void> {
         const std::size_t begin = owned.first[first];
         parallel_each(owned.first[last] - begin, 1 << 14, [&](std::size_t k) {
-            const std::size_t i = begin + k;
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                out[3 * i + axis] = user(positions[3 * points[i] + axis], axis);
+            f(points[begin + k], out.data() + components * (begin + k));
         });
         return {};
     };
     if (auto done = in_memory(packed, owned.clusters, Parts::values, progress, write); !done) return done.error();
-    return Array::own(std::move(out), 3);
+    return Array::own(std::move(out), components);
 }
 
 template <class Real>
-Result<Array> positions_of(const Packed& packed, const std::vector<std::uint64_t>& points, const Progress& progress) {
+Result<Array> positions_at(const Packed& packed, const std::vector<std::uint64_t>& points, const Progress& progress) {
+    const Real* const positions = packed.as<Real>().positions.data();
     if (packed.point_type == ScalarType::float32)
-        return positions_of<Real, Real>(packed, points, [](Real x, std::size_t) { return x; }, progress);
-    const auto in_place = [&](Real x, std::size_t axis) { return static_cast<double>(x) + packed.origin[axis]; };
-    return positions_of<double, Real>(packed, points, in_place, progress);
+        return at_points<Real>(packed, points, 3, progress,
+                               [&](std::uint64_t p, Real* to) { std::copy_n(positions + 3 * p, 3, to); });
+    return at_points<double>(packed, points, 3, progress, [&](std::uint64_t p, double* to) {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            to[axis] = static_cast<double>(positions[3 * p + axis]) + packed.origin[axis];
+    });
 }
 
-Result<Surface> surface_of(const Packed& packed, const std::vector<PackedFace>& faces, const Progress& progress) {
-    const std::vector<std::uint64_t> points = points_of_faces(faces);
-    auto positions = packed.single() ? positions_of<float>(packed, points, progress)
-                                     : positions_of<double>(packed, points, progress);
+template <class Real>
+Result<Array> values_at(const Packed& packed, const std::vector<std::uint64_t>& points, const Progress& progress) {
+    const Real* const values = packed.as<Real>().values.data();
+    return packed.field.visit([&]<class T>(std::span<const T>) {
+        return at_points<T>(packed, points, 1, progress, [&](std::uint64_t p, T* to) {
+            *to = user_value<T>(static_cast<double>(values[p]), packed.storage);
+        });
+    });
+}
+
+/// Points of one grid have the same numbers in all of `fields`.
+Result<void> check_same_cells(const Packed& packed, const std::vector<PackedGrid>& fields) {
+    for (const PackedGrid& field : fields)
+        if (field.data().headers.data() != packed.headers.data() || field.data().reals.index() != packed.reals.index())
+            return invalid_argument(fmt::format("field '{}' is of another packed grid than the boundary", field.field().name));
+    return {};
+}
+
+Result<Surface> boundary_with(const Packed& packed, const std::vector<PackedGrid>& fields, const Progress& progress) {
+    if (auto same = check_same_cells(packed, fields); !same) return same.error();
+    auto found = find_boundary(packed, progress);
+    if (!found) return found.error();
+    auto positions = packed.single() ? positions_at<float>(packed, found->points, progress)
+                                     : positions_at<double>(packed, found->points, progress);
     if (!positions) return positions.error();
     Surface surface;
     surface.positions = *std::move(positions);
-    surface.triangles = triangles_of_faces(faces, points);
+    surface.triangles = std::move(found->triangles);
+    for (const PackedGrid& field : fields) {
+        auto values = packed.single() ? values_at<float>(field.data(), found->points, progress)
+                                      : values_at<double>(field.data(), found->points, progress);
+        if (!values) return values.error();
+        surface.point_fields.push_back({field.field().name, *std::move(values)});
+    }
     return surface;
 }
 
 } // namespace
+
+Result<PackedBoundary> find_boundary(const Packed& packed, const Progress& progress) {
+    const auto faces = boundary_faces(packed, progress);
+    if (!faces) return faces.error();
+    PackedBoundary boundary;
+    boundary.points = points_of_faces(*faces);
+    boundary.triangles = triangles_of_faces(*faces, boundary.points);
+    return boundary;
+}
+
 } // namespace core
 
-Result<Surface> boundary_of(const PackedGrid& packed, const Run& run) {
-    return core::carry_out("finding the boundary", run, [&](const Progress& progress) -> Result<Surface> {
-        const core::Packed& data = *packed.shared_data();
-        const auto faces = core::packed_boundary(data, progress);
-        if (!faces) return faces.error();
-        return core::surface_of(data, *faces, progress);
+Result<Surface> boundary_of(const PackedGrid& packed, const Run& run) { return boundary_of(packed, {}, run); }
+
+Result<Surface> boundary_of(const PackedGrid& packed, const std::vector<PackedGrid>& fields, const Run& run) {
+    return core::carry_out("finding the boundary", run, [&](const Progress& progress) {
+        return core::boundary_with(packed.data(), fields, progress);
     });
 }
 

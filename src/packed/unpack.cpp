@@ -16,6 +16,7 @@
 #include "numbers/storage.hpp"
 #include "packed/packed.hpp"
 #include "packed/residency.hpp"
+#include "packed/user_value.hpp"
 
 namespace isotet {
 namespace core {
@@ -74,21 +75,6 @@ Result<Array> unpacked_points_of(const Packed& packed, const Progress& progress)
                                                     : unpacked_points<double, Real>(packed, progress);
 }
 
-/// A value in the user's type: integers are rounded, and kept within it.
-template <class To>
-To as_user_value(double value) {
-    if constexpr (std::is_floating_point_v<To>) return static_cast<To>(value);
-    else {
-        if (is_nan(value)) return To{0};
-        const double lower = static_cast<double>(std::numeric_limits<To>::min());
-        const double upper = static_cast<double>(std::numeric_limits<To>::max());
-        const double rounded = std::nearbyint(value);
-        if (rounded <= lower) return std::numeric_limits<To>::min();
-        if (rounded >= upper) return std::numeric_limits<To>::max();
-        return static_cast<To>(rounded);
-    }
-}
-
 template <class To, class Real>
 Result<Array> unpacked_values_as(const Packed& packed, const Progress& progress) {
     const Real* const values = packed.as<Real>().values.data();
@@ -98,9 +84,7 @@ Result<Array> unpacked_values_as(const Packed& packed, const Progress& progress)
         return unused;
     };
     return by_user_point<To>(packed, 1, progress, no_value, [&](std::size_t p, To* to) {
-        const auto stored = static_cast<double>(values[p]);
-        if (std::abs(stored) >= stored_infinity) *to = as_user_value<To>(std::copysign(HUGE_VAL, stored));
-        else *to = as_user_value<To>(restore_value(stored, packed.storage));
+        *to = user_value<To>(static_cast<double>(values[p]), packed.storage);
     });
 }
 

@@ -19,6 +19,11 @@ Result<IsosurfaceScene> IsosurfaceScene::create(const std::optional<Device>& dev
                                                 SceneLook look, const Run& run) {
     return core::guarded("making a scene", [&]() -> Result<IsosurfaceScene> {
         auto data = std::make_unique<Data>(Data{device, std::move(look)});
+        if (options.packed) {
+            if (auto started = data->start_packed(options, run); !started) return started.error();
+            data->scene.bounds = data->bounds;
+            return IsosurfaceScene(std::move(data));
+        }
         if (data->look.volume && (device || options.draw || options.field.values.empty()))
             return invalid_argument(options.field.values.empty() ? "a volume without a field"
                                                                  : "a volume on a device, but the CPU draws volumes");

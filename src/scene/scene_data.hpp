@@ -53,8 +53,12 @@ struct IsosurfaceScene::Data {
     std::vector<std::string> notes = {};
 
     Result<void> look_around(const Grid& grid, const Run& run);
+    Result<void> look_around_packed(const IsosurfaceOptions& options, const Run& run);
+    void take_boundary(Surface found);
+    Result<void> add_boundary();
     Result<void> add_fixed(const Surface& one, const ColorField* field, const Color& color, double opacity);
     Result<void> start(IsosurfaceOptions options, const Run& run);
+    Result<void> start_packed(const IsosurfaceOptions& options, const Run& run);
     Result<void> load_tets(const IsosurfaceOptions& options, const Run& run);
     Result<void> show_tets(std::span<const double> isovalues);
     Result<void> show_extracted(std::span<const double> isovalues, const Run& run);

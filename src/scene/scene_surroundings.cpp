@@ -19,14 +19,10 @@ Result<void> IsosurfaceScene::Data::look_around(const Grid& grid, const Run& run
     if (look.boundary_opacity > 0) {
         Result<Surface> found = boundary_of(grid, run);
         if (!found) return found.error();
-        boundary = *std::move(found);
-        bounds = bounds_of(*boundary);
-        report.boundary_faces = boundary->triangle_count();
         if (look.boundary_colors)
-            if (auto colored = scene::color_boundary(*boundary, grid, *look.boundary_colors, run); !colored)
+            if (auto colored = scene::color_boundary(*found, grid, *look.boundary_colors, run); !colored)
                 return colored;
-        for (const Plane& plane : look.clips) boundary = scene::clipped(*boundary, plane);
-        if (look.edges) edges.push_back(scene::edges_of(*boundary));
+        take_boundary(*std::move(found));
     } else {
         const Result<GridReport> surveyed = survey(grid, {.faces = false}, run);
         if (!surveyed) return surveyed.error();
@@ -45,6 +41,32 @@ Result<void> IsosurfaceScene::Data::look_around(const Grid& grid, const Run& run
     }
     for (const Surface& slice : slices)
         if (auto added = add_fixed(slice, colors, single_color, 1); !added) return added;
+    return add_boundary();
+}
+
+/// The same of a packed grid, without slices.
+Result<void> IsosurfaceScene::Data::look_around_packed(const IsosurfaceOptions& options, const Run& run) {
+    if (look.boundary_opacity <= 0) return {};
+    const core::Stopwatch looking;
+    std::vector<PackedGrid> colors;
+    if (look.boundary_colors) colors.push_back(*options.packed->colors);
+    Result<Surface> found = boundary_of(options.packed->grid, colors, run);
+    if (!found) return found.error();
+    take_boundary(*std::move(found));
+    report.boundary_seconds = looking.seconds();
+    return add_boundary();
+}
+
+/// With its field of colours, if it has one.
+void IsosurfaceScene::Data::take_boundary(Surface found) {
+    bounds = bounds_of(found);
+    report.boundary_faces = found.triangle_count();
+    for (const Plane& plane : look.clips) found = scene::clipped(found, plane);
+    boundary = std::move(found);
+    if (look.edges) edges.push_back(scene::edges_of(*boundary));
+}
+
+Result<void> IsosurfaceScene::Data::add_boundary() {
     if (!boundary) return {};
     return add_fixed(*boundary, look.boundary_colors ? &*look.boundary_colors : nullptr, {0.62F, 0.66F, 0.70F, 1},
                      look.boundary_opacity);

@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <isotet/jobs/draw_files.hpp>
+#include <isotet/jobs/pack_file.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -88,6 +89,53 @@ TEST(DrawFiles, DrawsThePictureOfAllCellsFromActiveOnes) {
         EXPECT_EQ(report.pictures.camera, expected.pictures.camera);
         EXPECT_EQ(active.noted, all.noted);
         EXPECT_TRUE(test::content_of(folder.file("a.png")) == test::content_of(folder.file("b.png")));
+    }
+}
+
+std::string packed_file(const test::TemporaryFolder& folder) {
+    PackJob pack;
+    pack.grid.file = "make:mixed:9:gyroid,plane";
+    pack.out = folder.file("grid.isotet");
+    pack.gradients = true;
+    Listener listener;
+    pack_file(pack, listener).value();
+    return pack.out;
+}
+
+/// Axes that are stretched by 1 need the cells, so that all is unpacked.
+TEST(DrawFiles, DrawsThePictureOfTheGridFromAPackedFile) {
+    const test::TemporaryFolder folder;
+    DrawJob plain = small_picture(packed_file(folder), folder.file("a.png"));
+    plain.field.name = "gyroid";
+    DrawJob one = plain, colored = plain, by_boundary = plain, clipped = plain, logarithmic = plain;
+    one.isovalues = {0.1};
+    one.boundary = 0;
+    one.shade_by = ShadeBy::gradient;
+    colored.color_by = "plane";
+    colored.isovalues = {0.1, -0.3};
+    by_boundary.field.name = "";
+    by_boundary.boundary_color_by = "plane";
+    clipped.isovalues = {0.2};
+    clipped.clips = {{{1, 0, 0}, 0.5}};
+    clipped.edges = true;
+    logarithmic.isovalues = {0.1};
+    logarithmic.color_by = "gyroid";
+    logarithmic.scale.logarithmic = true;
+    for (DrawJob job : {plain, one, colored, by_boundary, clipped, logarithmic}) {
+        Listener from_file, from_grid;
+        const DrawReport report = draw_files(job, from_file).value();
+        job.stretch = {1, 1, 1};
+        job.out = folder.file("b.png");
+        job.reference = folder.file("a.png");
+        const DrawReport expected = draw_files(job, from_grid).value();
+        const auto told = [](const std::string& note) { return note.find("all of the packed file") != note.npos; };
+        EXPECT_FALSE(std::ranges::any_of(from_file.noted, told));
+        EXPECT_TRUE(std::ranges::any_of(from_grid.noted, told));
+        EXPECT_EQ(report.input.cells, expected.input.cells);
+        EXPECT_EQ(report.input.isovalues, expected.input.isovalues);
+        EXPECT_EQ(report.pictures.camera, expected.pictures.camera);
+        // The boundary's triangles come in another order, and so do the ends of their edges.
+        EXPECT_LE(expected.pictures.differs.value(), job.edges ? 0.02 : 0);
     }
 }
 

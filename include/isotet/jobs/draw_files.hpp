@@ -84,6 +84,7 @@ struct DrawJob {
     DeviceChoice device;
     std::optional<RefineOptions> refine = RefineOptions{}; ///< of curved cells; nothing: at their nodes only
     bool refine_averaged = false; ///< also for a field averaged from cells, which else is taken at the nodes only
+    std::optional<std::uint64_t> memory; ///< of a packed file, as PackedFileOptions::memory; nothing: half of what is free
 };
 
 /// What is drawn, of the last step.
