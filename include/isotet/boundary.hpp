@@ -15,8 +15,8 @@ namespace isotet {
 /// not counted. Triangles face outwards; a face that is used more than once too often stands there once.
 ///
 /// Guarantees   the same bytes for any thread count; a point's faces are missed with probability 2^-64 (see Method)
-/// Cost         O(T); 8 bytes a point while it works, and the surface. A grid in a file is read in parts, twice where it does
-///              not fit its memory
+/// Cost         O(T); 8 bytes a point while it works, and the surface. Packed files have their boundary, which is read alone;
+///              those of version 1.0 are read in parts, twice where they do not fit the memory
 /// Errors       out_of_memory; of a grid in a file: as PackedFile; cancelled
 /// Threads      safe from many threads on one packed grid
 /// Method       a signed sum of hashes a point, 64 bits, says where faces do not cancel; those there are sorted

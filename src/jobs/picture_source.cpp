@@ -11,6 +11,7 @@
 #include <isotet/field_statistics.hpp>
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/first_choice.hpp>
+#include <isotet/jobs/number_text.hpp>
 #include <isotet/jobs/output_names.hpp>
 #include <isotet/levels.hpp>
 
@@ -397,7 +398,7 @@ Result<void> PictureSource::take_packed(const FoundField& contoured, const Found
     const auto grid_of = [&](const std::string& name) { return packed_->grid(name, step, caller.run()); };
     const bool contours = !contoured.name.empty();
     const auto first = std::ranges::find(info.fields, step, &PackedFieldInfo::step);
-    Result<PackedGrid> grid = grid_of(contours                 ? contoured.name
+    Result<PackedGrid> grid = grid_of(contours                ? contoured.name
                                       : !colored.name.empty() ? colored.name
                                                               : first->report.name);
     if (!grid) return grid.error();
@@ -449,7 +450,8 @@ Result<PictureSource::Contents> PictureSource::read_contents(std::size_t step, b
         return contents;
     }
     if (source_->info().format == "isotet" && !std::exchange(told_of_cells_, true))
-        caller.note("all of the packed file is read and unpacked: what was asked for needs its cells, or is not packed");
+        caller.note(
+            "all of the packed file is read and unpacked: what was asked for needs its cells, or is not packed");
     const bool some_may_do = contours && on_cpu && !colored.neighbours; // else colours follow from all cells around
     const auto active = some_may_do ? active_cells(contents, contoured, read) : std::nullopt;
     if (auto done = read_cells(read, step, active, contents, caller); !done) return done.error();
@@ -539,7 +541,8 @@ Result<DrawInput> PictureSource::read(std::size_t which, const std::optional<Dev
     if (auto found = find_sweep(*contents, caller); !found) return found.error();
     input.sweep = job_.sweep;
     const bool is_last = which + 1 == steps_.size();
-    if (!is_last && caller.run().threads != 1 && !contents->all_cells && !contents->packed) read_ahead(steps_[which + 1], caller);
+    if (!is_last && caller.run().threads != 1 && !contents->all_cells && !contents->packed)
+        read_ahead(steps_[which + 1], caller);
     input.format = source_->info().format;
     input.time = time_of(source_->info(), step);
     if (source_->info().times.size() > 1) input.step = step;
@@ -581,8 +584,8 @@ Result<DrawInput> PictureSource::read(std::size_t which, const std::optional<Dev
 
 void PictureSource::tell_what_was_read(Caller& caller) const {
     if (!packed_) return;
-    caller.detail(fmt::format("{} of the {} bytes of the packed file were read", grouped(packed_->residency().bytes_read),
-                              grouped(packed_->info().file_bytes)));
+    caller.detail(fmt::format("{} of the {} bytes of the packed file were read",
+                              grouped(packed_->residency().bytes_read), grouped(packed_->info().file_bytes)));
 }
 
 } // namespace isotet::jobs

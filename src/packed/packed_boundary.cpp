@@ -205,9 +205,8 @@ Result<Array> at_points(const Packed& packed, const std::vector<std::uint64_t>& 
     const OwnedPoints owned = owners_of(packed, points);
     const auto write = [&](std::size_t first, std::size_t last) -> Result<void> {
         const std::size_t begin = owned.first[first];
-        parallel_each(owned.first[last] - begin, 1 << 14, [&](std::size_t k) {
-            f(points[begin + k], out.data() + components * (begin + k));
-        });
+        parallel_each(owned.first[last] - begin, 1 << 14,
+                      [&](std::size_t k) { f(points[begin + k], out.data() + components * (begin + k)); });
         return {};
     };
     if (auto done = in_memory(packed, owned.clusters, Parts::values, progress, write); !done) return done.error();
@@ -239,13 +238,31 @@ Result<Array> values_at(const Packed& packed, const std::vector<std::uint64_t>& 
 /// Points of one grid have the same numbers in all of `fields`.
 Result<void> check_same_cells(const Packed& packed, const std::vector<PackedGrid>& fields) {
     for (const PackedGrid& field : fields)
-        if (field.data().headers.data() != packed.headers.data() || field.data().reals.index() != packed.reals.index())
-            return invalid_argument(fmt::format("field '{}' is of another packed grid than the boundary", field.field().name));
+        if (field.data().headers.data() != packed.headers.data() ||
+            (field.data().residency != nullptr) != (packed.residency != nullptr))
+            return invalid_argument(
+                fmt::format("field '{}' is of another packed grid than the boundary", field.field().name));
     return {};
+}
+
+/// What the file has of a boundary.
+Result<std::optional<Surface>> stored_boundary(const Packed& packed, const std::vector<PackedGrid>& fields) {
+    if (!packed.residency) return std::optional<Surface>();
+    Result<std::optional<Surface>> boundary = packed.residency->boundary();
+    if (!boundary || !*boundary) return boundary;
+    for (const PackedGrid& field : fields) {
+        Result<Array> values = field.data().residency->boundary_values(); // of the same file: it has the same cells
+        if (!values) return values.error();
+        (*boundary)->point_fields.push_back({field.field().name, *std::move(values)});
+    }
+    return boundary;
 }
 
 Result<Surface> boundary_with(const Packed& packed, const std::vector<PackedGrid>& fields, const Progress& progress) {
     if (auto same = check_same_cells(packed, fields); !same) return same.error();
+    auto stored = stored_boundary(packed, fields);
+    if (!stored) return stored.error();
+    if (*stored) return std::move(**stored);
     auto found = find_boundary(packed, progress);
     if (!found) return found.error();
     auto positions = packed.single() ? positions_at<float>(packed, found->points, progress)

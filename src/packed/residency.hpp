@@ -5,12 +5,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include <isotet/export.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
+#include <isotet/surface.hpp>
 
 #include "packed/packed.hpp"
 
@@ -41,6 +43,12 @@ public:
     enum class Amount : std::uint8_t { fitting, all };
     virtual Result<Brought> bring(std::span<const std::uint32_t> clusters, Parts parts, Amount amount,
                                   const Progress& progress) const = 0;
+
+    /// The grid's boundary without fields, as boundary_of() gives it; nothing where the file does not have it.
+    /// Errors   as bring()
+    virtual Result<std::optional<Surface>> boundary() const = 0;
+    /// The values of the field at its points, as unpack_field() gives them. The file has the boundary.
+    virtual Result<Array> boundary_values() const = 0;
 
     /// Bytes of the file: read so far, and those of them in memory.
     struct Use {

@@ -95,8 +95,9 @@ Result<void> IsosurfaceScene::Data::start_packed(const IsosurfaceOptions& wanted
     const bool reworks = look.volume || look.solid || !look.slices.empty() || wanted.draw || by_cells(look.colors) ||
                          by_cells(look.boundary_colors) || wanted.where == ExtractOn::device;
     if (reworks || ((look.colors || look.boundary_colors) && !wanted.packed->colors))
-        return invalid_argument("a packed grid is given, of which the CPU draws isosurfaces and the boundary, coloured by "
-                                "packed fields, and nothing else");
+        return invalid_argument(
+            "a packed grid is given, of which the CPU draws isosurfaces and the boundary, coloured by "
+            "packed fields, and nothing else");
     bounds = wanted.bounds;
     if (auto looked = look_around_packed(wanted, run); !looked) return looked;
     if (!wanted.packed->contours) return {};

@@ -11,6 +11,7 @@
 
 #include <isotet/extract.hpp>
 #include <isotet/make.hpp>
+#include <isotet/boundary.hpp>
 #include <isotet/packed_file.hpp>
 
 #include "packed/right_checksums.hpp"
@@ -69,6 +70,10 @@ void extract_from(const std::string& path) {
     if (const auto checked = file->check(); !checked) expect_sentence(checked.error());
     const auto grid = file->grid();
     if (!grid) return expect_sentence(grid.error());
+    const auto boundary = boundary_of(*grid, {*grid});
+    if (!boundary) return expect_sentence(boundary.error());
+    for (const std::uint32_t vertex : boundary->triangles.as<std::uint32_t>())
+        if (vertex >= boundary->vertex_count()) std::abort();
     ExtractOptions options;
     options.normals = Normals::gradient;
     options.edge_ends = options.source_cells = true;

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <isotet/boundary.hpp>
 #include <isotet/check.hpp>
 #include <isotet/packed_file.hpp>
 
@@ -27,6 +28,11 @@ std::optional<Error> error_of(const std::string& path, const std::vector<double>
     if (!file) return file.error();
     const auto grid = file->grid();
     if (!grid) return grid.error();
+    const auto boundary = boundary_of(*grid, {*grid});
+    if (!boundary) return boundary.error();
+    for (const std::uint32_t vertex : boundary->triangles.as<std::uint32_t>())
+        EXPECT_LT(vertex, boundary->vertex_count());
+    if (surfaces) surfaces->push_back(bytes_of(*boundary));
     for (const double isovalue : isovalues) {
         const auto out = extract(*grid, isovalue, with_all(Ties::merge), {.threads = 1});
         if (!out) return out.error();
@@ -121,7 +127,7 @@ TEST(BrokenPackedFile, SaysWhatIsWrong) {
     newer[8] = 2;
     const std::uint32_t checksum = io::crc32c(std::as_bytes(std::span(newer)).first(20));
     std::memcpy(newer.data() + 20, &checksum, 4);
-    EXPECT_EQ(message(newer), folder.file("x") + ": it has version 2.0 of the format, but this isotet reads 1.x");
+    EXPECT_EQ(message(newer), folder.file("x") + ": it has version 2.1 of the format, but this isotet reads 1.x");
     EXPECT_EQ(message("solid"), folder.file("x") + ": a packed file has at least 4096 bytes, but this one has 5");
     EXPECT_EQ(message(std::string(5'000, 'x')), folder.file("x") + ": it does not begin as packed files do");
     EXPECT_EQ(message(whole.substr(0, 5'000)),

@@ -13,6 +13,8 @@
 
 #include "io/packed/piece_reader.hpp"
 #include "packed/packed_samples.hpp"
+#include "packed/right_checksums.hpp"
+#include "support/places.hpp"
 
 namespace isotet::test {
 namespace {
@@ -240,13 +242,57 @@ TEST(PackedChunks, OfASampleOfManyCellsAreFew) {
 
 TEST(PackedChunks, HaveTheBoundaryOfTheGridForAnyLimit) {
     for (const PackedSample& sample : packed_samples(5)) {
-        const std::string expected = bytes_of(boundary_of(sample.packed).value());
+        const std::string expected = bytes_of(boundary_of(sample.packed, {sample.packed}).value());
+        EXPECT_EQ(boundary_of(sample.packed).value().triangle_count(),
+                  boundary_of(sample.packed, {sample.packed}).value().triangle_count());
         const TemporaryFolder folder;
         const std::string path = saved(sample.packed, folder);
-        for (const std::uint64_t memory : {1, 20'000, 1'000'000'000})
-            EXPECT_TRUE(bytes_of(boundary_of(PackedFile::open(path, {memory}).value().grid().value()).value()) ==
-                        expected)
+        const PackedFile file = PackedFile::open(path).value();
+        const PackedGrid grid = file.grid().value();
+        EXPECT_TRUE(bytes_of(boundary_of(grid, {grid}).value()) == expected) << sample.name;
+        EXPECT_EQ(file.residency().pieces_read, 0u) << "the file has it";
+        const std::string old = folder.write("old.isotet", without_boundary(content_of(path)));
+        for (const std::uint64_t memory : {1, 20'000, 1'000'000'000}) {
+            const PackedGrid in_parts = PackedFile::open(old, {memory}).value().grid().value();
+            EXPECT_TRUE(bytes_of(boundary_of(in_parts, {in_parts}).value()) == expected)
                 << sample.name << ", " << memory;
+        }
+    }
+}
+
+TEST(PackedChunks, HaveValuesAtTheBoundaryOfTheirGridOnly) {
+    const Grid grid = made_grid("mixed", 3, {"gyroid", "integer"});
+    const PackedGrid packed = pack(grid, point_field(grid)).value(),
+                     other = packed.with_field(point_field(grid, 1)).value();
+    const TemporaryFolder folder;
+    const PackedFile file = PackedFile::open(saved(packed, folder, 2'000, {other})).value();
+    const Surface boundary = boundary_of(file.grid("gyroid").value(), {file.grid("integer").value()}).value();
+    ASSERT_EQ(boundary.point_fields.size(), 1u);
+    EXPECT_EQ(boundary.point_fields[0].values.type(), ScalarType::int32);
+    EXPECT_TRUE(bytes_of(boundary) == bytes_of(boundary_of(packed, {other}).value()));
+    const auto refused = boundary_of(file.grid("gyroid").value(), {packed});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().message, "field 'gyroid' is of another packed grid than the boundary");
+}
+
+/// Written by version 1.0: `isotet pack make:mixed:2:gyroid --source-cells --gradients`.
+TEST(PackedChunks, OfAnOldVersionAreReadAndAddedTo) {
+    const Grid grid = made_grid("mixed", 2, {"gyroid"});
+    PackOptions options;
+    options.source_cells = options.gradients = true;
+    const PackedGrid packed = pack(grid, point_field(grid), options).value();
+    const TemporaryFolder folder;
+    const std::string path =
+        folder.write("old.isotet", content_of((source_folder() / "tests/packed/data/version_1_0.isotet").string()));
+    for (const std::size_t steps : {1, 2}) {
+        const PackedFile file = PackedFile::open(path).value();
+        ASSERT_EQ(file.info().steps, steps);
+        EXPECT_TRUE(file.check());
+        const PackedGrid last = file.grid({}, steps - 1).value();
+        EXPECT_TRUE(bytes_of(boundary_of(last).value()) == bytes_of(boundary_of(packed).value()));
+        EXPECT_TRUE(bytes_of(extract(last, 0.1, with_all(Ties::merge)).value().surface) ==
+                    bytes_of(extract(packed, 0.1, with_all(Ties::merge)).value().surface));
+        if (steps == 1) PackedWriter::append(packed, path, 1.0).value().commit().value();
     }
 }
 

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <isotet/boundary.hpp>
+#include <isotet/check.hpp>
 #include <isotet/packed_file.hpp>
 #include <isotet/pieces.hpp>
 #include <isotet/read.hpp>
@@ -293,6 +295,18 @@ TEST(PackedFile, IsReadByAnotherReaderWrittenFromItsDescription) {
         sums >> read_corners >> read_values;
         EXPECT_EQ(read_corners, corners) << sample.name;
         EXPECT_NEAR(read_values, values, 1e-9 * std::abs(values) + 1e-6) << sample.name;
+        const Surface boundary = boundary_of(sample.packed, {sample.packed}).value();
+        std::string word;
+        std::size_t points = 0, triangles = 0;
+        double area = 0, boundary_values = 0, expected_values = 0;
+        sums >> word >> points >> triangles >> area >> boundary_values;
+        EXPECT_EQ(points, boundary.vertex_count()) << sample.name;
+        EXPECT_EQ(triangles, boundary.triangle_count()) << sample.name;
+        EXPECT_NEAR(area, check(boundary).value().area, 1e-5 * area) << sample.name;
+        for (std::size_t i = 0; i < points; ++i)
+            if (const double value = boundary.point_fields[0].values.at(i); !std::isnan(value))
+                expected_values += value;
+        EXPECT_NEAR(boundary_values, expected_values, 1e-9 * std::abs(expected_values) + 1e-6) << sample.name;
     }
 }
 

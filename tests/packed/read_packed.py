@@ -47,7 +47,7 @@ class Cursor:
 
 def read_directory(data):
     check(data[:8] == b"isotetP\n", "magic")
-    check(struct.unpack_from("<HHII", data, 8) == (1, 0, 0x01020304, 4096), "version")
+    check(struct.unpack_from("<HHII", data, 8) == (1, 1, 0x01020304, 4096), "version")
     check(crc32c(data[:20]) == struct.unpack_from("<I", data, 20)[0], "header")
     slots = []
     for at in (512, 1024):
@@ -137,6 +137,11 @@ def main(path):
             chunks = list(struct.iter_unpack("<8I", content))
         elif name == "FIELD":
             fields.append(read_field(content, len(chunks)))
+        elif name == "BOUNDARY":
+            boundary = struct.unpack_from("<3QI", content)
+        elif name == "BVALUES":
+            boundary_values = list(struct.iter_unpack("<QII", content))
+            check(len(boundary_values) == len(fields), "values at the boundary")
     field = fields[0]
     check(tuple(sum(chunk[k] for chunk in chunks) for k in range(5)) == grid["counts"], "counts")
     real, real_form = grid["real"], "f" if grid["real"] == 4 else "d"
@@ -189,6 +194,23 @@ def main(path):
     for kind in sorted(by_type):
         print(f"{kind}: {by_type[kind]}")
     print("sums", corner_sum, repr(value_sum))
+
+    points, triangles, at, crc = boundary
+    wide = grid["counts"][1] >= 1 << 32
+    size = points * ((8 if wide else 4) + 3 * real) + 12 * triangles
+    piece = read_piece(data, at, size, crc, "boundary")
+    packed = numbers("Q" if wide else "I", piece[:(8 if wide else 4) * points])
+    places = numbers(real_form, piece[(8 if wide else 4) * points:len(piece) - 12 * triangles])
+    corners = numbers("I", piece[len(piece) - 12 * triangles:])
+    area = 0.0
+    for i in range(0, len(corners), 3):
+        a, b, c = (places[3 * corner:3 * corner + 3] for corner in corners[i:i + 3])
+        u, v = [q - p for p, q in zip(a, b)], [q - p for p, q in zip(a, c)]
+        area += sum((u[k - 2] * v[k - 1] - u[k - 1] * v[k - 2]) ** 2 for k in range(3)) ** 0.5 / 2
+    at, crc, _ = boundary_values[0]
+    there = numbers(real_form, read_piece(data, at, points * real, crc, "values at the boundary"))
+    check(all(a == values[p] or a != a for a, p in zip(there, packed)), "values at the boundary")
+    print("boundary", points, triangles, area, sum(a / field["scale"] + field["offset"] for a in there if a == a))
 
 
 main(sys.argv[1])

@@ -14,6 +14,19 @@
 
 namespace isotet::test {
 
+/// The file with another directory in place of its last.
+inline std::string with_directory(std::string file, io::DirectorySlot slot, const io::PackedDirectory& d) {
+    const auto directory = io::encode_directory(d);
+    file.resize(slot.offset);
+    file.append(reinterpret_cast<const char*>(directory.data()), directory.size());
+    slot.bytes = directory.size();
+    slot.file_bytes = file.size();
+    slot.checksum = io::crc32c(directory);
+    const auto slot_bytes = io::encode_slot(slot);
+    std::memcpy(file.data() + io::packed_slots[0], slot_bytes.data(), slot_bytes.size());
+    return file;
+}
+
 /// Writes the checksums of whatever is in the file.
 inline std::string with_right_checksums(std::string file) {
     const auto bytes = [&](std::uint64_t at, std::uint64_t size) {
@@ -39,13 +52,19 @@ inline std::string with_right_checksums(std::string file) {
                 bytes(io::values_offsets(d, field)[k], d.values_bytes(d.chunks[k], field)));
         }
     }
-    const auto directory = io::encode_directory(d);
-    file.resize(slot.offset);
-    file.append(reinterpret_cast<const char*>(directory.data()), directory.size());
-    slot.checksum = io::crc32c(directory);
-    const auto slot_bytes = io::encode_slot(slot);
-    std::memcpy(file.data() + io::packed_slots[0], slot_bytes.data(), slot_bytes.size());
-    return file;
+    d.boundary->checksum = io::crc32c(bytes(d.boundary->offset, d.boundary_bytes()));
+    for (io::FieldEntry& field : d.fields)
+        field.boundary_checksum = io::crc32c(bytes(field.boundary_offset, d.boundary->points * d.real_bytes()));
+    return with_directory(std::move(file), slot, d);
+}
+
+/// As version 1.0 had files.
+inline std::string without_boundary(std::string file) {
+    const auto all = std::as_bytes(std::span(file));
+    const io::DirectorySlot slot = io::decode_packed_header(all, file.size()).value();
+    io::PackedDirectory d = io::decode_directory(all.subspan(slot.offset, slot.bytes), file.size()).value();
+    d.boundary.reset();
+    return with_directory(std::move(file), slot, d);
 }
 
 /// Only that of the directory, whatever is in it.

@@ -12,6 +12,7 @@
 
 #include <fmt/core.h>
 
+#include "io/packed/boundary_piece.hpp"
 #include "io/packed/directory.hpp"
 #include "io/packed/piece_reader.hpp"
 
@@ -30,7 +31,7 @@ Error AppendedFile::failed(int number) const {
 
 Result<OpenedForAppending> AppendedFile::open(const std::string& path) {
     if (const auto there = open_plain_file(path); !there) return there.error();
-    OpenedForAppending opened{AppendedFile(), {}};
+    OpenedForAppending opened{AppendedFile(), {}, {}};
     AppendedFile& file = opened.file;
     file.path_ = path;
     file.file_ = Descriptor(::open(path.c_str(), O_RDWR | O_CLOEXEC));
@@ -45,6 +46,11 @@ Result<OpenedForAppending> AppendedFile::open(const std::string& path) {
     file.count_ = (*source)->slot.count;
     file.end_ = (*source)->slot.file_bytes;
     opened.directory = (*source)->directory;
+    if (opened.directory.boundary) {
+        Result<StoredBoundary> boundary = read_boundary(**source);
+        if (!boundary) return boundary.error();
+        opened.boundary_points = std::move(boundary->points);
+    }
     if (::ftruncate(file.file_.number(), static_cast<off_t>(file.end_)) != 0) return file.failed(errno);
     if (auto ok = file.write(std::vector<std::byte>(align_piece(file.end_) - file.end_)); !ok) return ok.error();
     return opened;

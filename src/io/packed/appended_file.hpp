@@ -47,6 +47,7 @@ private:
 struct OpenedForAppending {
     AppendedFile file;
     PackedDirectory directory;
+    std::vector<std::uint64_t> boundary_points; ///< packed ones, where the file has the boundary
 };
 
 } // namespace isotet::io

@@ -79,8 +79,6 @@ ChunkRange chunk_range(const PackedDirectory& directory, const ChunkPlaces& plac
 
 namespace {
 
-constexpr double largest_position = 2 * core::stored_infinity; ///< relative to the origin
-
 template <class Id>
 bool all_ids_below(const core::SharedBuffer<Id>& ids, std::uint64_t first, std::uint64_t count, std::uint64_t end) {
     if (ids.empty()) return true;

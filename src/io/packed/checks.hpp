@@ -9,6 +9,7 @@
 #include <isotet/result.hpp>
 
 #include "io/packed/chunk_places.hpp"
+#include "numbers/storage.hpp"
 #include "packed/packed.hpp"
 
 namespace isotet::io {
@@ -23,6 +24,8 @@ struct ChunkRange {
     std::uint64_t first_cluster, clusters, first_point, points, first_word, words;
 };
 ChunkRange chunk_range(const PackedDirectory& directory, const ChunkPlaces& places, std::size_t chunk);
+
+constexpr double largest_position = 2 * core::stored_infinity; ///< relative to the origin
 
 /// Positions and the user's numbers.
 Result<void> check_points(const core::Packed& packed, const ChunkRange& chunk);

@@ -88,6 +88,7 @@ private:
 };
 
 constexpr std::string_view grid_section = "GRID    ", chunk_section = "CHUNKS  ", frame_section = "FRAME   ",
+                           boundary_section = "BOUNDARY", boundary_values_section = "BVALUES ",
                            field_section = "FIELD   ";
 
 constexpr std::uint32_t has_wide_points = 1, has_cells = 2, has_wide_cells = 4, has_ranks = 8; ///< bits of flags
@@ -165,6 +166,24 @@ std::vector<std::byte> encode_field(const FieldEntry& field) {
     }
     out.text(field.name);
     out.pad();
+    return out.take();
+}
+
+std::vector<std::byte> encode_boundary_entry(const BoundaryEntry& boundary) {
+    ByteWriter out;
+    for (const std::uint64_t n : {boundary.points, boundary.triangles, boundary.offset}) out.number(n);
+    out.number(boundary.checksum);
+    out.pad();
+    return out.take();
+}
+
+std::vector<std::byte> encode_boundary_values_table(const std::vector<FieldEntry>& fields) {
+    ByteWriter out;
+    for (const FieldEntry& field : fields) {
+        out.number(field.boundary_offset);
+        out.number(field.boundary_checksum);
+        out.pad();
+    }
     return out.take();
 }
 
@@ -251,6 +270,31 @@ Result<void> decode_frame(ByteCursor in, PackedDirectory& d) {
     return {};
 }
 
+Result<void> decode_boundary(ByteCursor in, PackedDirectory& d) {
+    BoundaryEntry boundary;
+    for (std::uint64_t* n : {&boundary.points, &boundary.triangles, &boundary.offset}) in.into(*n);
+    in.into(boundary.checksum);
+    if (!in.ok()) return broken_directory("the section of the boundary ends early");
+    d.boundary = boundary;
+    return {};
+}
+
+constexpr std::size_t boundary_values_entry_bytes = 16;
+
+/// Needs all fields.
+Result<void> decode_boundary_values(ByteCursor in, PackedDirectory& d) {
+    if (in.left() != boundary_values_entry_bytes * d.fields.size())
+        return broken_directory(
+            fmt::format("the table of values at the boundary has {} bytes, but {} fields need {} each", in.left(),
+                        d.fields.size(), boundary_values_entry_bytes));
+    for (FieldEntry& field : d.fields) {
+        in.into(field.boundary_offset);
+        in.into(field.boundary_checksum);
+        in.number<std::uint32_t>();
+    }
+    return {};
+}
+
 constexpr std::size_t field_entry_bytes = 8 + 10 * 8 + 4; // with an empty name, without checksums
 
 /// `chunks`   of the file
@@ -321,6 +365,15 @@ Result<void> check_places(const PackedDirectory& d, std::uint64_t file_bytes) {
     };
     if (!lies_within(d.chunks_offset, chunk_bytes, file_bytes)) return outside("the chunks");
     if (!lies_within(d.clusters_offset, cluster_record_bytes * clusters, file_bytes)) return outside("the clusters");
+    if (d.boundary) {
+        constexpr std::uint64_t least = 12; // bytes of a point or a triangle
+        if (d.boundary->points > d.count(Unit::points) || d.boundary->triangles > file_bytes / least ||
+            !lies_within(d.boundary->offset, d.boundary_bytes(), file_bytes))
+            return outside("points or triangles of the boundary");
+        for (const FieldEntry& field : d.fields)
+            if (!lies_within(field.boundary_offset, d.boundary->points * d.real_bytes(), file_bytes))
+                return outside("values of a field at the boundary");
+    }
     for (const FieldEntry& field : d.fields) {
         std::uint64_t values_bytes = 0;
         for (const ChunkEntry& chunk : d.chunks) values_bytes += align_piece(d.values_bytes(chunk, field));
@@ -359,6 +412,9 @@ std::vector<std::byte> encode_directory(const PackedDirectory& directory) {
     add(chunk_section, encode_chunks(directory));
     if (directory.frame) add(frame_section, encode_frame(*directory.frame));
     for (const FieldEntry& field : directory.fields) add(field_section, encode_field(field));
+    if (!directory.boundary) return out;
+    add(boundary_section, encode_boundary_entry(*directory.boundary));
+    add(boundary_values_section, encode_boundary_values_table(directory.fields));
     return out;
 }
 
@@ -366,6 +422,7 @@ Result<PackedDirectory> decode_directory(std::span<const std::byte> bytes, std::
     PackedDirectory d;
     ByteCursor in(bytes);
     bool grid = false, chunks = false;
+    std::optional<ByteCursor> boundary_values;
     while (in.left() > 0) {
         const auto name_bytes = in.part(grid_section.size());
         const std::string_view name(reinterpret_cast<const char*>(name_bytes.data()), name_bytes.size());
@@ -383,11 +440,19 @@ Result<PackedDirectory> decode_directory(std::span<const std::byte> bytes, std::
         } else if (name == field_section) {
             decoded = chunks ? decode_field(content, d.chunks.size(), d)
                              : broken_directory("a field stands before the chunks");
+        } else if (name == boundary_section) {
+            decoded = decode_boundary(content, d);
+        } else if (name == boundary_values_section) {
+            boundary_values = content;
         } // else of a newer minor version
         if (!decoded) return decoded.error();
     }
     if (!grid || !chunks) return broken_directory("the section of the grid or of the chunks is missing");
     if (auto ok = check_fields(d); !ok) return ok.error();
+    if (d.boundary.has_value() != boundary_values.has_value())
+        return broken_directory("the section of the boundary or that of its values is missing");
+    if (boundary_values)
+        if (auto ok = decode_boundary_values(*boundary_values, d); !ok) return ok.error();
     if (auto ok = check_places(d, file_bytes); !ok) return ok.error();
     return d;
 }

@@ -11,6 +11,7 @@
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
 #include "io/files/first_error.hpp"
+#include "io/packed/boundary_piece.hpp"
 #include "io/packed/checks.hpp"
 #include "packed/field_storage.hpp"
 #include "packed/residency.hpp"
@@ -160,6 +161,13 @@ public:
 
     Result<core::Brought> bring(std::span<const std::uint32_t> clusters, core::Parts parts, Amount amount,
                                 const Progress& progress) const override;
+    Result<std::optional<Surface>> boundary() const override {
+        if (!store_->source().directory.boundary) return std::optional<Surface>();
+        Result<StoredBoundary> stored = read_boundary(store_->source());
+        if (!stored) return stored.error();
+        return std::optional(std::move(stored->surface));
+    }
+    Result<Array> boundary_values() const override { return read_boundary_values(store_->source(), field_); }
     Use use() const override {
         const ResidencyReport report = store_->cache().report();
         return {report.bytes_read, report.bytes};
@@ -334,14 +342,14 @@ Result<std::shared_ptr<const Packed>> grid_of_file(const std::shared_ptr<PackedS
     return std::shared_ptr<const Packed>(std::move(packed));
 }
 
-namespace {
-
 std::uint64_t bytes_of_whole(const PackedDirectory& d, const FieldEntry& field) {
     std::uint64_t bytes = d.clusters * sizeof(core::ClusterHeader);
     for (const ChunkEntry& chunk : d.chunks)
         bytes += d.points_bytes(chunk) + d.topology_bytes(chunk) + d.ranges_bytes(chunk) + d.values_bytes(chunk, field);
     return bytes;
 }
+
+namespace {
 
 Result<void> check_all_ranges(const Packed& packed, const Progress& progress) {
     FirstError first_error;

@@ -36,6 +36,9 @@ private:
 Result<std::shared_ptr<const core::Packed>> grid_of_file(const std::shared_ptr<PackedStore>& store,
                                                          const FieldEntry& field, const Progress& progress);
 
+/// Of the arrays of a field's grid, all in memory.
+std::uint64_t bytes_of_whole(const PackedDirectory& directory, const FieldEntry& field);
+
 /// A grid in memory, all checked.
 /// `same_cells`   null, or one of this file that is in memory already: only values are read
 Result<std::shared_ptr<const core::Packed>> whole_grid_of_file(const PackedSource& source, const FieldEntry& field,

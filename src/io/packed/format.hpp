@@ -4,7 +4,9 @@
 //   header        4096 bytes: magic, version, two slots that tell where the directory is; the one with the higher count holds
 //   chunks        each: points (positions, user's numbers, ranks), then topology (cells, links, user's cells); 64-byte aligned
 //   clusters      20 bytes each: the counts of their headers
-//   field, step   ranges and has_no_data of all clusters; then a piece a chunk: values, group ranges, gradients
+//   boundary      its points by packed number, their positions, triangles
+//   field, step   ranges and has_no_data of all clusters; then a piece a chunk: values, group ranges, gradients; then values at
+//                 the points of the boundary
 //   directory     what is where, with checksums
 #pragma once
 
@@ -25,7 +27,7 @@
 namespace isotet::io {
 
 constexpr std::string_view packed_magic = "isotetP\n";
-constexpr std::uint16_t packed_major = 1, packed_minor = 0;
+constexpr std::uint16_t packed_major = 1, packed_minor = 1;
 constexpr std::uint32_t packed_byte_order = 0x01020304;
 constexpr std::size_t packed_header_bytes = 4096;
 constexpr std::array<std::size_t, 2> packed_slots{512, 1024}; ///< a sector each: written at once
@@ -57,6 +59,12 @@ struct ChunkEntry {
     std::uint64_t count(Unit unit) const { return counts[static_cast<std::size_t>(unit)]; }
 };
 
+/// The grid's boundary.
+struct BoundaryEntry {
+    std::uint64_t points = 0, triangles = 0, offset = 0;
+    std::uint32_t checksum = 0;
+};
+
 /// A field at a step.
 struct FieldEntry {
     std::string name;
@@ -68,6 +76,8 @@ struct FieldEntry {
     FieldReport report;
     std::uint64_t ranges_offset = 0, values_offset = 0;
     std::vector<std::uint32_t> ranges_checksums, values_checksums; ///< a chunk
+    std::uint64_t boundary_offset = 0; ///< of the values at the points of the boundary, where the file has it
+    std::uint32_t boundary_checksum = 0;
 };
 
 /// What a packed file holds.
@@ -83,6 +93,7 @@ struct PackedDirectory {
     std::uint64_t clusters_offset = 0, chunks_offset = 0;
     std::optional<Frame> frame;
     std::vector<ChunkEntry> chunks;
+    std::optional<BoundaryEntry> boundary; ///< since version 1.1
     std::vector<FieldEntry> fields;
 
     std::size_t real_bytes() const { return precision == Precision::float32 ? 4 : 8; }
@@ -97,6 +108,11 @@ struct PackedDirectory {
         const std::uint64_t cell_id = !cell_ids ? 0 : wide_cell_ids ? 8 : 4;
         return chunk.count(Unit::words) * (4 + cell_id) + chunk.count(Unit::links) * 4;
     }
+    /// Of the boundary's piece, which there is.
+    std::uint64_t boundary_bytes() const {
+        return boundary->points * ((wide_packed_points() ? 8u : 4u) + 3 * real_bytes()) + boundary->triangles * 12;
+    }
+    bool wide_packed_points() const { return count(Unit::points) > std::numeric_limits<std::uint32_t>::max(); }
     std::uint64_t ranges_bytes(const ChunkEntry& chunk) const {
         return std::uint64_t{chunk.clusters} * (2 * real_bytes() + 1);
     }

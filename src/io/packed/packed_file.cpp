@@ -13,7 +13,9 @@
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
 #include "base/memory.hpp"
+#include "io/files/crc32c.hpp"
 #include "io/files/text_scanner.hpp"
+#include "io/packed/boundary_piece.hpp"
 #include "io/packed/file_grid.hpp"
 
 namespace isotet {
@@ -53,6 +55,30 @@ PackedFileInfo info_of(const io::PackedSource& source) {
     }
     if (info.times.size() < info.steps) info.times.clear();
     return info;
+}
+
+/// The boundary in the file against that of the cells.
+Result<void> check_boundary(const io::PackedSource& source, const core::Packed& packed, const Progress& progress) {
+    if (!source.directory.boundary) return {};
+    if (const auto stored = io::read_boundary(source); !stored) return stored.error();
+    const auto found = core::find_boundary(packed, progress);
+    if (!found) return found.error();
+    const io::BoundaryEntry& entry = *source.directory.boundary;
+    const bool same = entry.points == found->points.size() && entry.triangles == found->triangles.tuples() &&
+                      entry.checksum == io::crc32c(io::encode_boundary(packed, *found));
+    return same ? Result<void>() : source.in_file(invalid_data("the boundary is broken: it is not that of the cells"));
+}
+
+/// Values of a field at the boundary against those of the points.
+Result<void> check_boundary_values(const io::PackedSource& source, const io::FieldEntry& field,
+                                   const core::Packed& packed) {
+    if (!source.directory.boundary) return {};
+    const auto boundary = io::read_boundary(source);
+    if (!boundary) return boundary.error();
+    if (const auto values = io::read_boundary_values(source, field); !values) return values.error();
+    if (io::crc32c(io::encode_boundary_values(packed, boundary->points)) == field.boundary_checksum) return {};
+    return source.in_file(invalid_data(fmt::format(
+        "the boundary is broken: the values of {} there are not those of the points", io::in_quotes(field.name))));
 }
 
 } // namespace
@@ -137,6 +163,9 @@ Result<void> PackedFile::check(const Run& run) const {
         for (const io::FieldEntry& entry : data_->source->directory.fields) {
             auto packed = io::whole_grid_of_file(*data_->source, entry, first.get(), progress);
             if (!packed) return packed.error();
+            if (!first)
+                if (auto ok = check_boundary(*data_->source, **packed, progress); !ok) return ok;
+            if (auto ok = check_boundary_values(*data_->source, entry, **packed); !ok) return ok;
             if (!first) first = *std::move(packed);
         }
         return {};

@@ -16,6 +16,7 @@
 #include "io/files/output_file.hpp"
 #include "io/files/text_scanner.hpp"
 #include "io/packed/appended_file.hpp"
+#include "io/packed/boundary_piece.hpp"
 #include "io/packed/chunk_places.hpp"
 #include "io/packed/directory.hpp"
 #include "packed/residency.hpp"
@@ -119,7 +120,9 @@ public:
           places_(ChunkPlaces::compact(directory_)) {}
 
     Result<void> write_cells(const Progress& progress);
+    Result<void> write_boundary(const Progress& progress);
     Result<void> compare_cells() const;
+    void take_boundary(std::vector<std::uint64_t> points) { boundary_points_ = std::move(points); }
     Result<void> write_field(const Packed& packed, std::uint32_t step, std::optional<double> time);
     Result<std::uint64_t> finish();
     std::uint32_t last_step() const { return directory_.fields.back().step; }
@@ -147,6 +150,7 @@ private:
     std::shared_ptr<const Packed> packed_;
     PackedDirectory directory_;
     ChunkPlaces places_;
+    std::vector<std::uint64_t> boundary_points_; ///< packed ones, where the file has the boundary
 };
 
 Result<void> PackedOutput::align() {
@@ -260,6 +264,18 @@ Result<void> PackedOutput::write_cells(const Progress& progress) {
     return write_clusters();
 }
 
+Result<void> PackedOutput::write_boundary(const Progress& progress) {
+    auto found = core::find_boundary(*packed_, progress);
+    if (!found) return found.error();
+    BoundaryEntry entry{found->points.size(), found->triangles.tuples(), bytes(), 0};
+    const auto checksum = write_piece({encode_boundary(*packed_, *found)}, true);
+    if (!checksum) return checksum.error();
+    entry.checksum = *checksum;
+    directory_.boundary = entry;
+    boundary_points_ = std::move(found->points);
+    return {};
+}
+
 Result<void> PackedOutput::check_new_field(const Packed& packed, std::uint32_t step) const {
     const std::string& name = packed.field_report.name;
     const bool same_positions = std::visit(
@@ -302,6 +318,11 @@ Result<void> PackedOutput::write_values(const Packed& packed, FieldEntry& entry)
         if (!checksum) return checksum.error();
         entry.values_checksums.push_back(*checksum);
     }
+    if (!directory_.boundary) return {};
+    entry.boundary_offset = bytes();
+    const auto checksum = write_piece({encode_boundary_values(packed, boundary_points_)}, true);
+    if (!checksum) return checksum.error();
+    entry.boundary_checksum = *checksum;
     return {};
 }
 
@@ -360,6 +381,7 @@ Result<PackedWriter> PackedWriter::create(const PackedGrid& packed, const std::s
         if (!file) return file.error();
         io::PackedOutput output(*std::move(file), *whole, options.chunk_bytes);
         if (auto ok = output.write_cells(progress); !ok) return ok.error();
+        if (auto ok = output.write_boundary(progress); !ok) return ok.error();
         if (auto ok = output.write_field(**whole, 0, options.time); !ok) return ok.error();
         for (const PackedGrid& more : options.more_fields)
             if (auto ok = output.write_field(more.data(), 0, options.time); !ok) return ok.error();
@@ -377,6 +399,7 @@ Result<PackedWriter> PackedWriter::append(const PackedGrid& packed, const std::s
         if (!opened) return opened.error();
         io::PackedOutput output(std::move(opened->file), *whole, std::move(opened->directory));
         if (auto ok = output.compare_cells(); !ok) return ok.error();
+        output.take_boundary(std::move(opened->boundary_points));
         if (auto ok = output.write_field(**whole, output.last_step() + 1, time); !ok) return ok.error();
         return PackedWriter(std::make_unique<Data>(Data{std::move(output), run}));
     });

@@ -1,0 +1,147 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "io/packed/boundary_piece.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "base/errors.hpp"
+#include "io/files/crc32c.hpp"
+#include "io/packed/checks.hpp"
+#include "packed/user_value.hpp"
+
+namespace isotet::io {
+
+using core::Packed;
+
+namespace {
+
+template <class T>
+void append_numbers(std::vector<std::byte>& out, std::span<const T> numbers) {
+    const auto bytes = std::as_bytes(numbers);
+    out.insert(out.end(), bytes.begin(), bytes.end());
+}
+
+/// `components` numbers of each point.
+template <class Real>
+void append_of_points(std::vector<std::byte>& out, const core::SharedBuffer<Real>& numbers, std::size_t components,
+                      const std::vector<std::uint64_t>& points) {
+    for (const std::uint64_t p : points)
+        append_numbers(out, std::span<const Real>(numbers.data() + components * p, components));
+}
+
+/// Takes numbers off the front of bytes.
+template <class T>
+std::vector<T> take_numbers(std::span<const std::byte>& bytes, std::size_t count) {
+    std::vector<T> numbers(count);
+    if (count > 0) std::memcpy(numbers.data(), bytes.data(), count * sizeof(T));
+    bytes = bytes.subspan(count * sizeof(T));
+    return numbers;
+}
+
+Error broken_boundary(const std::string& what) { return invalid_data("the boundary is broken: " + what); }
+
+Result<std::vector<std::byte>> read_summed(const PackedSource& source, std::uint64_t offset, std::uint64_t bytes,
+                                           std::uint32_t checksum) {
+    std::vector<std::byte> piece(bytes);
+    if (auto ok = source.read(offset, piece); !ok) return ok.error();
+    if (crc32c(piece) != checksum) return source.in_file(broken_boundary("its checksum differs"));
+    return piece;
+}
+
+Result<void> check_numbers(const PackedDirectory& d, const std::vector<std::uint64_t>& points,
+                           const std::vector<std::uint32_t>& triangles) {
+    const bool ascending = std::ranges::adjacent_find(points, std::greater_equal<>()) == points.end();
+    if (!ascending || (!points.empty() && points.back() >= d.count(Unit::points)))
+        return broken_boundary(
+            fmt::format("its points do not ascend, or one has a number that the grid of {} packed points "
+                        "has not",
+                        d.count(Unit::points)));
+    const auto largest = std::ranges::max_element(triangles);
+    if (largest != triangles.end() && *largest >= points.size())
+        return broken_boundary(fmt::format("a corner is point {}, but it has {}", *largest, points.size()));
+    return {};
+}
+
+/// Positions in the user's coordinates.
+template <class Real>
+Result<Array> user_positions(const PackedDirectory& d, std::vector<Real> stored) {
+    if (std::ranges::any_of(stored, [](Real x) { return !(std::abs(x) <= largest_position); }))
+        return broken_boundary("a coordinate is not finite, or larger than is stored");
+    if (d.point_type == ScalarType::float32) return Array::own(std::move(stored), 3);
+    std::vector<double> out(stored.size());
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = static_cast<double>(stored[i]) + d.origin[i % 3];
+    return Array::own(std::move(out), 3);
+}
+
+template <class Real>
+Result<Array> user_values(const FieldEntry& field, const std::vector<Real>& stored) {
+    const auto is_stored = [](Real x) { return core::is_nan(x) || std::abs(x) <= core::stored_infinity; };
+    if (!std::ranges::all_of(stored, is_stored)) return broken_boundary("a value is larger than is stored");
+    return Array(field.type, nullptr, 0, 1, nullptr).visit([&]<class T>(std::span<const T>) -> Result<Array> {
+        std::vector<T> out(stored.size());
+        for (std::size_t i = 0; i < out.size(); ++i)
+            out[i] = core::user_value<T>(static_cast<double>(stored[i]), field.storage);
+        return Array::own(std::move(out));
+    });
+}
+
+} // namespace
+
+std::vector<std::byte> encode_boundary(const Packed& packed, const core::PackedBoundary& boundary) {
+    std::vector<std::byte> out;
+    if (packed.points() > std::numeric_limits<std::uint32_t>::max())
+        append_numbers<std::uint64_t>(out, boundary.points);
+    else append_numbers<std::uint32_t>(out, std::vector<std::uint32_t>(boundary.points.begin(), boundary.points.end()));
+    std::visit([&](const auto& reals) { append_of_points(out, reals.positions, 3, boundary.points); }, packed.reals);
+    append_numbers<std::uint32_t>(out, boundary.triangles.as<std::uint32_t>());
+    return out;
+}
+
+std::vector<std::byte> encode_boundary_values(const Packed& packed, const std::vector<std::uint64_t>& points) {
+    std::vector<std::byte> out;
+    std::visit([&](const auto& reals) { append_of_points(out, reals.values, 1, points); }, packed.reals);
+    return out;
+}
+
+Result<StoredBoundary> read_boundary(const PackedSource& source) {
+    const PackedDirectory& d = source.directory;
+    const BoundaryEntry& entry = *d.boundary;
+    const auto piece = read_summed(source, entry.offset, d.boundary_bytes(), entry.checksum);
+    if (!piece) return piece.error();
+    std::span<const std::byte> left = *piece;
+    StoredBoundary boundary;
+    if (d.wide_packed_points()) boundary.points = take_numbers<std::uint64_t>(left, entry.points);
+    else {
+        const auto narrow = take_numbers<std::uint32_t>(left, entry.points);
+        boundary.points.assign(narrow.begin(), narrow.end());
+    }
+    auto positions = d.precision == Precision::float32
+                         ? user_positions(d, take_numbers<float>(left, 3 * entry.points))
+                         : user_positions(d, take_numbers<double>(left, 3 * entry.points));
+    if (!positions) return source.in_file(positions.error());
+    auto triangles = take_numbers<std::uint32_t>(left, 3 * entry.triangles);
+    if (auto ok = check_numbers(d, boundary.points, triangles); !ok) return source.in_file(ok.error());
+    boundary.surface.positions = *std::move(positions);
+    boundary.surface.triangles = Array::own(std::move(triangles), 3);
+    return boundary;
+}
+
+Result<Array> read_boundary_values(const PackedSource& source, const FieldEntry& field) {
+    const PackedDirectory& d = source.directory;
+    const std::uint64_t points = d.boundary->points;
+    const auto piece = read_summed(source, field.boundary_offset, points * d.real_bytes(), field.boundary_checksum);
+    if (!piece) return piece.error();
+    std::span<const std::byte> left = *piece;
+    auto values = d.precision == Precision::float32 ? user_values(field, take_numbers<float>(left, points))
+                                                    : user_values(field, take_numbers<double>(left, points));
+    if (!values) return source.in_file(values.error());
+    return values;
+}
+
+} // namespace isotet::io
