@@ -1,0 +1,137 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Packed files while writing ends early: at every write the old file is whole, or the new one is.
+#include <sys/resource.h>
+
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include <isotet/packed_file.hpp>
+
+#include "io/packed/directory.hpp"
+#include "packed/packed_samples.hpp"
+
+namespace isotet::test {
+namespace {
+
+/// A limit of this process while it lives.
+class Limit {
+public:
+    Limit(int resource, std::uint64_t most) : resource_(resource) {
+        ::getrlimit(static_cast<__rlimit_resource_t>(resource_), &before_);
+        const rlimit limit{most, before_.rlim_max};
+        ::setrlimit(static_cast<__rlimit_resource_t>(resource_), &limit);
+    }
+    Limit(const Limit&) = delete;
+    Limit& operator=(const Limit&) = delete;
+    ~Limit() { ::setrlimit(static_cast<__rlimit_resource_t>(resource_), &before_); }
+
+private:
+    int resource_;
+    rlimit before_{};
+};
+
+/// No file can grow beyond so many bytes: as on a full disk, a write ends short, and the next one fails.
+class FullDisk {
+public:
+    explicit FullDisk(std::uint64_t bytes) : limit_((std::signal(SIGXFSZ, SIG_IGN), RLIMIT_FSIZE), bytes) {}
+
+private:
+    Limit limit_;
+};
+
+/// A file of one step, and the same with two.
+struct TwoFiles {
+    TemporaryFolder folder;
+    PackedGrid packed;
+    std::string path, one, two;
+
+    TwoFiles() {
+        const Grid grid = made_grid("mixed", 3, {"gyroid"});
+        packed = pack(grid, point_field(grid)).value();
+        path = saved(packed, folder, 500);
+        one = content_of(path);
+        append().value();
+        two = content_of(path);
+    }
+    Result<std::uint64_t> append() const {
+        Result<PackedWriter> writer = PackedWriter::append(packed, path, 1.0);
+        return writer ? writer->commit() : writer.error();
+    }
+    std::size_t sound_steps() const {
+        const Result<PackedFile> file = PackedFile::open(path);
+        return file && file->check() ? file->info().steps : 0;
+    }
+};
+
+TEST(InterruptedPacking, LeavesTheOldStepsAtEveryWrite) {
+    const TwoFiles files;
+    for (std::uint64_t bytes = files.one.size(); bytes < files.two.size(); bytes += files.one.size() / 41) {
+        files.folder.write("grid.isotet", files.one);
+        {
+            const FullDisk disk(bytes);
+            const auto failed = files.append();
+            ASSERT_FALSE(failed) << bytes;
+            EXPECT_EQ(failed.error().code, ErrorCode::cannot_write);
+        }
+        EXPECT_EQ(std::filesystem::file_size(files.path), bytes) << "what was written is there, and does not count";
+        EXPECT_EQ(files.sound_steps(), 1u) << bytes;
+        EXPECT_TRUE(files.append());
+        EXPECT_TRUE(content_of(files.path) == files.two) << bytes;
+    }
+}
+
+TEST(InterruptedPacking, HasOldOrNewStepsWhateverPartOfTheSlotIsWritten) {
+    const TwoFiles files;
+    std::size_t steps = 0;
+    for (std::size_t bytes = 0; bytes <= io::packed_slot_bytes; ++bytes) {
+        std::string content = files.two;
+        std::memcpy(content.data(), files.one.data(), io::packed_header_bytes);
+        std::memcpy(content.data() + io::packed_slots[1], files.two.data() + io::packed_slots[1], bytes);
+        files.folder.write("grid.isotet", content);
+        steps = files.sound_steps();
+        EXPECT_TRUE(steps == 1 || steps == 2) << bytes;
+    }
+    EXPECT_EQ(steps, 2u);
+}
+
+TEST(InterruptedPacking, OfANewFileLeavesTheOldOneAndNothingElse) {
+    const TwoFiles files;
+    for (std::uint64_t bytes = 0; bytes < files.one.size(); bytes += files.one.size() / 13) {
+        files.folder.write("grid.isotet", "old");
+        {
+            const FullDisk disk(bytes);
+            const auto failed = save_packed(files.packed, files.path);
+            ASSERT_FALSE(failed) << bytes;
+            EXPECT_EQ(failed.error().code, ErrorCode::cannot_write);
+        }
+        EXPECT_EQ(content_of(files.path), "old");
+        std::size_t entries = 0;
+        for ([[maybe_unused]] const auto& entry :
+             std::filesystem::directory_iterator(std::filesystem::path(files.path).parent_path()))
+            ++entries;
+        EXPECT_EQ(entries, 1u);
+    }
+}
+
+TEST(InterruptedPacking, WithoutDescriptorsIsAnErrorAndGoesOnLater) {
+    const TwoFiles files;
+    const PackedFile open = PackedFile::open(files.path).value();
+    {
+        const Limit descriptors(RLIMIT_NOFILE, 0);
+        const auto failed = PackedFile::open(files.path);
+        ASSERT_FALSE(failed);
+        EXPECT_EQ(failed.error().code, ErrorCode::system);
+        EXPECT_FALSE(save_packed(files.packed, files.folder.file("other.isotet")));
+        EXPECT_FALSE(files.append());
+        EXPECT_TRUE(extract(open.grid().value(), 0.1)) << "what is open needs no more";
+    }
+    EXPECT_TRUE(PackedFile::open(files.path));
+    EXPECT_TRUE(files.append());
+}
+
+} // namespace
+} // namespace isotet::test
