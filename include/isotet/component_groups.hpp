@@ -21,6 +21,13 @@ struct ComponentGroup {
 /// not, where all components are there and no field has the group's name. In the order of their first parts.
 ISOTET_API std::vector<ComponentGroup> component_groups(const std::vector<std::string>& names);
 
+/// The fields that names in packed files stand for, which have vectors as their components and their magnitude: U:x, U:y,
+/// U:z, and U:mag if it is there, are U. Other names are fields themselves, of one part. In the order of their first parts.
+ISOTET_API std::vector<ComponentGroup> joined_fields(const std::vector<std::string>& names);
+
+/// The names that a vector has in a packed file: its components, and its magnitude.
+ISOTET_API std::vector<std::string> packed_names_of_vector(const std::string& name);
+
 /// The names of those that have one component.
 ISOTET_API std::vector<std::string> scalar_names(const std::vector<Field>& fields);
 

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <set>
 #include <span>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <isotet/component_groups.hpp>
 #include <isotet/contour_spectrum.hpp>
 #include <isotet/device_grid.hpp>
 #include <isotet/jobs/number_text.hpp>
@@ -42,6 +44,8 @@ private:
     Result<bool> load(std::size_t step);
     Result<void> open_packed();
     Result<bool> load_packed(std::size_t step);
+    std::vector<ComponentGroup> carried_of_packed(std::size_t step);
+    Result<void> join_vectors(Surface& surface) const;
     Result<void> prepare_and_look(std::size_t step);
     Result<std::optional<std::uint64_t>> read_field_of(std::size_t step, bool& found);
     void note_what_steps_miss();
@@ -71,7 +75,8 @@ private:
     ExtractJob job_; ///< with the field that was chosen where none is named
     Caller& caller_;
     std::optional<GridSource> source_;
-    std::optional<PackedFile> packed_; ///< where chunks of it are read in place of a grid
+    std::optional<PackedFile> packed_;    ///< where chunks of it are read in place of a grid
+    std::vector<ComponentGroup> vectors_; ///< that surfaces of it carry, by component
     ExtractPlan plan_;
     std::shared_ptr<const Engine> device_; ///< null: the CPU extracts
     std::optional<Contour> contour_;
@@ -359,8 +364,12 @@ Result<void> ExtractRun::open_packed() {
     const auto has_field = [&](const PackedFieldInfo& field) {
         return field.report.name == plan_.field.name && (job_.normals != Normals::gradient || field.gradients);
     };
-    const bool has_all = std::ranges::any_of(info.fields, has_field) && (!job_.source_cells || info.source_cells) &&
-                         (!plan_.carried || (plan_.carried->components.empty() && plan_.carried->cell.empty()));
+    const auto is_packed = [&](const FoundField& component) {
+        return std::ranges::any_of(info.fields, [&](const auto& field) { return field.report.name == component.name; });
+    };
+    const bool has_all =
+        std::ranges::any_of(info.fields, has_field) && (!job_.source_cells || info.source_cells) &&
+        (!plan_.carried || (std::ranges::all_of(plan_.carried->components, is_packed) && plan_.carried->cell.empty()));
     if (reworks_cells || !has_all) {
         caller_.note(
             "all of the packed file is read and unpacked: what was asked for needs its cells, or is not packed");
@@ -370,6 +379,41 @@ Result<void> ExtractRun::open_packed() {
     plan_.contour.method.reset();
     packed_ = *std::move(file);
     numbers_.packed_file_bytes = info.file_bytes;
+    return {};
+}
+
+/// The fields of a step that surfaces carry.
+std::vector<ComponentGroup> ExtractRun::carried_of_packed(std::size_t step) {
+    if (!plan_.out_holds_fields) return {};
+    std::vector<std::string> names;
+    for (const PackedFieldInfo& field : packed_->info().fields)
+        if (field.step == step) names.push_back(field.report.name);
+    std::vector<ComponentGroup> all = joined_fields(names);
+    if (!plan_.carried) return all;
+    const auto& wanted = plan_.carried->point;
+    for (const std::string& name : wanted)
+        if (std::ranges::find(all, name, &ComponentGroup::name) == all.end()) not_carried_.insert(name);
+    std::vector<ComponentGroup> carried; // in the order of the file, as those of a grid
+    std::ranges::copy_if(all, std::back_inserter(carried), [&](const ComponentGroup& field) {
+        return std::ranges::find(wanted, field.name) != wanted.end();
+    });
+    for (const FoundField& component : plan_.carried->components) {
+        if (std::ranges::find(names, component.name) != names.end())
+            carried.push_back({component.name, {component.name}});
+        else not_carried_.insert(component.name);
+    }
+    return carried;
+}
+
+/// One field of the components of each vector.
+Result<void> ExtractRun::join_vectors(Surface& surface) const {
+    for (const ComponentGroup& vector : vectors_) {
+        Result<Field> whole = gather_components(surface.point_fields, vector.name, vector.parts);
+        if (!whole) return whole.error();
+        const auto first = std::ranges::find(surface.point_fields, vector.parts.front(), &Field::name);
+        *first = *std::move(whole);
+        surface.point_fields.erase(first + 1, first + static_cast<std::ptrdiff_t>(vector.parts.size()));
+    }
     return {};
 }
 
@@ -387,18 +431,15 @@ Result<bool> ExtractRun::load_packed(std::size_t step) {
     if (!grid) return grid.error();
     ContourInput input;
     input.packed = *grid;
-    for (const PackedFieldInfo& field : fields) {
-        const std::string& carried = field.report.name;
-        const bool is_wanted =
-            !plan_.carried || std::ranges::find(plan_.carried->point, carried) != plan_.carried->point.end();
-        if (field.step != step || !is_wanted || !plan_.out_holds_fields) continue;
-        Result<PackedGrid> other = carried == name ? grid : packed_->grid(carried, step, caller_.run());
-        if (!other) return other.error();
-        input.packed_fields.push_back(*std::move(other));
+    vectors_.clear();
+    for (const ComponentGroup& carried : carried_of_packed(step)) {
+        for (const std::string& part : carried.parts) {
+            Result<PackedGrid> other = part == name ? grid : packed_->grid(part, step, caller_.run());
+            if (!other) return other.error();
+            input.packed_fields.push_back(*std::move(other));
+        }
+        if (carried.parts.size() > 1) vectors_.push_back(carried);
     }
-    if (plan_.carried)
-        for (const std::string& carried : plan_.carried->point)
-            if (!is_there(carried)) not_carried_.insert(carried);
     numbers_.cells = packed_->info().user_cells;
     numbers_.read_seconds += reading.seconds();
     coarse_tets_ = 0;
@@ -511,6 +552,7 @@ Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> is
     std::vector<Surface> surfaces;
     for (std::size_t i = 0; i < isovalues.size(); ++i) {
         Surface& surface = surfaces.emplace_back(std::move(result->surfaces[i].surface));
+        if (auto joined = join_vectors(surface); !joined) return joined.error();
         if (job_.piece) {
             Result<Surface> numbered = number_as_whole(surface, grid_.point_numbers, first_cell_);
             if (!numbered) return numbered.error();

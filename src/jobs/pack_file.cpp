@@ -5,6 +5,10 @@
 #include <optional>
 #include <utility>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <isotet/component_groups.hpp>
 #include <isotet/contour.hpp>
 #include <isotet/jobs/first_choice.hpp>
 #include <isotet/jobs/output_names.hpp>
@@ -28,6 +32,8 @@ private:
     Result<void> open();
     Result<void> look_at_file();
     Result<void> choose_names();
+    Result<void> take_all_fields();
+    std::vector<std::string> packed_names(const std::string& name) const;
     Result<void> pack_step(std::size_t step);
     Result<PackedGrid> packed_with(const Grid& grid, PointField field, std::size_t step);
     Result<void> write(const PackedGrid& packed, std::size_t step, bool first_field);
@@ -79,14 +85,37 @@ Result<void> PackRun::look_at_file() {
     return {};
 }
 
+/// What a field is packed as: a vector as its components and its magnitude.
+std::vector<std::string> PackRun::packed_names(const std::string& name) const {
+    const bool is_vector = !job_.cell_field && std::ranges::any_of(source_->info().fields, [&](const FieldInfo& field) {
+        return field.name == name && field.association == Association::point && field.components == 3;
+    });
+    return is_vector ? packed_names_of_vector(name) : std::vector<std::string>{name};
+}
+
+/// All point fields that can be packed; the others are named.
+Result<void> PackRun::take_all_fields() {
+    if (auto looked = source_->look_at_steps({steps_.front()}, caller_); !looked) return looked;
+    std::vector<std::string> left_out;
+    for (const FieldInfo& field : source_->info().fields) {
+        const bool of_points = field.association == Association::point;
+        if (of_points && (field.components == 1 || field.components == 3)) add_names(names_, packed_names(field.name));
+        else
+            left_out.push_back(fmt::format("'{}' ({})", field.name,
+                                           of_points ? fmt::format("{} components", field.components) : "of cells"));
+    }
+    if (!left_out.empty())
+        caller_.note(fmt::format("not packed: {}; `fields` takes components, and cell fields averaged to the points",
+                                 fmt::join(left_out, ", ")));
+    return {};
+}
+
 Result<void> PackRun::choose_names() {
     auto named = choose_field_names(*source_, job_.fields, choice({}));
     if (!named) return named.error();
-    names_ = *std::move(named);
+    for (const std::string& name : *named) add_names(names_, packed_names(name));
     if (!names_.empty()) return {};
-    if (auto looked = source_->look_at_steps({steps_.front()}, caller_); !looked) return looked;
-    for (const FieldInfo& field : source_->info().fields)
-        if (field.association == Association::point && field.components == 1) names_.push_back(field.name);
+    if (auto taken = take_all_fields(); !taken) return taken;
     if (!names_.empty()) return {};
     const auto first = choose_first(*source_, job_.grid, {Steps::one, {}, {}, true, true}, caller_, caller_.run());
     if (!first) return first.error();

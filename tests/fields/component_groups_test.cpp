@@ -117,4 +117,21 @@ TEST(GatherComponents, PutsThemSideBySideInTheirCommonType) {
     EXPECT_FALSE(gather_components(fields, "ab", {}));
 }
 
+TEST(JoinedFields, AreVectorsOfPackedNamesAndTheOthers) {
+    const auto joined = [](const Names& names) {
+        Names texts;
+        for (const ComponentGroup& field : joined_fields(names))
+            texts.push_back(field.name + std::to_string(field.parts.size()));
+        return texts;
+    };
+    EXPECT_EQ(joined({"p", "U:x", "U:y", "U:z", "U:mag", "T"}), (Names{"p1", "U3", "T1"}));
+    EXPECT_EQ(joined({"U:z", "p", "U:x", "U:y"}), (Names{"U3", "p1"}));
+    EXPECT_EQ(joined({"U:x", "U:y", "U:mag"}), (Names{"U:x1", "U:y1", "U:mag1"})) << "a component is missing";
+    EXPECT_EQ(joined({"U", "U:x", "U:y", "U:z"}), (Names{"U1", "U:x1", "U:y1", "U:z1"}))
+        << "the name is another field's";
+    EXPECT_EQ(joined({"x", "y", "z", "mag"}), (Names{"x1", "y1", "z1", "mag1"}));
+    EXPECT_EQ(joined(packed_names_of_vector("a:b")), Names{"a:b3"});
+    EXPECT_TRUE(joined({}).empty());
+}
+
 } // namespace

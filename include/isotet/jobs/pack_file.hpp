@@ -20,8 +20,9 @@ struct PackJob {
                          ///< precision, source cells and gradients are those of the file
     std::string out;                        ///< .isotet
     std::vector<std::string> other_outputs; ///< of the caller: OUT may not be one
-    std::vector<std::string> fields; ///< as choose_field_names(); empty: all point fields of one component, or if there
-                                     ///< are none the one that is shown first
+    std::vector<std::string> fields; ///< as choose_field_names(); empty: all point fields of one or three components, or if
+                                     ///< there are none the one that is shown first. A vector is packed as its components
+                                     ///< and its magnitude
     bool cell_field = false;         ///< as FieldChoice
     Precision precision = Precision::float32;
     bool source_cells = false;

@@ -105,6 +105,33 @@ std::vector<ComponentGroup> component_groups(const std::vector<std::string>& nam
     return GroupFinder(names).take();
 }
 
+std::vector<std::string> packed_names_of_vector(const std::string& name) {
+    return {name + ":x", name + ":y", name + ":z", name + ":mag"};
+}
+
+std::vector<ComponentGroup> joined_fields(const std::vector<std::string>& names) {
+    const std::unordered_set<std::string> known(names.begin(), names.end());
+    const auto vector_of = [&](const std::string& part) { // or nothing
+        const std::string base = part.substr(0, part.rfind(':'));
+        const std::vector<std::string> parts = packed_names_of_vector(base);
+        const bool is_part = base != part && std::ranges::find(parts, part) != parts.end();
+        const bool all =
+            std::all_of(parts.begin(), parts.end() - 1, [&](const auto& one) { return known.contains(one); });
+        return is_part && all && !known.contains(base) ? base : std::string();
+    };
+    std::vector<ComponentGroup> fields;
+    std::unordered_set<std::string> joined;
+    for (const std::string& name : names) {
+        const std::string base = vector_of(name);
+        if (base.empty()) fields.push_back({name, {name}});
+        else if (joined.insert(base).second) {
+            fields.push_back({base, packed_names_of_vector(base)});
+            fields.back().parts.pop_back(); // the magnitude follows from the others
+        }
+    }
+    return fields;
+}
+
 std::vector<std::string> scalar_names(const std::vector<Field>& fields) {
     std::vector<std::string> names;
     for (const Field& field : fields)

@@ -3,8 +3,12 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <utility>
 
+#include <fmt/core.h>
+
+#include <isotet/component_groups.hpp>
 #include <isotet/packed_file.hpp>
 
 #include "base/memory.hpp"
@@ -19,14 +23,38 @@ int recognizes_isotet(std::string_view head, std::string_view extension) {
     return head.starts_with(packed_magic) ? 2 : extension == ".isotet" ? 1 : 0;
 }
 
+/// A field of a step as grids have it: of a vector three entries.
+struct UserField {
+    std::string name;
+    std::vector<const FieldEntry*> parts;
+};
+
+std::vector<UserField> user_fields(const PackedDirectory& directory, std::size_t step) {
+    std::map<std::string, const FieldEntry*> entries;
+    std::vector<std::string> names;
+    for (const FieldEntry& field : directory.fields) {
+        if (field.step != step) continue;
+        entries[field.name] = &field;
+        names.push_back(field.name);
+    }
+    std::vector<UserField> fields;
+    for (const ComponentGroup& group : joined_fields(names)) {
+        UserField& field = fields.emplace_back();
+        field.name = group.name;
+        for (const std::string& part : group.parts) field.parts.push_back(entries[part]);
+    }
+    return fields;
+}
+
 FileInfo file_info_of(const PackedDirectory& directory, std::size_t step) {
     FileInfo info;
     info.format = "isotet";
     const std::size_t steps = directory.fields.back().step + std::size_t{1};
     for (const FieldEntry& field : directory.fields) {
         if (field.step == info.times.size()) info.times.push_back(field.time == field.time ? field.time : field.step);
-        if (field.step == step) info.fields.push_back({field.name, Association::point, field.type, 1});
     }
+    for (const UserField& field : user_fields(directory, step))
+        info.fields.push_back({field.name, Association::point, field.parts.front()->type, field.parts.size()});
     if (steps == 1 && directory.fields.front().time != directory.fields.front().time) info.times.clear();
     return info;
 }
@@ -37,6 +65,27 @@ Result<FileInfo> inspect_isotet(const std::string& path, const ReadOptions& opti
     FileInfo info = file_info_of((*source)->directory, options.step.value_or(0));
     if (const auto step = choose_step(info, options); !step) return step.error();
     return info;
+}
+
+/// What a step takes as a grid: the arrays beside the packed ones that they are made of.
+std::uint64_t unpacked_bytes(const PackedDirectory& d, std::size_t step) {
+    const PackReport& cells = d.report;
+    const std::uint64_t corners = 4 * cells.tets + 5 * cells.pyramids + 6 * cells.wedges + 8 * cells.hexahedra;
+    const std::uint64_t others = cells.pyramids + cells.wedges + cells.hexahedra;
+    std::uint64_t bytes = bytes_of_whole(d, d.fields.front()) +
+                          corners * (d.user_points < (std::uint64_t{1} << 31) ? 4 : 8) +
+                          (others ? (others + cells.tets) * 9 : 0) + 3 * d.user_points * size_of(d.point_type);
+    for (const FieldEntry& field : d.fields)
+        if (field.step == step) bytes += d.user_points * size_of(field.type);
+    return bytes;
+}
+
+/// One field of its parts.
+Result<Field> joined(const std::string& name, std::vector<Field> parts) {
+    if (parts.size() == 1) return std::move(parts.front());
+    std::vector<std::string> names;
+    for (const Field& part : parts) names.push_back(part.name);
+    return gather_components(parts, name, names);
 }
 
 using LoadField = std::function<Result<std::shared_ptr<const core::Packed>>(const FieldEntry&)>;
@@ -66,18 +115,29 @@ Result<ReadResult> read_isotet(const std::string& path, const ReadOptions& optio
     if (!step) return step.error();
     result.step = *step;
     const Run run{core::threads_here(), progress};
+    if (options.some_cells == 0)
+        if (auto fits =
+                core::require_memory(fmt::format("all of {}, unpacked,", path), unpacked_bytes(directory, *step));
+            !fits)
+            return fits.error();
     const auto load = loader(*source, options.some_cells > 0, progress);
     if (!load) return load.error();
     std::shared_ptr<const core::Packed> cells;
     std::vector<Field> fields;
-    for (const FieldEntry& field : directory.fields) {
-        if (field.step != *step || !wanted(options, Association::point, field.name)) continue;
-        const auto packed = (*load)(field);
-        if (!packed) return packed.error();
-        Result<Field> values = unpack_field(PackedGrid(*packed), run);
-        if (!values) return values.error();
-        fields.push_back(*std::move(values));
-        cells = *packed;
+    for (const UserField& field : user_fields(directory, *step)) {
+        if (!wanted(options, Association::point, field.name)) continue;
+        std::vector<Field> parts;
+        for (const FieldEntry* const part : field.parts) {
+            const auto packed = (*load)(*part);
+            if (!packed) return packed.error();
+            Result<Field> values = unpack_field(PackedGrid(*packed), run);
+            if (!values) return values.error();
+            parts.push_back(*std::move(values));
+            cells = *packed;
+        }
+        Result<Field> whole = joined(field.name, std::move(parts));
+        if (!whole) return whole.error();
+        fields.push_back(*std::move(whole));
     }
     if (!cells) { // no field is wanted
         const auto packed = (*load)(directory.fields.front());

@@ -1,0 +1,94 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/jobs/pack_file.hpp>
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include <isotet/jobs/extract_files.hpp>
+#include <isotet/make.hpp>
+#include <isotet/packed_file.hpp>
+#include <isotet/read.hpp>
+#include <isotet/write.hpp>
+
+#include "jobs/listener.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace isotet::jobs {
+namespace {
+
+using test::Listener;
+
+/// Scalars, a vector and a tensor of points, and a cell field.
+std::string grid_with_all_kinds(const test::TemporaryFolder& folder) {
+    Grid grid = make_grid({.shape = "mixed", .side = 4, .fields = {"gyroid"}}).value();
+    std::vector<float> velocity, stress;
+    for (std::size_t i = 0; i < grid.points.tuples(); ++i) {
+        const double x = grid.points.at(i, 0), y = grid.points.at(i, 1), z = grid.points.at(i, 2);
+        for (const double v : {y - z, x * x, 0.5 - x}) velocity.push_back(static_cast<float>(v));
+        for (int k = 0; k < 9; ++k) stress.push_back(static_cast<float>(k));
+    }
+    grid.point_fields.push_back({"U", Array::own(std::move(velocity), 3)});
+    grid.point_fields.push_back({"stress", Array::own(std::move(stress), 9)});
+    std::vector<std::int32_t> region(grid.cells.count(), 7);
+    grid.cell_fields = {{"region", Array::own(std::move(region))}};
+    std::string path = folder.file("grid.vtu");
+    write_grid(grid, path).value();
+    return path;
+}
+
+std::string packed(const std::string& grid, const test::TemporaryFolder& folder, Listener& listener) {
+    PackJob job;
+    job.grid.file = grid;
+    job.out = folder.file("grid.isotet");
+    pack_file(job, listener).value();
+    return job.out;
+}
+
+TEST(PackFile, PacksVectorsAsComponentsAndNamesWhatIsNotPacked) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    const std::string grid = grid_with_all_kinds(folder), path = packed(grid, folder, listener);
+    ASSERT_EQ(listener.noted.size(), 1u);
+    EXPECT_EQ(listener.noted[0],
+              "not packed: 'stress' (9 components), 'region' (of cells); `fields` takes components, and "
+              "cell fields averaged to the points");
+    std::vector<std::string> names;
+    for (const PackedFieldInfo& field : PackedFile::open(path).value().info().fields)
+        names.push_back(field.report.name);
+    EXPECT_EQ(names, (std::vector<std::string>{"gyroid", "U:x", "U:y", "U:z", "U:mag"}));
+    const ReadResult read = isotet::read(path).value(), original = isotet::read(grid).value();
+    ASSERT_EQ(read.info.fields.size(), 2u);
+    EXPECT_EQ(read.info.fields[1].name, "U");
+    EXPECT_EQ(read.info.fields[1].components, 3u);
+    const Array &values = read.grid.point_fields[1].values, &expected = original.grid.point_fields[1].values;
+    ASSERT_EQ(values.size(), expected.size());
+    EXPECT_TRUE(std::ranges::equal(values.as<float>(), expected.as<float>()));
+}
+
+TEST(PackFile, SurfacesCarryVectorsAsThoseOfTheGrid) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    const std::string grid = grid_with_all_kinds(folder), path = packed(grid, folder, listener);
+    const auto surface_of = [&](const std::string& file, std::vector<std::string> with, const std::string& out) {
+        ExtractJob job;
+        job.grid.file = file;
+        job.out = folder.file(out);
+        job.field.name = "U:mag";
+        job.isovalues = {0.7};
+        job.with = std::move(with);
+        if (file == grid) job.method = Method::clusters;
+        Listener told;
+        extract_files(job, told).value();
+        for (const std::string& note : told.noted) EXPECT_EQ(note.find("all of the packed file"), note.npos) << note;
+        return test::content_of(job.out);
+    };
+    for (const std::vector<std::string>& with :
+         {std::vector<std::string>{"U", "gyroid"}, {"U:mag", "gyroid"}, {"U,U:y"}, {}}) {
+        const std::string expected = surface_of(grid, with, "a.vtp");
+        EXPECT_TRUE(surface_of(path, with, "b.vtp") == expected) << testing::PrintToString(with);
+    }
+}
+
+} // namespace
+} // namespace isotet::jobs
