@@ -134,7 +134,36 @@ bool all_points_are_sound(const Grid& grid) {
 
 namespace {
 
-/// Whether the cells [begin, end), four point numbers each, use only points that are there.
+/// 0: any number.
+constexpr std::uint64_t expected_corners(std::uint8_t type) {
+    const std::uint64_t sides = prism_sides(type);
+    return sides ? 2 * sides : static_cast<std::uint64_t>(corners_of(type));
+}
+
+/// By type.
+constexpr auto expected_corners_of_types = [] {
+    std::array<std::uint8_t, 256> all{};
+    for (std::size_t type = 0; type < all.size(); ++type)
+        all[type] = static_cast<std::uint8_t>(expected_corners(static_cast<std::uint8_t>(type)));
+    return all;
+}();
+
+/// Whether the cells [begin, end) lie inside the connectivity, each with as many corners as its type has.
+bool all_have_their_corners(const CellReader& cells, std::size_t begin, std::size_t end) {
+    if (!cells.has_offsets() || begin == end) return true; // open() has looked at the whole
+    return cells.offsets().visit([&](const auto* offsets) {
+        bool sound =
+            widened(offsets[begin]) <= widened(offsets[end]) && widened(offsets[end]) <= cells.connectivity_size();
+        for (std::size_t cell = begin; cell < end; ++cell) {
+            const std::uint64_t expected = expected_corners_of_types[cells.type(cell)];
+            const std::uint64_t first = widened(offsets[cell]), last = widened(offsets[cell + 1]);
+            sound &= first <= last && (expected == 0 || last - first == expected);
+        }
+        return sound;
+    });
+}
+
+/// Whether the cells [begin, end), one after another in the connectivity, use only points that are there.
 bool all_corners_are_points(const CellReader& cells, std::size_t begin, std::size_t end) {
     if (begin == end) return true;
     return cells.connectivity().visit([&](const auto* corners) {
@@ -143,18 +172,13 @@ bool all_corners_are_points(const CellReader& cells, std::size_t begin, std::siz
         if (cells.points() == 0 || cells.points() > highest_bit) return false; // then each cell is looked at
         const auto last = static_cast<Number>(cells.points() - 1);
         Number bits = 0; // a number that is too large, or the difference to one, has the highest bit
-        for (std::size_t i = 4 * begin; i < 4 * end; ++i) {
+        const std::uint64_t last_corner = cells.first(end - 1) + cells.corners(end - 1);
+        for (std::uint64_t i = cells.first(begin); i < last_corner; ++i) {
             const auto corner = static_cast<Number>(corners[i]);
             bits |= corner | (last - corner);
         }
         return (bits & highest_bit) == 0;
     });
-}
-
-/// 0: any number.
-std::uint64_t expected_corners(std::uint8_t type) {
-    const std::uint64_t sides = prism_sides(type);
-    return sides ? 2 * sides : static_cast<std::uint64_t>(corners_of(type));
 }
 
 Fault fault_of(const Grid& grid, const CellReader& cells, std::size_t cell) {
@@ -222,12 +246,13 @@ Result<void> check_cells(const Grid& grid, const CellReader& cells, const Progre
         return Error{ErrorCode::invalid_data,
                      fmt::format("the first offset is {}, but the connectivity has {} entries",
                                  IndexColumn(grid.cells.offsets)[0], cells.connectivity_size())};
-    const bool corners_are_enough = cells.bare_tets() && all_points_are_sound(grid);
+    const bool points_are_sound = all_points_are_sound(grid);
     // The lowest broken cell is the one reported, whatever the threads do.
     std::atomic<std::size_t> lowest{std::numeric_limits<std::size_t>::max()};
     parallel_pieces(cells.count(), 1 << 14, progress, [&](std::size_t begin, std::size_t end) {
         if (begin > lowest.load(std::memory_order_relaxed)) return;
-        if (corners_are_enough && all_corners_are_points(cells, begin, end)) return;
+        if (points_are_sound && all_have_their_corners(cells, begin, end) && all_corners_are_points(cells, begin, end))
+            return;
         for (std::size_t cell = begin; cell < end; ++cell) {
             if (fault_of(grid, cells, cell) == Fault::none) continue;
             std::size_t seen = lowest.load(std::memory_order_relaxed);
