@@ -7,6 +7,7 @@
 
 #include "base/parallel.hpp"
 #include "grid/cell/native_cells.hpp"
+#include "grid/cell/splitter.hpp"
 #include "grid/orientation.hpp"
 #include "numbers/bounds.hpp"
 
@@ -23,29 +24,89 @@ struct Partial {
     Orienter::Counts orientation;
 };
 
-void add_cells(const CellReader& cells, const PointReader& points, std::size_t begin, std::size_t end,
-               std::uint8_t* used, Partial& out) {
-    const bool typed = !cells.only_tets();
-    cells.for_cells(begin, end, [&](std::size_t cell, const CellTets& tets) {
-        const std::uint8_t type = cells.type(cell);
-        out.by_type[type] += typed;
+/// Says that tets have points.
+class Marker {
+public:
+    explicit Marker(Buffer<std::uint8_t>& used) : used_(used.data()) {}
+
+    void mark(std::uint64_t point) const {
+        std::atomic_ref(used_[point]).store(std::uint8_t{1}, std::memory_order_relaxed);
+    }
+
+private:
+    std::uint8_t* used_;
+};
+
+void add_tets(const CellReader& cells, const PointReader& points, std::size_t begin, std::size_t end,
+              const Marker& used, Partial& out) {
+    cells.for_cells(begin, end, [&](std::size_t, const CellTets& tets) {
         out.tets += static_cast<std::uint64_t>(tets.count);
         out.collapsed += static_cast<std::uint64_t>(tets.collapsed);
-        const bool whole = Orienter::is_whole(type), ordered = is_ordered(type);
-        const bool cell_mirrored = !whole && Orienter::six_volumes(points, tets) < 0;
         for (const Tet& tet : tets) {
-            for (const std::uint64_t corner : tet)
-                std::atomic_ref<std::uint8_t>(used[corner]).store(1, std::memory_order_relaxed);
+            for (const std::uint64_t corner : tet) used.mark(corner);
             const int sign = points.orientation(tet);
-            if (ordered) {
-                out.orientation.add_ordered(sign);
-                continue;
-            }
-            out.orientation.add(sign, whole, cell_mirrored);
+            out.orientation.add(sign, true, false);
             out.mirrored += sign < 0;
         }
     });
-    if (!typed) out.by_type[static_cast<std::uint8_t>(CellType::tetrahedron)] += end - begin;
+    out.by_type[static_cast<std::uint8_t>(CellType::tetrahedron)] += end - begin;
+}
+
+bool has_equal(const Tet& t) {
+    return t[0] == t[1] || t[0] == t[2] || t[0] == t[3] || t[1] == t[2] || t[1] == t[3] || t[2] == t[3];
+}
+
+/// The tets of a cell by positions of corners, those with repeated corners too.
+struct PositionList {
+    std::array<std::array<std::uint8_t, 4>, 6> tets;
+    std::size_t count = 0;
+
+    void expect(int) {}
+    void add(std::uint8_t a, std::uint8_t b, std::uint8_t c, std::uint8_t d) { tets[count++] = {a, b, c, d}; }
+};
+
+void add_cell(const WholeCell& cell, std::uint8_t type, const PointReader& points, const Marker& used, Partial& out) {
+    PositionList positions;
+    Splitter(cell.corners.data(), positions).split(cell.kind);
+    const bool repeated = has_repeated_corner(cell);
+    std::array<Point, 8> places;
+    for (std::size_t k = 0; k < corner_count(cell.kind); ++k) {
+        places[k] = points[cell.corners[k]];
+        if (!repeated) used.mark(cell.corners[k]);
+    }
+    std::array<int, 6> signs;
+    std::size_t count = 0;
+    double volumes = 0;
+    for (std::size_t i = 0; i < positions.count; ++i) {
+        const auto [a, b, c, d] = positions.tets[i];
+        if (repeated) {
+            const Tet tet{cell.corners[a], cell.corners[b], cell.corners[c], cell.corners[d]};
+            if (has_equal(tet)) {
+                ++out.collapsed;
+                continue;
+            }
+            for (const std::uint64_t corner : tet) used.mark(corner);
+        }
+        signs[count++] = orientation_sign(places[a], places[b], places[c], places[d]);
+        volumes += six_volumes(places[a], places[b], places[c], places[d]);
+    }
+    const bool whole = Orienter::is_whole(type), ordered = is_ordered(type);
+    const bool mirrored = !whole && !ordered && volumes < 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        out.orientation.add(signs[i], whole, mirrored);
+        out.mirrored += !ordered && signs[i] < 0;
+    }
+    out.tets += count;
+}
+
+void add_cells(const CellReader& cells, const PointReader& points, std::size_t begin, std::size_t end,
+               const Marker& used, Partial& out) {
+    if (cells.only_tets()) return add_tets(cells, points, begin, end, used, out);
+    for (std::size_t cell = begin; cell < end; ++cell) {
+        const std::uint8_t type = cells.type(cell);
+        ++out.by_type[type];
+        if (is_contoured(type)) add_cell(cells.whole(cell), type, points, used, out);
+    }
 }
 
 /// Bounds of the used points, and how many are not.
@@ -82,10 +143,11 @@ TetSurvey survey_tets(const Grid& grid, const CellReader& cells, const Progress&
     TetSurvey survey;
     survey.used = Buffer<std::uint8_t>(cells.points());
     clear(survey.used);
+    const Marker used(survey.used);
     std::mutex mutex;
     parallel_pieces(cells.count(), cells_per_chunk, progress, [&](std::size_t begin, std::size_t end) {
         Partial part;
-        add_cells(cells, points, begin, end, survey.used.data(), part);
+        add_cells(cells, points, begin, end, used, part);
         const std::lock_guard lock(mutex);
         survey.tets += part.tets;
         survey.collapsed += part.collapsed;
