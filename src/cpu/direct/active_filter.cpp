@@ -30,7 +30,8 @@ public:
         : sides_(std::move(sides)),
           mixed_(!type),
           type_(static_cast<std::uint8_t>(type.value_or(CellType::tetrahedron))),
-          corners_(core::fixed_corners_of(type_)) {}
+          corners_(core::fixed_corners_of(type_)),
+          broken_(!mixed_ && !core::is_contoured(type_)) {}
 
     void add(std::uint64_t first, const Array& corners) override {
         corners.visit([&](auto values) {
@@ -65,34 +66,34 @@ public:
         core::parallel_each(runs.size(), 16, [&](std::size_t i) {
             std::copy_n(runs[i].corners, runs[i].count, connectivity.data() + places[i]);
         });
-        kept_.clear();
         Cells cells;
         cells.connectivity =
             places.back() ? std::move(connectivity).to_array() : Array(scalar_type_of<Index>(), nullptr, 0, 1, nullptr);
         cells.uniform_type = static_cast<CellType>(type_);
         if (mixed_ && !runs.empty()) add_types(runs, cells);
+        kept_.clear();
         return cells;
     }
 
 private:
+    struct Kept;
     /// Kept cells of up to `cells_at_once`.
     struct Run {
         std::uint64_t first_cell; ///< of those that were looked at
         const Point* corners;
         std::size_t count;
-        std::uint8_t type;
+        const Kept* by;
+        std::size_t first_type, types; ///< theirs, of those kept; none where all are alike
     };
 
     static void add_types(const std::vector<Run>& runs, Cells& cells) {
         std::vector<std::int64_t> offsets{0};
         std::vector<std::uint8_t> types;
-        for (const Run& run : runs) {
-            const std::size_t corners = core::fixed_corners_of(run.type);
-            for (std::size_t i = 0; i < run.count; i += corners) {
-                offsets.push_back(offsets.back() + static_cast<std::int64_t>(corners));
-                types.push_back(run.type);
+        for (const Run& run : runs)
+            for (const std::uint8_t type : std::span(run.by->types).subspan(run.first_type, run.types)) {
+                types.push_back(type);
+                offsets.push_back(offsets.back() + static_cast<std::int64_t>(core::fixed_corners_of(type)));
             }
-        }
         cells.offsets = Array::own(std::move(offsets));
         cells.types = Array::own(std::move(types));
     }
@@ -102,6 +103,7 @@ private:
         std::vector<core::Buffer<Point>> blocks;
         std::size_t left = 0; ///< at the end of the last block
         std::vector<Run> runs;
+        std::vector<std::uint8_t> types; ///< of the cells, where each has its own
 
         Point* room(std::size_t count) {
             constexpr std::size_t block = arena_block / sizeof(Point);
@@ -126,21 +128,22 @@ private:
         const std::size_t cells = (corners.size() - head) / corners_, tail = corners.size() - head - cells * corners_;
         if (head) keep_fragment(first, corners.first(head));
         if (tail) keep_fragment(first + head + cells * corners_, corners.last(tail));
-        pass(type_, (first + head) / corners_, corners.data() + head, cells);
+        pass((first + head) / corners_, corners.data() + head, cells);
     }
 
     template <class Index>
     void add_mixed(std::uint64_t first_cell, std::span<const std::uint8_t> types, std::span<const Index> corners) {
-        std::size_t next = 0;
-        for (std::size_t begin = 0, end = 0; begin < types.size(); begin = end) {
-            while (end < types.size() && types[end] == types[begin]) ++end;
-            const std::size_t count = (end - begin) * core::fixed_corners_of(types[begin]);
-            if (count == 0 || count > corners.size() - next) broken_ = true;
+        MixedCells<Index> cells;
+        while (!types.empty()) {
+            const std::size_t count = cells.take(types.first(std::min(cells_at_once, types.size())), corners);
+            if (count == 0) broken_ = true;
             if (broken_.load(std::memory_order_relaxed)) return;
-            pass(types[begin], first_cell + begin, corners.data() + next, end - begin);
-            next += count;
+            pass_mixed(first_cell, cells);
+            first_cell += cells.types.size();
+            types = types.subspan(cells.types.size());
+            corners = corners.subspan(count);
         }
-        if (next != corners.size()) broken_ = true;
+        if (!corners.empty()) broken_ = true;
     }
 
     template <class Index>
@@ -157,50 +160,34 @@ private:
         for (const Fragment& fragment : fragments_) {
             cell.insert(cell.end(), fragment.corners.begin(), fragment.corners.end());
             if (cell.size() < corners_) continue;
-            pass(type_, fragment.first / corners_, cell.data(), 1);
+            pass(fragment.first / corners_, cell.data(), 1);
             cell.clear();
         }
         fragments_.clear();
     }
 
-    template <class Index>
-    void pass(std::uint8_t type, std::uint64_t first_cell, const Index* corners, std::size_t cells) {
-        if (!core::is_contoured(type)) return keep_all(type, first_cell, corners, cells);
-        switch (core::corners_of(type)) {
-        case 4: return pass_like<4>(type, first_cell, corners, cells);
-        case 5: return pass_like<5>(type, first_cell, corners, cells);
-        case 6: return pass_like<6>(type, first_cell, corners, cells);
-        default: return pass_like<8>(type, first_cell, corners, cells);
-        }
-    }
+    using Places = std::array<std::uint64_t, cells_at_once / 64>; ///< a bit for each cell
+    static void mark(Places& places, std::size_t place) { places[place / 64] |= std::uint64_t{1} << (place % 64); }
 
-    /// Cells that are not contoured are counted later.
     template <class Index>
-    void keep_all(std::uint8_t type, std::uint64_t first_cell, const Index* corners, std::size_t cells) {
-        Kept& kept = kept_.local();
-        const std::size_t n = core::fixed_corners_of(type);
-        for (std::size_t begin = 0; begin < cells; begin += cells_at_once) {
-            const std::size_t count = n * std::min(cells_at_once, cells - begin);
-            Point* const room = kept.room(count);
-            for (std::size_t i = 0; i < count; ++i) {
-                const auto corner = static_cast<std::make_unsigned_t<Index>>(corners[n * begin + i]);
-                if (corner >= sides_.front().points()) broken_ = true;
-                room[i] = static_cast<Point>(corner);
-            }
-            kept.left -= count;
-            kept.runs.push_back({first_cell + begin, room, count, type});
+    void pass(std::uint64_t first_cell, const Index* corners, std::size_t cells) {
+        switch (corners_) {
+        case 4: return pass_like<4>(first_cell, corners, cells);
+        case 5: return pass_like<5>(first_cell, corners, cells);
+        case 6: return pass_like<6>(first_cell, corners, cells);
+        default: return pass_like<8>(first_cell, corners, cells);
         }
     }
 
     template <std::size_t n, class Index>
-    void pass_like(std::uint8_t type, std::uint64_t first_cell, const Index* corners, std::size_t cells) {
+    void pass_like(std::uint64_t first_cell, const Index* corners, std::size_t cells) {
         std::array<std::uint16_t, cells_at_once> sums;
         std::array<std::uint32_t, cells_at_once> places;
         for (std::size_t begin = 0; begin < cells && !broken_.load(std::memory_order_relaxed); begin += cells_at_once) {
             const std::size_t size = std::min(cells_at_once, cells - begin), looked_at = (size + 15) / 16 * 16;
             const Index* const part = corners + n * begin;
-            std::array<std::uint64_t, cells_at_once / 64> keep{};
-            if (first_cell + begin == 0 && size) keep[0] = 1; // so that there is a cell to contour
+            Places keep{};
+            if (first_cell + begin == 0 && size) mark(keep, 0); // so that there is a cell to contour
             for (Sides& sides : sides_) {
                 if (!add_up_sides<n>(sides, part, size, sums.data())) broken_ = true;
                 std::fill(sums.data() + size, sums.data() + looked_at, std::uint16_t{0});
@@ -208,56 +195,138 @@ private:
                     find_worth_looking<n>(sums, places.data(), static_cast<std::uint32_t>(looked_at));
                 for (std::size_t i = 0; i < found; ++i) {
                     const std::uint32_t place = places[i];
-                    const bool asked_for = sums[place] >= 16 && uses_watched<n>(sides, part + n * place);
-                    if (asked_for || has_both_sides<n>(sums[place]))
-                        keep[place / 64] |= std::uint64_t{1} << (place % 64);
+                    const bool asked_for = sums[place] >= 16 && uses_watched(sides, std::span(part + n * place, n));
+                    if (asked_for || has_both_sides<n>(sums[place])) mark(keep, place);
                 }
             }
-            take<n>(type, first_cell + begin, part, keep);
+            keep_cells(first_cell + begin, keep, {}, [&](std::size_t place) { return std::span(part + n * place, n); });
         }
+    }
+
+    /// Up to `cells_at_once` cells with a type each.
+    template <class Index>
+    struct MixedCells {
+        std::span<const std::uint8_t> types;
+        const Index* corners;
+        std::array<std::uint16_t, cells_at_once + 1> begins; ///< of their corners
+
+        /// Returns how many of the corners are theirs; 0 where a type has no fixed number, or corners are missing.
+        std::size_t take(std::span<const std::uint8_t> of_types, std::span<const Index> from) {
+            types = of_types;
+            corners = from.data();
+            std::size_t next = 0;
+            bool sound = true;
+            for (std::size_t i = 0; i < types.size(); ++i) {
+                begins[i] = static_cast<std::uint16_t>(next);
+                const std::uint64_t own = core::fixed_corners_of(types[i]);
+                sound &= own > 0;
+                next += own;
+            }
+            begins[types.size()] = static_cast<std::uint16_t>(next);
+            return sound && next <= from.size() ? next : 0;
+        }
+        std::span<const Index> cell(std::size_t place) const {
+            return {corners + begins[place], corners + begins[place + 1]};
+        }
+    };
+
+    template <class Index>
+    void pass_mixed(std::uint64_t first_cell, const MixedCells<Index>& cells) {
+        std::array<std::uint16_t, cells_at_once> sums;
+        Places keep{};
+        if (first_cell == 0) mark(keep, 0); // so that there is a cell to contour
+        keep_flat(cells, keep);
+        for (Sides& sides : sides_) {
+            if (!add_up_mixed(sides, cells, sums.data())) broken_ = true;
+            for (std::size_t place = 0; place < cells.types.size(); ++place) {
+                const unsigned sum = sums[place], above = sum % 16, all = cells.begins[place + 1] - cells.begins[place];
+                if (sum == 0 || sum == all) continue;
+                const bool asked_for = sum >= 16 && uses_watched(sides, cells.cell(place));
+                if (asked_for || (above != 0 && above != all)) mark(keep, place);
+            }
+        }
+        keep_cells(first_cell, keep, cells.types, [&](std::size_t place) { return cells.cell(place); });
+    }
+
+    /// Cells that are not contoured are counted later.
+    template <class Index>
+    void keep_flat(const MixedCells<Index>& cells, Places& keep) {
+        for (std::size_t place = 0; place < cells.types.size(); ++place) {
+            if (core::is_contoured(cells.types[place])) continue;
+            mark(keep, place);
+            for (const Index corner : cells.cell(place))
+                if (static_cast<std::make_unsigned_t<Index>>(corner) >= sides_.front().points()) broken_ = true;
+        }
+    }
+
+    /// 0 for cells that are not contoured. False as add_up_sides().
+    template <class Index>
+    static bool add_up_mixed(const Sides& sides, const MixedCells<Index>& cells, std::uint16_t* sums) {
+        const std::span<const std::uint8_t> types = cells.types;
+        bool sound = true;
+        for (std::size_t begin = 0, end = 0; begin < types.size(); begin = end) {
+            while (end < types.size() && types[end] == types[begin]) ++end;
+            const Index* const corners = cells.corners + cells.begins[begin];
+            switch (core::corners_of(types[begin])) {
+            case 4: sound &= add_up_sides<4>(sides, corners, end - begin, sums + begin); break;
+            case 5: sound &= add_up_sides<5>(sides, corners, end - begin, sums + begin); break;
+            case 6: sound &= add_up_sides<6>(sides, corners, end - begin, sums + begin); break;
+            case 8: sound &= add_up_sides<8>(sides, corners, end - begin, sums + begin); break;
+            default: std::fill(sums + begin, sums + end, std::uint16_t{0});
+            }
+        }
+        return sound;
     }
 
     /// Of a cell that has a corner which needs attention: whether the cell must be kept for it.
-    template <std::size_t n, class Index>
-    bool uses_watched(Sides& sides, const Index* cell) {
+    template <class Index>
+    bool uses_watched(Sides& sides, std::span<const Index> cell) {
         unsigned any = 0;
         bool repeated = false; // such a cell may collapse, and use nothing
-        for (std::size_t k = 0; k < n; ++k) {
+        for (std::size_t k = 0; k < cell.size(); ++k) {
             const auto point =
                 static_cast<std::size_t>(static_cast<std::make_unsigned_t<Index>>(cell[k])) & sides.mask();
             any |= sides[point];
-            repeated |= std::find(cell, cell + k, cell[k]) != cell + k;
+            repeated |= std::ranges::find(cell.first(k), cell[k]) != cell.begin() + static_cast<std::ptrdiff_t>(k);
         }
         if (any & side::unsound) broken_ = true;
         if (!(any & side::watched) || broken_) return false;
-        for (std::size_t k = 0; k < n && !repeated; ++k) sides.saw(static_cast<std::size_t>(cell[k]));
+        if (!repeated)
+            for (const Index corner : cell) sides.saw(static_cast<std::size_t>(corner));
         return true;
     }
 
-    template <std::size_t n, class Index>
-    void take(std::uint8_t type, std::uint64_t first_cell, const Index* corners,
-              const std::array<std::uint64_t, cells_at_once / 64>& keep) {
-        if (std::ranges::all_of(keep, [](std::uint64_t word) { return word == 0; })) return;
-        std::size_t count = 0;
-        for (const std::uint64_t word : keep) count += static_cast<std::size_t>(std::popcount(word));
-        if (broken_) return;
+    /// `types`     of the cells, where each has its own
+    /// `cell_at`   a place: its corners
+    template <class CellAt>
+    void keep_cells(std::uint64_t first_cell, const Places& keep, std::span<const std::uint8_t> types,
+                    const CellAt& cell_at) {
+        std::size_t cells = 0, count = 0;
+        for (const std::uint64_t word : keep) cells += static_cast<std::size_t>(std::popcount(word));
+        if (cells == 0 || broken_) return;
+        const auto each = [&](const auto& use) {
+            for (std::size_t i = 0; i < keep.size(); ++i)
+                for (std::uint64_t word = keep[i]; word; word &= word - 1)
+                    use(64 * i + static_cast<std::size_t>(std::countr_zero(word)));
+        };
+        each([&](std::size_t place) { count += cell_at(place).size(); });
         Kept& kept = kept_.local();
-        Point* const room = kept.room(n * count);
+        Point* const room = kept.room(count);
         Point* next = room;
-        for (std::size_t i = 0; i < keep.size(); ++i)
-            for (std::uint64_t word = keep[i]; word; word &= word - 1) {
-                const std::size_t place = 64 * i + static_cast<std::size_t>(std::countr_zero(word));
-                for (std::size_t k = 0; k < n; ++k) *next++ = static_cast<Point>(corners[n * place + k]);
-            }
-        kept.left -= n * count;
-        kept.runs.push_back({first_cell, room, n * count, type});
+        each([&](std::size_t place) {
+            for (const auto corner : cell_at(place)) *next++ = static_cast<Point>(corner);
+        });
+        kept.left -= count;
+        const std::size_t first_type = kept.types.size();
+        if (!types.empty()) each([&](std::size_t place) { kept.types.push_back(types[place]); });
+        kept.runs.push_back({first_cell, room, count, &kept, first_type, kept.types.size() - first_type});
     }
 
     std::vector<Sides> sides_; ///< one an isovalue
-    bool mixed_; ///< each cell has its own type
+    bool mixed_;               ///< each cell has its own type
     std::uint8_t type_;
     std::size_t corners_; ///< of a cell of the type
-    std::atomic<bool> broken_{false};
+    std::atomic<bool> broken_;
     tbb::enumerable_thread_specific<Kept> kept_;
     std::mutex mutex_;
     std::vector<Fragment> fragments_; ///< under the mutex
