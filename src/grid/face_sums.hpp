@@ -13,6 +13,7 @@
 #include "base/parallel.hpp"
 #include "grid/cell/cell_kind.hpp"
 #include "grid/cell/split.hpp"
+#include "grid/cell/with_kind.hpp"
 #include "grid/face_counter.hpp"
 #include "numbers/point_hash.hpp"
 
@@ -84,16 +85,18 @@ public:
 
         /// `mirrored`   its faces are clockwise seen from outside
         void add(const WholeCell& cell, bool mirrored) {
-            std::array<std::uint64_t, 8> hashes;
-            std::uint64_t all = 0;
-            for (std::size_t i = 0; i < corner_count(cell.kind); ++i)
-                all += hashes[i] = mixed(cell.corners[i] + 0x9e3779b97f4a7c15u);
-            std::uint64_t lowest = cell.corners[0];
-            for (const CellFace& face : shape_of(cell.kind).faces()) {
-                const FaceChange change = change_of(cell, face, hashes);
-                lowest = std::min(lowest, change.point);
-                put({change.point, mirrored ? 0 - change.sum : change.sum});
-            }
+            std::uint64_t all = 0, lowest = cell.corners[0];
+            with_kind(cell.kind, [&](auto kind) {
+                constexpr CellShape shape = shape_of(kind);
+                std::array<std::uint64_t, 8> hashes;
+                for (std::size_t i = 0; i < corner_count(kind); ++i)
+                    all += hashes[i] = mixed(cell.corners[i] + 0x9e3779b97f4a7c15u);
+                for (std::size_t face = 0; face < shape.face_count; ++face) {
+                    const FaceChange change = change_of(cell, shape.all_faces[face], hashes);
+                    lowest = std::min(lowest, change.point);
+                    put({change.point, mirrored ? 0 - change.sum : change.sum});
+                }
+            });
             cells_[cell_count_++] = {lowest, bits_of(mixed(all))};
             if (cell_count_ == cells_.size()) flush();
         }
@@ -111,7 +114,9 @@ public:
             std::size_t first = 0;
             for (std::size_t i = 1; i < face.count; ++i)
                 if (cell.corners[face.corners[i]] < cell.corners[face.corners[first]]) first = i;
-            const auto corner = [&](std::size_t i) { return face.corners[(first + i) % face.count]; };
+            const auto corner = [&](std::size_t i) {
+                return face.corners[first + i < face.count ? first + i : first + i - face.count];
+            };
             const std::size_t next = corner(1), last = corner(face.count - 1);
             const bool is_forward = cell.corners[next] < cell.corners[last];
             const std::size_t low = is_forward ? next : last, high = is_forward ? last : next;

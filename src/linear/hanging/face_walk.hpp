@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "grid/cell/native_cells.hpp"
+#include "grid/cell/with_kind.hpp"
 #include "grid/cell_faces.hpp"
 #include "grid/cells.hpp"
 #include "linear/hanging/cell_loops.hpp"
@@ -71,11 +72,13 @@ public:
             for (std::size_t face = 0; face < loops_.count(); ++face) use(face, hash_of(loops_.loop(face)));
             return;
         }
-        std::array<std::uint64_t, 8> hashes{};
-        for (std::size_t i = 0; i < core::corner_count(whole_.kind); ++i) hashes[i] = scattered(whole_.corners[i]);
-        std::size_t number = 0;
-        for (const core::CellFace& face : core::shape_of(whole_.kind).faces())
-            use(number++, hash_of(whole_, face, hashes));
+        core::with_kind(whole_.kind, [&](auto kind) {
+            constexpr core::CellShape shape = core::shape_of(kind);
+            std::array<std::uint64_t, 8> hashes{};
+            for (std::size_t i = 0; i < core::corner_count(kind); ++i) hashes[i] = scattered(whole_.corners[i]);
+            for (std::size_t face = 0; face < shape.face_count; ++face)
+                use(face, hash_of(whole_, shape.all_faces[face], hashes));
+        });
     }
 
     /// The cell whose faces follow. False: it has no volume that is contoured.

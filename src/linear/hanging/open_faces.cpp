@@ -17,7 +17,7 @@ namespace isotet::linear {
 
 namespace {
 
-constexpr std::size_t cells_per_look = 1 << 13;
+constexpr std::size_t cells_per_look = 1 << 13, points_per_clear = 1 << 16;
 
 /// Which points faces of several cells have.
 class SharedPoints {
@@ -59,7 +59,9 @@ public:
 
 private:
     void add_hashes() {
-        std::ranges::fill(sums_, std::uint64_t{0});
+        core::parallel_ranges(sums_.size(), points_per_clear, [&](std::size_t begin, std::size_t end) {
+            std::fill(sums_.begin() + begin, sums_.begin() + end, std::uint64_t{0});
+        });
         core::parallel_pieces(cells_.count(), cells_per_look, progress_, [&](std::size_t begin, std::size_t end) {
             FaceWalk walk(cells_, faces_);
             if (cells_.bare_tets())
