@@ -9,8 +9,10 @@
 #include <type_traits>
 #include <utility>
 
+#include "base/memory.hpp"
 #include "base/parallel.hpp"
 #include "grid/fixed_corners.hpp"
+#include "numbers/point_hash.hpp"
 
 namespace isotet::io {
 namespace {
@@ -35,7 +37,43 @@ core::Buffer<std::uint8_t> no_marks(std::uint64_t points) {
     return marks;
 }
 
+/// The same for cells with the same corners, whatever their order.
+std::uint64_t hash_of(std::uint8_t type, std::span<const std::int32_t> corners) {
+    std::uint64_t hash = kind_for_repetition(type);
+    for (const std::int32_t corner : corners)
+        hash += core::folded_product(static_cast<std::uint32_t>(corner) ^ 0xA0761D6478BD642FU, 0xE7037ED1A0B428DBU);
+    return core::mixed(hash);
+}
+
 } // namespace
+
+void SharedHashes::add(const std::vector<core::Keyed>& cells) {
+    const std::lock_guard lock(mutex_);
+    cells_.insert(cells_.end(), cells.begin(), cells.end());
+}
+
+Result<std::vector<std::vector<std::uint8_t>>> SharedHashes::repeated(std::span<const std::uint64_t> counts) {
+    const std::uint64_t bytes = sizeof(core::Keyed) * cells_.size();
+    if (auto enough = core::require_memory("comparing cells of pieces", bytes); !enough) return enough.error();
+    core::Buffer<core::Keyed> scratch(cells_.size());
+    core::radix_sort(cells_, {scratch.data(), scratch.size()});
+    std::vector<std::uint64_t> places{0};
+    for (const std::uint64_t count : counts) places.push_back(places.back() + count);
+    std::vector<std::vector<std::uint8_t>> marks;
+    const auto mark = [&](std::uint64_t place) {
+        const auto piece = static_cast<std::size_t>(std::ranges::upper_bound(places, place) - places.begin() - 1);
+        marks.resize(counts.size());
+        marks[piece].resize(counts[piece]);
+        marks[piece][place - places[piece]] = 1;
+    };
+    for (std::size_t i = 1; i < cells_.size(); ++i) {
+        if (cells_[i].key != cells_[i - 1].key) continue;
+        mark(cells_[i - 1].number);
+        mark(cells_[i].number);
+    }
+    cells_ = {};
+    return marks;
+}
 
 void SharedCells::add(const std::vector<Cell>& cells) {
     const std::lock_guard lock(mutex_);
@@ -147,6 +185,7 @@ void ActivePass::pass(std::uint64_t first_cell, std::uint64_t cells, const Index
     if (!target_.filter) return mark_all(first_cell, cells, corners, corners_of);
     std::array<std::int32_t, 8 * cells_per_send> numbered;
     std::array<std::uint8_t, cells_per_send> types;
+    std::vector<core::Keyed> hashes;
     std::vector<SharedCells::Cell> shared;
     std::uint64_t first = first_cell; // of those in `numbered`
     std::size_t filled = 0, count = 0;
@@ -175,10 +214,14 @@ void ActivePass::pass(std::uint64_t first_cell, std::uint64_t cells, const Index
             numbered[filled + k] = static_cast<std::int32_t>(number & number_bits);
         }
         if ((all & used_bit) == 0) see(std::span(own).first(n));
-        if ((all & shared_bit) != 0) { // later ones are sent after it, so they are not sent together with earlier ones
-            shared.push_back(shared_cell(cell, std::span(numbered).subspan(filled, n)));
-            send_them();
-            continue;
+        if ((all & shared_bit) != 0) {
+            const std::span<const std::int32_t> here = std::span(numbered).subspan(filled, n);
+            if (target_.hashes) hashes.push_back({hash_of(places_.type(cell), here), target_.place + cell});
+            if (!target_.repeated.empty() && target_.repeated[cell] != 0) {
+                shared.push_back(shared_cell(cell, here));
+                send_them(); // later ones are sent after it, so they are not sent together with earlier ones
+                continue;
+            }
         }
         if (count == 0) first = cell;
         if (typed) types[count] = places_.type(cell);
@@ -187,6 +230,7 @@ void ActivePass::pass(std::uint64_t first_cell, std::uint64_t cells, const Index
     }
     send_them();
     if (broken) broken_ = true;
+    if (!hashes.empty()) target_.hashes->add(hashes);
     if (!shared.empty()) target_.shared->add(shared);
 }
 

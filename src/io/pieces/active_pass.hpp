@@ -11,8 +11,10 @@
 #include <vector>
 
 #include <isotet/active_cells.hpp>
+#include <isotet/result.hpp>
 
 #include "base/buffer.hpp"
+#include "base/radix_sort.hpp"
 #include "io/pieces/cell_places.hpp"
 #include "io/pieces/loaded.hpp"
 #include "io/pieces/piece_points.hpp"
@@ -21,7 +23,23 @@
 
 namespace isotet::io {
 
-/// Cells all of whose points other pieces have, too: whether such a cell is one of theirs is known at the end.
+/// Cells all of whose points other pieces have, too, by hashes of their corners.
+class SharedHashes {
+public:
+    /// `cells`   hashes, and numbers in the order of the pieces
+    void add(const std::vector<core::Keyed>& cells);
+
+    /// By piece, of as many cells as `counts` says: 1 for those whose hash another cell has. Empty where there are none.
+    ///
+    /// Errors   out_of_memory
+    Result<std::vector<std::vector<std::uint8_t>>> repeated(std::span<const std::uint64_t> counts);
+
+private:
+    std::mutex mutex_;
+    std::vector<core::Keyed> cells_;
+};
+
+/// Cells of which each may be one of another piece, too: that is known when all are there.
 class SharedCells {
 public:
     struct Cell {
@@ -49,10 +67,13 @@ class ActivePass {
 public:
     struct Target {
         ActiveCellFilter* filter = nullptr; ///< null: uses are looked for, and nothing else
-        SharedCells* shared = nullptr;
-        bool typed = false;      ///< the filter takes cells with their types
-        std::uint64_t first = 0; ///< number of the piece's first cell in the joined grid
+        bool typed = false;                 ///< the filter takes cells with their types
+        std::uint64_t first = 0;            ///< number of the piece's first cell in the joined grid
         std::uint32_t piece = 0;
+        SharedHashes* hashes = nullptr; ///< are told of all shared cells
+        std::uint64_t place = 0;        ///< of the piece's first cell there
+        SharedCells* shared = nullptr;  ///< has those instead of the filter that `repeated` marks
+        std::span<const std::uint8_t> repeated{};
     };
 
     static constexpr std::uint64_t max_points = std::uint64_t{1} << 30; ///< of the joined grid

@@ -179,10 +179,23 @@ private:
         if (!filter) needs_all_ = true;
         if (needs_all_) return std::optional<ReadResult>();
         if (options_.active_cells->bounds) used_.assign(joined->numbers.count, PointUse::none);
-        SharedCells shared;
-        if (auto done = pass_all(joined->numbers, *filter, shared, again); !done) return done.error();
+        std::vector<ActivePass::Target> targets = targets_for(*filter);
+        SharedHashes hashes;
+        for (ActivePass::Target& target : targets) target.hashes = &hashes;
+        if (auto done = pass_all(joined->numbers, targets, again); !done) return done.error();
         if (needs_all_ || again) return std::optional<ReadResult>();
-        const RepeatedCells repeated = shared.settle(*filter, typed_);
+        const auto marks = hashes.repeated(cell_counts());
+        if (!marks) return marks.error();
+        RepeatedCells repeated;
+        if (!marks->empty()) { // cells were kept that may be those of other pieces
+            filter = active_filter(result.grid, type_, options_);
+            targets = targets_for(*filter);
+            SharedCells shared;
+            for (std::size_t p = 0; p < all_.size(); ++p)
+                targets[p].shared = &shared, targets[p].repeated = (*marks)[p];
+            if (auto done = pass_all(joined->numbers, targets, again); !done) return done.error();
+            repeated = shared.settle(*filter, typed_);
+        }
         note_repeated(repeated, all_.pieces, result.notes);
         std::ranges::move(of_fields, std::back_inserter(result.notes));
         result.cells_in_file = kept_cells() - repeated.left_out;
@@ -251,8 +264,25 @@ private:
         return count;
     }
 
-    Result<void> pass_all(const PointNumbers& numbers, ActiveCellFilter& filter, SharedCells& shared, bool& again) {
+    std::vector<std::uint64_t> cell_counts() const {
+        std::vector<std::uint64_t> counts;
+        for (const Piece& piece : all_.pieces) counts.push_back(piece.cell_count());
+        return counts;
+    }
+
+    std::vector<ActivePass::Target> targets_for(ActiveCellFilter& filter) const {
+        std::vector<ActivePass::Target> targets(all_.size());
         const std::vector<std::uint64_t> first = first_cells();
+        std::uint64_t place = 0;
+        for (std::size_t p = 0; p < all_.size(); ++p) {
+            targets[p] = {&filter, typed_, first[p], static_cast<std::uint32_t>(p)};
+            targets[p].place = std::exchange(place, place + all_.pieces[p].cell_count());
+        }
+        return targets;
+    }
+
+    /// `targets`   by piece
+    Result<void> pass_all(const PointNumbers& numbers, const std::vector<ActivePass::Target>& targets, bool& again) {
         std::vector<std::vector<PointUse>> found(all_.size());
         std::atomic<std::size_t> done_pieces = 0;
         FirstError failed;
@@ -260,12 +290,10 @@ private:
             const Piece& piece = all_.pieces[p];
             if (!piece.unread || failed || needs_all_) return;
             const bool assumed = all_.size() > 1 && all_.uses[p].empty();
-            ActivePass pass(piece, numbers.pieces[p],
-                            {&filter, &shared, typed_, first[p], static_cast<std::uint32_t>(p)});
+            ActivePass pass(piece, numbers.pieces[p], targets[p]);
             const auto add = [&](std::uint64_t place, const Array& corners) { pass.add(place, corners); };
             if (auto done = piece.unread->each_block(add); !done) return failed.add(p, done.error());
-            progress_("join pieces",
-                      0.7 + 0.3 * static_cast<double>(++done_pieces) / static_cast<double>(all_.size()));
+            progress_("join pieces", 0.7 + 0.3 * static_cast<double>(++done_pieces) / static_cast<double>(all_.size()));
             if (!pass.finish()) needs_all_ = true;
             else if (assumed && !pass.uses_all_points()) found[p] = pass.use();
             if (!used_.empty()) mark_used(pass.use(), numbers.pieces[p]);
