@@ -77,6 +77,7 @@ void add_clip_command(const Command& program, ClipCommand& clip) {
                                   "Precision of the points on edges, and of values there");
     add_reading(command, clip.grid, "--format");
     add_common(command, clip.common);
+    command.set_common({"--field", "--above", "--below", "--between", "--all-steps", "--with"});
     command.set_details(clip_details);
 }
 

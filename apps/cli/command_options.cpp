@@ -222,6 +222,7 @@ void add_info(const Command& program, InfoCommand& info) {
         .excludes(chart);
     add_field(command, info.field, "The field of the chart; default: the one that is shown first").needs(chart);
     add_common(command, info.common);
+    command.set_common({"--heads", "--survey", "--chart", "--field", "--time", "--json"});
     command.set_details(info_details);
 }
 
@@ -312,6 +313,7 @@ void add_extract(const Command& program, ExtractCommand& extract) {
                         "from A to B; cell field boundary: 1 on the grid's boundary, 0 on isosurfaces");
     add_memory(command, extract.memory);
     add_common(command, extract.common);
+    command.set_common({"--output", "--field", "--isovalue", "--all-steps", "--with", "--solid"});
     command.set_details(extract_details);
 }
 
@@ -323,6 +325,7 @@ void add_render(const Command& program, RenderCommand& render) {
                                               "A picture of every time step, with one camera and one colour scale");
     for (const char* name : {"--time", "--step", "--sweep", "--orbit", "--reference"})
         all_steps.excludes(command.option(name));
+    command.set_common({"--output", "--field", "--isovalue", "--color-by", "--view", "--all-steps"});
 }
 
 void add_view(const Command& program, ViewCommand& view) {
@@ -357,6 +360,7 @@ void add_view(const Command& program, ViewCommand& view) {
     add_time(command, view.grid);
     add_reading(command, view.grid, "--format");
     add_common(command, view.common);
+    command.set_common({"--field", "--isovalue", "--color-by", "--no-browser", "--port", "--out"});
     command.set_details(view_details);
 }
 
@@ -387,6 +391,7 @@ void add_export(const Command& program, ExportCommand& exported) {
         .excludes(command.option("--step"));
     add_reading(command, exported.grid, "--format");
     add_common(command, exported.common);
+    command.set_common({"--field", "--isovalue", "--as", "--color-by", "--all-steps", "--max-size"});
     command.set_details(export_details);
 }
 
@@ -429,6 +434,7 @@ void add_check(const Command& program, CheckCommand& check) {
         command.option(name).needs(grid);
     }
     add_common(command, check.common);
+    command.set_common({"--closed", "--grid", "--field", "--isovalue", "--strict", "--json"});
     command.set_details(check_details);
 }
 
@@ -461,6 +467,7 @@ void add_pack(const Command& program, PackCommand& pack) {
                                   "Precision of the packed grid");
     add_reading(command, pack.grid, "--format");
     add_common(command, pack.common);
+    command.set_common({"--fields", "--all-steps", "--append", "--time", "--step", "--split-cells"});
     command.set_details(pack_details);
 }
 
@@ -513,8 +520,8 @@ void add_help(const Command& program, HelpCommand& help) {
 
 void add_docs(const Command& program, DocsCommand& docs) {
     const Command command = program.add_command(
-        "docs", "Print the man page, the bash completion, docs/command-line.md or the page of Python's html()");
-    command.add_text("KIND", docs.kind, "man|completion|markdown|page", "").required();
+        "docs", "Print the man page, the completion of a shell, docs/command-line.md or the page of Python's html()");
+    command.add_text("KIND", docs.kind, "man|bash|fish|zsh|markdown|page", "").required();
     command.hide(); // for the build, not for users
 }
 

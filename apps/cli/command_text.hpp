@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// The option tree as text, found by one walk over it, and what is printed of it: --help, man page, bash completion and
+// The option tree as text, found by one walk over it, and what is printed of it: --help, man page, completions and
 // markdown.
 #pragma once
 
@@ -12,10 +12,11 @@ struct OptionText {
     std::string names;                ///< "-f, --field", or "FILE" for a positional
     std::vector<std::string> flags;   ///< "-f", "--field"; empty for a positional
     std::string value;                ///< "FIELD"; empty for a flag
-    std::vector<std::string> choices; ///< "none", "gradient", "face"
+    std::vector<std::string> choices; ///< "none", "gradient", "face"; those that are words as they stand
     std::string description;
     bool positional = false, required = false, repeatable = false;
     bool is_file = false; ///< the value is a file's name
+    bool rare = false;    ///< told by --help-all alone
 };
 
 struct CommandText {
@@ -34,9 +35,13 @@ struct Paragraph {
 };
 std::vector<Paragraph> paragraphs(const std::string& details);
 
-std::string help_text(const CommandText& command, const std::vector<CommandText>& commands);
+enum class Help { common, all };
+
+std::string help_text(const CommandText& command, const std::vector<CommandText>& commands, Help help);
 std::string man_page(const std::vector<CommandText>& commands);
 std::string bash_completion(const std::vector<CommandText>& commands);
+std::string fish_completion(const std::vector<CommandText>& commands);
+std::string zsh_completion(const std::vector<CommandText>& commands);
 std::string markdown(const std::vector<CommandText>& commands);
 
 } // namespace isotet::cli

@@ -1,5 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // --help, from the walk over the option tree.
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "command_text.hpp"
@@ -19,22 +21,14 @@ std::string entry(const std::string& left, const std::string& description) {
     return line + wrapped(description, columns, description_column) + "\n";
 }
 
-} // namespace
+std::string entry(const OptionText& option) {
+    const bool with_value = !option.positional && !option.value.empty();
+    return entry(with_value ? fmt::format("{} {}", option.names, option.value) : option.names, option.description);
+}
 
-std::string help_text(const CommandText& command, const std::vector<CommandText>& commands) {
-    std::string text = fmt::format("{}\n\nUsage: {}\n", command.summary, command.usage);
-    if (command.word.empty()) {
-        text += "\nCommands (isotet COMMAND --help says more):\n";
-        for (const CommandText& other : commands) {
-            if (!other.word.empty()) text += entry(other.word, other.summary);
-        }
-    }
-    text += "\nOptions:\n";
-    for (const OptionText& option : command.options) {
-        const bool with_value = !option.positional && !option.value.empty();
-        text += entry(with_value ? fmt::format("{} {}", option.names, option.value) : option.names, option.description);
-    }
-    for (const Paragraph& paragraph : paragraphs(command.details)) {
+std::string details_text(const std::vector<Paragraph>& some) {
+    std::string text;
+    for (const Paragraph& paragraph : some) {
         if (!paragraph.preformatted) {
             text += fmt::format("\n{}\n", wrapped(paragraph.text, columns));
             continue;
@@ -46,6 +40,32 @@ std::string help_text(const CommandText& command, const std::vector<CommandText>
         }
     }
     return text;
+}
+
+/// From the paragraph on that announces them.
+std::vector<Paragraph> examples_of(const std::vector<Paragraph>& all) {
+    return {std::ranges::find(all, "Examples:", &Paragraph::text), all.end()};
+}
+
+} // namespace
+
+std::string help_text(const CommandText& command, const std::vector<CommandText>& commands, Help help) {
+    std::string text = fmt::format("{}\n\nUsage: {}\n", command.summary, command.usage);
+    if (command.word.empty()) {
+        text += "\nCommands (isotet COMMAND --help says more):\n";
+        for (const CommandText& other : commands) {
+            if (!other.word.empty()) text += entry(other.word, other.summary);
+        }
+    }
+    text += "\nOptions:\n";
+    std::size_t left_out = 0;
+    for (const OptionText& option : command.options)
+        if (option.rare && help == Help::common) ++left_out;
+        else text += entry(option);
+    const std::vector<Paragraph> details = paragraphs(command.details);
+    if (left_out == 0) return text + details_text(details);
+    text += fmt::format("\n{} more options, and details: {} --help-all\n", left_out, command.name);
+    return text + details_text(examples_of(details));
 }
 
 } // namespace isotet::cli

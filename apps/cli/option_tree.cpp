@@ -20,7 +20,8 @@ namespace isotet::cli {
 
 namespace {
 
-constexpr int first_error_code = 1000; ///< above CLI11's own exit codes
+constexpr int first_error_code = 1000;       ///< above CLI11's own exit codes
+constexpr const char* rare_options = "rare"; ///< their group
 
 double finite_number(const std::string& names, std::string_view text, std::string_view rule = "a finite number") {
     const std::optional<double> value = parse_number(text);
@@ -33,8 +34,7 @@ double finite_number(const std::string& names, std::string_view text, std::strin
     throw CLI::ValidationError(std::move(sentence), first_error_code + static_cast<int>(code));
 }
 
-void append_numbers_of_file(const std::string& path, std::vector<double>& numbers,
-                            const Command::OtherWords& other) {
+void append_numbers_of_file(const std::string& path, std::vector<double>& numbers, const Command::OtherWords& other) {
     std::ifstream file(path);
     if (!file) refuse_file(ErrorCode::file, fmt::format("the file of numbers '{}' cannot be read", path));
     bool any = false;
@@ -50,14 +50,12 @@ void append_numbers_of_file(const std::string& path, std::vector<double>& number
             if (other.take && other.take(word)) continue;
             const std::optional<double> value = parse_number(word);
             if (!value || !std::isfinite(*value))
-                refuse_file(ErrorCode::invalid_data,
-                            fmt::format("{}: line {} has '{}', but must have {}", path, number, word,
-                                        other.take ? other.rule : "finite numbers"));
+                refuse_file(ErrorCode::invalid_data, fmt::format("{}: line {} has '{}', but must have {}", path, number,
+                                                                 word, other.take ? other.rule : "finite numbers"));
             numbers.push_back(*value);
         }
     }
-    if (!any)
-        refuse_file(ErrorCode::invalid_data, fmt::format("{} has no number, but must have at least one", path));
+    if (!any) refuse_file(ErrorCode::invalid_data, fmt::format("{} has no number, but must have at least one", path));
 }
 
 /// An option whose values go to `set`, all at once.
@@ -87,13 +85,20 @@ std::vector<std::string> split_at_bars(const std::string& type) {
     return words;
 }
 
+/// Not "N" or "area>A", which stand for words.
+bool is_word(const std::string& text) {
+    return text.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_-") == std::string::npos;
+}
+
 OptionText text_of(const CLI::Option& option) {
     OptionText text;
     text.positional = option.get_positional();
     text.required = option.get_required();
+    text.rare = option.get_group() == rare_options;
     text.description = option.get_description();
     if (option.get_items_expected_max() > 0) {
         text.choices = split_at_bars(option.get_type_name());
+        std::erase_if(text.choices, [](const std::string& choice) { return !is_word(choice); });
         text.value = shown_type(option.get_type_name(), text.is_file);
     }
     text.repeatable = !text.positional && option.get_items_expected_max() > 1;
@@ -206,6 +211,17 @@ Command Command::add_command(const std::string& word, const std::string& summary
 }
 
 void Command::set_details(const std::string& details) const { app_->footer(details); }
+
+void Command::set_common(const std::vector<std::string>& names) const {
+    for (CLI::Option* option : app_->get_options()) {
+        const std::vector<std::string>& own = option->get_lnames();
+        const bool is_common = std::ranges::any_of(own, [&](const std::string& name) {
+            return name == "help" || std::ranges::find(names, "--" + name) != names.end();
+        });
+        if (!option->get_positional() && !is_common) option->group(rare_options);
+    }
+    app_->set_help_all_flag("--help-all", "Show all options, and details");
+}
 
 void Command::hide() const { app_->group(""); }
 
@@ -327,14 +343,17 @@ Result<void> OptionTree::parse(const std::vector<std::string>& words) {
         if (word.size() > 3 && word[0] == '-' && word[2] == '=' && has_short_option(*program_, word[1]))
             word.erase(2, 1);
     for (std::size_t i = backwards.size(); i-- > 0;) // it takes --with= as --with without a value
-        if (backwards[i].starts_with("--") && backwards[i].size() > 3 && backwards[i].find('=') == backwards[i].size() - 1) {
+        if (backwards[i].starts_with("--") && backwards[i].size() > 3 &&
+            backwards[i].find('=') == backwards[i].size() - 1) {
             backwards[i].pop_back();
             backwards.insert(backwards.begin() + static_cast<std::ptrdiff_t>(i), std::string());
         }
     try {
         program_->parse(backwards); // CLI11 takes the words from the back
     } catch (const CLI::CallForHelp&) {
-        line_->help = true;
+        line_->help = Help::common;
+    } catch (const CLI::CallForAllHelp&) {
+        line_->help = Help::all;
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() >= first_error_code)
             return Error{static_cast<ErrorCode>(error.get_exit_code() - first_error_code), error.what()};

@@ -69,6 +69,10 @@ public:
     /// What --help says below the options (CommandText::details).
     void set_details(const std::string& details) const;
 
+    /// Says which options people mostly need, the long names, once all are there: --help tells of these, and --help-all
+    /// of all.
+    void set_common(const std::vector<std::string>& names) const;
+
     /// Leaves the command out of --help, man page, completion and markdown.
     void hide() const;
 

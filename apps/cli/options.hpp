@@ -17,6 +17,8 @@
 #include <isotet/jobs/slice_files.hpp>
 #include <isotet/make.hpp>
 
+#include "command_text.hpp"
+
 namespace isotet::cli {
 
 using namespace jobs; // what commands are made of
@@ -122,7 +124,7 @@ struct HelpCommand {
     std::string topic; ///< a command; empty: the program
 };
 
-/// The hidden command `docs`: man, completion or markdown.
+/// The hidden command `docs`.
 struct DocsCommand {
     std::string kind;
 };
@@ -131,7 +133,7 @@ struct DocsCommand {
 struct CommandLine {
     std::string command; ///< its word, such as "extract"; empty for none
     std::vector<std::string> number_files; ///< of lists, such as -i @FILE
-    bool help = false;
+    std::optional<Help> help;
     bool version = false;
     InfoCommand info;
     ExtractCommand extract;

@@ -44,7 +44,7 @@ Result<ExitCode> say(const std::string& text) {
 }
 
 Result<ExitCode> run_command(const CommandLine& line, const OptionTree& tree) {
-    if (line.help) return say(help_text(tree.describe(line.command), tree.describe_all()));
+    if (line.help) return say(help_text(tree.describe(line.command), tree.describe_all(), *line.help));
     if (line.command == "info") return run_info(line.info);
     if (line.command == "extract") return run_extract(line.extract);
     if (line.command == "slice") return run_slice(line.slice);
@@ -61,7 +61,7 @@ Result<ExitCode> run_command(const CommandLine& line, const OptionTree& tree) {
     if (line.command == "devices") return run_devices(line.devices);
     if (line.command == "help") {
         if (line.topic.topic.empty() || tree.has_command(line.topic.topic))
-            return say(help_text(tree.describe(line.topic.topic), tree.describe_all()));
+            return say(help_text(tree.describe(line.topic.topic), tree.describe_all(), Help::common));
         return usage_error("'{}' is no command; commands are {}", line.topic.topic, fmt::join(tree.words(), ", "));
     }
     if (line.command == "docs") return run_docs(line.docs, tree.describe_all());

@@ -88,6 +88,7 @@ void add_slice_command(const Command& program, SliceCommand& slice) {
                         "or inside (below), or, with --along, from A to B; cell field boundary: 1 at the grid's "
                         "boundary, 0 on the cut");
     add_common(command, slice.common);
+    command.set_common({"--output", "--plane", "--along", "--count", "--all-steps", "--with"});
     command.set_details(slice_details);
 }
 

@@ -11,7 +11,8 @@ readonly packages_for_software_vulkan=(
 # What the tests of VTK's filter run in.
 readonly packages_to_test_vtk=(python3-vtk9 python3-mpi4py python3-numpy openmpi-bin libopenmpi-dev)
 # chromium: the browser of the tests of `isotet view`, and SwiftShader, a second software Vulkan device.
-readonly packages_to_test=(ccache libvtk9-dev libgtest-dev pkg-config vulkan-validationlayers spirv-tools chromium
+# zsh, fish: the shells that completions are tested in.
+readonly packages_to_test=(ccache libvtk9-dev libgtest-dev pkg-config vulkan-validationlayers spirv-tools chromium zsh fish
     "${packages_for_software_vulkan[@]}" "${packages_to_test_vtk[@]}")
 # Of scripts/web.sh: compiler and libraries for WebAssembly, and what runs its test. binaryen: clang runs its wasm-opt,
 # where it is installed, which makes modules 5 % smaller.

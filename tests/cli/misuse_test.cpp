@@ -155,5 +155,15 @@ TEST_F(Program, SaysHelpOnStandardOutputWithStatusZero) {
     EXPECT_NE(isotet({"--help"}).out.find("130  interrupted"), std::string::npos);
 }
 
+TEST_F(Program, HelpTellsOfCommonOptionsAndHelpAllOfAll) {
+    const std::string common = isotet({"extract", "--help"}).out, all = isotet({"extract", "--help-all"}).out;
+    for (const char* text : {"\n  -i, --isovalue ", "\n  --solid ", "\nExamples:\n", " --help-all\n"})
+        EXPECT_NE(common.find(text), std::string::npos) << text;
+    EXPECT_EQ(common.find("--centre"), std::string::npos) << common;
+    for (const char* text : {"\n  -i, --isovalue ", "\n  --centre ", "\nTriangles of solids ", "\nExamples:\n"})
+        EXPECT_NE(all.find(text), std::string::npos) << text;
+    EXPECT_EQ(all.find("more options"), std::string::npos) << all;
+}
+
 } // namespace
 } // namespace isotet::test

@@ -66,7 +66,7 @@ TEST_F(Program, CtrlCEndsWhatDoesNotStop) {
     ASSERT_GE(::fcntl(end, F_SETPIPE_SZ, 4096), 0);
     RunResult run;
     for (const int moment : {150, 1000, 5000}) { // later where the program had not begun
-        run = isotet({"help", "render"}, {.stdout_file = pipe, .interrupt_after = std::chrono::milliseconds(moment)});
+        run = isotet({"render", "--help-all"}, {.stdout_file = pipe, .interrupt_after = std::chrono::milliseconds(moment)});
         if (run.signal == 0) break;
     }
     ::close(end);
