@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include <isotet/export.hpp>
@@ -41,5 +42,26 @@ ISOTET_API Result<Surface> boundary_of(const PackedGrid& packed, const std::vect
 /// Method       a signed sum of hashes a point, 64 bits, says where faces do not cancel; the tets there are dealt into
 ///              buckets that fit a processor's cache, where their faces are counted
 ISOTET_API Result<Surface> boundary_of(const Grid& grid, const Run& run = {});
+
+/// The boundary of the last grid, for those of further time steps.
+///
+/// Threads   one call at a time
+class ISOTET_API KnownBoundary {
+public:
+    KnownBoundary();
+    KnownBoundary(KnownBoundary&&) noexcept;
+    KnownBoundary& operator=(KnownBoundary&&) noexcept;
+    ~KnownBoundary();
+
+    /// boundary_of(grid). Where cells and points are those of the last call, in the same memory or by a fingerprint of 128
+    /// bits, it is what that call gave, in the same memory.
+    ///
+    /// Cost   a pass over cells and points, and boundary_of() where they are others
+    Result<Surface> of(const Grid& grid, const Run& run = {});
+
+private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
 
 } // namespace isotet

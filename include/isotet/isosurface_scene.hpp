@@ -31,6 +31,8 @@
 
 namespace isotet {
 
+class KnownBoundary; // boundary.hpp
+
 /// Where the normals come from that smooth surfaces are shaded by.
 enum class ShadeBy : std::uint8_t {
     vertices, ///< vertex_normals()
@@ -137,6 +139,7 @@ struct IsosurfaceOptions {
     Box bounds = {};                             ///< of the points that any cell has; with `packed`, too
     /// In place of `grid` and `field`. The CPU extracts; there are no slices, solids, volumes and colours of cells.
     std::optional<PackedScene> packed = {};
+    std::shared_ptr<KnownBoundary> known_boundary = {}; ///< of scenes before, whose grids may have the same cells; or null
 };
 
 /// A surface that is shown, or the tets that stand for it.

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <isotet/boundary.hpp>
 #include <isotet/color_field.hpp>
 #include <isotet/field_statistics.hpp>
 #include <isotet/jobs/field_choice.hpp>
@@ -30,14 +31,14 @@ bool names_isovalues(const DrawJob& job) {
 }
 
 /// Whether isovalues were asked for, or a volume, which is one of a field as well.
-bool asks_for_field(const DrawJob& job) {
-    return names_isovalues(job) || draws_volume(job) || job.solid || job.keep;
-}
+bool asks_for_field(const DrawJob& job) { return names_isovalues(job) || draws_volume(job) || job.solid || job.keep; }
 
 Result<std::vector<double>> choose_levels(const DrawJob& job, const PointField& field, const ValueRange& range) {
-    std::vector<double> levels = evenly_spaced_levels(
-        range.lower, range.upper, job.levels > 0 ? job.levels : job.solid ? 1 : default_levels,
-        LevelRounding::short_decimals);
+    std::vector<double> levels = evenly_spaced_levels(range.lower, range.upper,
+                                                      job.levels > 0 ? job.levels
+                                                      : job.solid    ? 1
+                                                                     : default_levels,
+                                                      LevelRounding::short_decimals);
     if (!levels.empty()) return levels;
     return Error{ErrorCode::invalid_data,
                  fmt::format("field '{}' has no finite value: there is nothing to contour", field.name)};
@@ -75,7 +76,7 @@ struct PictureSource::Contents {
     std::optional<ColorField> colors;
     std::optional<VolumeLook> volume;
     std::optional<ColorField> volume_colors;
-    bool model = false; ///< the boundary is what is shown: opaque, coloured where there are colours
+    bool model = false;      ///< the boundary is what is shown: opaque, coloured where there are colours
     std::uint64_t cells = 0; ///< of the grid in the file
     Box bounds = {};         ///< where `all_cells` is set: the grid has only the active cells; or of `packed`
     std::function<Result<Grid>(const Run& run)> all_cells = {};
@@ -502,7 +503,8 @@ Result<void> PictureSource::take_volume(Contents& contents, Caller& caller) {
 
 /// Shares of a sweep become isovalues, which all steps have.
 Result<void> PictureSource::find_sweep(const Contents& contents, Caller& caller) {
-    for (const auto& [share, end] : {std::pair(&job_.sweep_shares.lower, 0U), std::pair(&job_.sweep_shares.upper, 1U)}) {
+    for (const auto& [share, end] :
+         {std::pair(&job_.sweep_shares.lower, 0U), std::pair(&job_.sweep_shares.upper, 1U)}) {
         if (!*share || !contents.field) continue;
         const auto found = isovalues_at(contents.grid, *contents.field, {&**share, 1}, caller.run());
         if (!found) return found.error();
@@ -574,6 +576,8 @@ Result<DrawInput> PictureSource::read(std::size_t which, const std::optional<Dev
                     : job_.engine == EngineChoice::vulkan ? ExtractOn::device
                     : job_.engine == EngineChoice::cpu    ? ExtractOn::cpu
                                                           : ExtractOn::best;
+    if (steps_.size() > 1 && !boundary_) boundary_ = std::make_shared<KnownBoundary>();
+    options.known_boundary = boundary_;
     const SceneLook look = look_of(*contents);
     contents->grid = {};
     Result<IsosurfaceScene> scene = IsosurfaceScene::create(device, std::move(options), look, caller.run());

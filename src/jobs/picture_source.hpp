@@ -3,6 +3,7 @@
 #pragma once
 
 #include <future>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -74,7 +75,8 @@ private:
     FirstView first_; ///< where no field is named
     std::optional<OpacityCurve> volume_opacity_; ///< of the first step
 
-    FieldsToRead last_read_;          ///< of the last step
+    std::shared_ptr<KnownBoundary> boundary_; ///< of the last of several steps
+    FieldsToRead last_read_;                  ///< of the last step
     std::future<Result<Grid>> ahead_; ///< the next step, with the same fields
     std::size_t ahead_step_ = 0;
 };

@@ -30,7 +30,8 @@ Result<IsosurfaceScene> IsosurfaceScene::create(const std::optional<Device>& dev
         options.grid.point_fields = options.grid.cell_fields = {};
         data->bounds = options.bounds;
         if (!options.all_cells)
-            if (auto looked = data->look_around(options.grid, run); !looked) return looked.error();
+            if (auto looked = data->look_around(options.grid, options.known_boundary.get(), run); !looked)
+                return looked.error();
         const IsosurfaceOptions tets{{}, {}, 1, {}, ExtractOn::cpu, options.draw, options.index, options.picture};
         if (!options.field.values.empty())
             if (auto started = data->start(std::move(options), run); !started) return started.error();

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include <isotet/boundary.hpp>
 #include <isotet/device_grid.hpp>
 #include <isotet/isosurface_scene.hpp>
 
@@ -52,7 +53,7 @@ struct IsosurfaceScene::Data {
     bool pack_is_told = false; ///< the report has what the next extraction tells of packing
     std::vector<std::string> notes = {};
 
-    Result<void> look_around(const Grid& grid, const Run& run);
+    Result<void> look_around(const Grid& grid, KnownBoundary* known, const Run& run);
     Result<void> look_around_packed(const IsosurfaceOptions& options, const Run& run);
     void take_boundary(Surface found);
     Result<void> add_boundary();

@@ -14,10 +14,10 @@ namespace isotet {
 using scene::single_color;
 
 /// The boundary if it is drawn, slices, and the box around the grid.
-Result<void> IsosurfaceScene::Data::look_around(const Grid& grid, const Run& run) {
+Result<void> IsosurfaceScene::Data::look_around(const Grid& grid, KnownBoundary* known, const Run& run) {
     const core::Stopwatch looking;
     if (look.boundary_opacity > 0) {
-        Result<Surface> found = boundary_of(grid, run);
+        Result<Surface> found = known ? known->of(grid, run) : boundary_of(grid, run);
         if (!found) return found.error();
         if (look.boundary_colors)
             if (auto colored = scene::color_boundary(*found, grid, *look.boundary_colors, run); !colored)

@@ -2,6 +2,9 @@
 // The boundary of a packed grid: closed, as large as it must be, facing outwards, the same for any number of threads.
 // No device.
 #include <atomic>
+#include <cstddef>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -43,6 +46,48 @@ TEST(Boundary, CanBeCancelled) {
     const Result<Surface> surface = boundary_of(packed, {.progress = {.report = {}, .cancel = &cancel}});
     ASSERT_FALSE(surface);
     EXPECT_EQ(surface.error().code, ErrorCode::cancelled);
+}
+
+std::vector<std::byte> bytes_of(const Surface& surface) {
+    std::vector<std::byte> all;
+    for (const Array* array : {&surface.positions, &surface.triangles, &surface.edge_ends}) {
+        const auto* const data = static_cast<const std::byte*>(array->data());
+        all.insert(all.end(), data, data + array->bytes());
+    }
+    return all;
+}
+
+TEST(KnownBoundary, IsFoundAgainWhereCellsOrPointsAreOthers) {
+    const auto made = [](const char* shape) {
+        return make_grid({.shape = shape, .side = 5, .fields = {"sphere"}}).value();
+    };
+    Grid moved = made("hex");
+    std::vector<float> places(moved.points.as<float>().begin(), moved.points.as<float>().end());
+    places[0] -= 1;
+    moved.points = Array::own(std::move(places), 3);
+    KnownBoundary known;
+    const void* memory = nullptr;
+    for (const auto& [grid, is_known] : {std::pair{made("hex"), false},
+                                         {made("hex"), true},
+                                         {moved, false},
+                                         {moved, true},
+                                         {made("kuhn"), false},
+                                         {made("hex"), false}}) {
+        const Surface surface = known.of(grid).value();
+        EXPECT_EQ(bytes_of(surface), bytes_of(boundary_of(grid).value()));
+        EXPECT_EQ(surface.positions.data() == memory, is_known);
+        memory = surface.positions.data();
+    }
+}
+
+TEST(KnownBoundary, ForgetsTheGridBeforeOneThatIsWrong) {
+    const Grid grid = make_grid({.shape = "hex", .side = 3, .fields = {"sphere"}}).value();
+    Grid wrong = grid;
+    wrong.cells.connectivity = Array::own(std::vector<std::int32_t>(8, 99'999));
+    KnownBoundary known;
+    EXPECT_TRUE(known.of(grid));
+    EXPECT_FALSE(known.of(wrong));
+    EXPECT_TRUE(known.of(grid));
 }
 
 } // namespace
