@@ -181,6 +181,24 @@ TEST(VtkXml, PiecesOfOneFileAreToldApart) {
     }
 }
 
+TEST(VtkXml, PointsOfPiecesOfOneFileAreJoinedByTheRoundingsOfTheTypesStored) {
+    const TemporaryFolder folder;
+    TetFile file;
+    std::string one = file.text();
+    one.replace(one.find("0 0 0 1 0 0"), 11, "0.1 0 0 1 0 0");
+    const auto begin = one.find("<Piece"), end = one.find("</Piece>") + 8;
+    for (const bool single : {false, true}) {
+        std::string other = one.substr(begin, end - begin);
+        other.replace(other.find("0.1 0 0"), 3, "0.10000000149011612"); // 0.1 as float32
+        if (single) other.replace(other.find("Float64"), 7, "Float32");
+        const std::string path = folder.write("a.vtu", one.substr(0, end) + other + one.substr(end));
+        const auto result = read(path);
+        ASSERT_TRUE(result) << result.error().message;
+        EXPECT_EQ(result->grid.points.tuples(), single ? 4U : 5U);
+        EXPECT_EQ(result->grid.points.type(), ScalarType::float64);
+    }
+}
+
 TEST(VtkXml, ReadsBase64WithLineBreaks) {
     std::string block = raw_block(bytes_of<double>({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}));
     constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

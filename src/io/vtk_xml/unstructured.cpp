@@ -1,4 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -65,6 +66,23 @@ Piece part_of(const Piece& whole, const Layout& points, const Layout& cells, std
     return piece;
 }
 
+bool stores_float32(const Document& document, const pugi::xml_node& piece, std::size_t step) {
+    for (const auto& element : piece.child("Points").children()) {
+        if (element.type() != pugi::node_element || !is_of_step(element, step)) continue;
+        const auto array = describe_array(document, element);
+        if (array && *array) return (*array)->type == ScalarType::float32;
+    }
+    return false;
+}
+
+/// Beside pieces of float64 as well: which points are one is judged by the roundings of the types as stored.
+Array as_float32(const Array& points) {
+    std::vector<float> places(points.size());
+    points.visit(
+        [&](auto from) { std::ranges::transform(from, places.begin(), [](auto x) { return static_cast<float>(x); }); });
+    return Array::own(std::move(places), points.components());
+}
+
 } // namespace
 
 Result<Layouts> layouts_of_unstructured(const Document& document) {
@@ -91,6 +109,8 @@ Result<std::vector<Piece>> load_unstructured(const std::shared_ptr<Document>& do
         auto part = read_cells(*document, {elements[i], cells.tuples[i], wanted.step}, later, progress);
         if (!part) return part.error();
         Piece& piece = pieces.emplace_back(alone ? whole : part_of(whole, points, cells, i));
+        if (piece.grid.points.type() == ScalarType::float64 && stores_float32(*document, elements[i], wanted.step))
+            piece.grid.points = as_float32(piece.grid.points);
         if (part->corners)
             piece.unread = std::make_shared<const UnreadCells>(
                 CellsInFile{wanted.path, document, *std::move(part->places), part->cells.types}, *part->corners);
