@@ -89,6 +89,25 @@ public:
         H5Tclose(file_type);
         H5Pclose(list);
     }
+    /// Floats of two bytes, or else long doubles.
+    void floats(const std::string& name, const std::vector<double>& values, bool half, hsize_t chunk) {
+        const hid_t type = H5Tcopy(half ? H5T_IEEE_F32LE : H5T_NATIVE_LDOUBLE);
+        if (half) { // as NumPy's float16
+            H5Tset_fields(type, 15, 10, 5, 0, 10);
+            H5Tset_size(type, 2);
+            H5Tset_ebias(type, 15);
+        }
+        const hid_t list = H5Pcreate(H5P_DATASET_CREATE);
+        if (chunk > 0) H5Pset_chunk(list, 1, &chunk);
+        const hsize_t count = values.size();
+        const hid_t space = H5Screate_simple(1, &count, nullptr);
+        const hid_t set = H5Dcreate2(file_, name.c_str(), type, space, H5P_DEFAULT, list, H5P_DEFAULT);
+        H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+        H5Dclose(set);
+        H5Sclose(space);
+        H5Pclose(list);
+        H5Tclose(type);
+    }
     void attribute(const std::string& group, const char* name, const std::vector<std::int64_t>& values) {
         const hsize_t count = values.size();
         attach(group, name, H5Screate_simple(1, &count, nullptr), H5T_NATIVE_INT64, values.data());

@@ -107,6 +107,37 @@ TEST(ReadVtkhdf, GivesTheSameHoweverArraysAreStored) {
     }
 }
 
+TEST(ReadVtkhdf, ReadsNarrowIndicesAndOtherFloats) {
+    const Strip strip(7);
+    const TemporaryFolder folder;
+    {
+        Hdf5Writer file(folder.file("a.vtkhdf"));
+        write_groups(file, 2);
+        write_counts(file, {10}, {7});
+        file.data("/VTKHDF/Points", strip.points, {10, 3});
+        file.data("/VTKHDF/Connectivity",
+                  std::vector<std::uint8_t>(strip.connectivity.begin(), strip.connectivity.end()), {28});
+        file.data("/VTKHDF/Offsets", strip.offsets, {8});
+        file.data("/VTKHDF/Types", strip.types, {7});
+        for (const hsize_t chunk : {0, 4})
+            for (const bool half : {false, true}) {
+                const std::string name = std::string(half ? "half" : "long") + (chunk > 0 ? " in chunks" : "");
+                file.floats("/VTKHDF/PointData/" + name, strip.values, half, chunk);
+            }
+    }
+    const auto result = read(folder.file("a.vtkhdf"));
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(numbers_of(result->grid.cells.connectivity),
+              std::vector<double>(strip.connectivity.begin(), strip.connectivity.end()));
+    ASSERT_EQ(result->grid.point_fields.size(), 4u);
+    for (const Field& field : result->grid.point_fields) {
+        const bool half = field.name.starts_with("half");
+        EXPECT_EQ(field.values.type(), half ? ScalarType::float32 : ScalarType::float64);
+        for (std::size_t i = 0; i < strip.values.size(); ++i)
+            EXPECT_NEAR(field.values.at(i), strip.values[i], half ? 2e-3 : 0) << field.name;
+    }
+}
+
 TEST(ReadVtkhdf, ReadsMoreIndicesThanAreReadAtOnce) {
     constexpr std::size_t tets = 300'000;
     const Strip strip(tets);

@@ -60,9 +60,7 @@ bool select(hid_t space, const Box& box, std::vector<std::uint64_t>& dimensions)
 std::optional<ScalarType> scalar_type_of(hid_t type) {
     const std::size_t size = H5Tget_size(type);
     if (H5Tget_class(type) == H5T_FLOAT)
-        return size == 4   ? std::optional(ScalarType::float32)
-               : size == 8 ? std::optional(ScalarType::float64)
-                           : std::nullopt;
+        return size <= sizeof(float) ? ScalarType::float32 : ScalarType::float64; // others are converted by the library
     if (H5Tget_class(type) != H5T_INTEGER) return std::nullopt;
     const bool is_signed = H5Tget_sign(type) == H5T_SGN_2;
     switch (size) {

@@ -52,6 +52,14 @@ struct DataSet {
 };
 using OpenDataSet = std::unique_ptr<DataSet, DataSet::Close>;
 
+Array as_int32(const Array& values) {
+    std::vector<std::int32_t> wide(values.size());
+    values.visit([&](auto from) {
+        std::ranges::transform(from, wide.begin(), [](auto x) { return static_cast<std::int32_t>(x); });
+    });
+    return Array::own(std::move(wide), values.components());
+}
+
 /// By HDF5, into the type that memory has.
 HdfRead read_by_library(const DataSet& set, hid_t type, const RowRange& range, std::byte* to) {
     const std::scoped_lock lock(hdf5_calls());
@@ -221,6 +229,10 @@ Result<Array> Hdf5Rows::read(const std::string& name, std::uint64_t first, std::
 
 Result<Array> Hdf5Rows::read_indices(const std::string& name, std::uint64_t first, std::uint64_t rows) const {
     const auto found = shape(name);
+    if (found && !is_floating(found->type) && size_of(found->type) < sizeof(std::int32_t)) {
+        const auto values = read(name, first, rows);
+        return values ? as_int32(*values) : values;
+    }
     if (!found || found->columns != 1 || !NarrowIndices::narrows(found->type) || first > found->rows ||
         rows > found->rows - first)
         return read(name, first, rows);
