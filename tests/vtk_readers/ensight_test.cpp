@@ -133,6 +133,35 @@ TEST_P(EnsightFiles, MayHaveEmptyPartsAndSectionsThatAreNotRead) {
     EXPECT_FALSE(read(outside));
 }
 
+TEST_P(EnsightFiles, MayHaveRecordsWithoutValues) {
+    GoldText file(GetParam(), true), values(GetParam());
+    file.line("a").line("b").line("node id given").line("element id given");
+    values.line("t");
+    const std::vector<std::int32_t> nothing;
+    for (const std::int32_t part : {1, 2, 3}) {
+        file.line("part").integers({part}).line("p").line("coordinates").integers({part == 2 ? 4 : 0});
+        values.line("part").integers({part}).line("coordinates");
+        if (part == 2) {
+            file.integers({5, 6, 7, 8});
+            for (const auto& axis : {std::vector<float>{0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}) file.floats(axis);
+            file.line("tetra4").integers({1}).integers({9}).integers({1, 2, 3, 4}, 4);
+            values.floats({1, 2, 3, 4});
+            continue;
+        }
+        file.integers(nothing).floats({}).floats({}).floats({}); // for Fortran a record each
+        file.line("tetra4").integers({0}).integers(nothing).integers(nothing);
+        values.floats({});
+    }
+    folder_.write("grid.geo", file.text());
+    folder_.write("t", values.text());
+    const auto result = whole(read(folder_.write(
+        "a.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: grid.geo\nVARIABLE\nscalar per node: t t\n")));
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(result->grid.cells.count(), 1u);
+    ASSERT_EQ(result->grid.point_fields.size(), 1u);
+    EXPECT_EQ(result->grid.point_fields[0].values.at(3), 4);
+}
+
 TEST_P(EnsightFiles, VariablesThatAreCutAreErrorsThatNameTheFile) {
     for (const auto& [name, whole] :
          {std::pair("t.scl", of_nodes(1)), {"v.vec", of_nodes(3)}, {"e.scl", of_elements()}}) {

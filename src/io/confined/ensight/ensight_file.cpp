@@ -86,10 +86,18 @@ std::vector<std::string_view> words_of(std::string_view line) {
 
 EnsightFile::EnsightFile(const std::string& path, std::string_view bytes, EnsightForm form, bool big_endian,
                          std::size_t integer_width)
-    : path_(path), bytes_(bytes), integer_width_(integer_width), form_(form),
+    : path_(path),
+      bytes_(bytes),
+      integer_width_(integer_width),
+      form_(form),
       big_endian_(form == EnsightForm::fortran ? bytes[0] == 0 : big_endian) {}
 
+void EnsightFile::skip_empty_records() noexcept {
+    while (marks() > 0 && left() >= 2 * marks() && word_at(at_) == 0 && word_at(at_ + marks()) == 0) at_ += 2 * marks();
+}
+
 void EnsightFile::skip_empty_lines() noexcept {
+    skip_empty_records();
     while (!is_binary() && at_ < bytes_.size()) {
         const std::size_t word = std::min(bytes_.find_first_not_of(" \t\r\v\f", at_), bytes_.size());
         if (word < bytes_.size() && bytes_[word] != '\n' && bytes_[at_] != '#') return;
@@ -249,6 +257,7 @@ std::uint32_t EnsightFile::word_at(std::size_t at) const noexcept {
 
 /// So many bytes. Fortran writes the length of a record before and behind it.
 std::string_view EnsightFile::record(std::uint64_t n, const char* what, std::uint64_t items) {
+    skip_empty_records();
     if (n + 2 * marks() > left()) missing(what, items);
     const std::size_t begin = at_ + marks(), end = begin + static_cast<std::size_t>(n);
     if (marks() > 0)

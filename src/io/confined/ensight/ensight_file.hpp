@@ -93,6 +93,8 @@ public:
 private:
     std::string_view text_line();
     void skip_empty_lines() noexcept;
+    /// Fortran may write a record for arrays without values, too.
+    void skip_empty_records() noexcept;
     std::size_t marks() const noexcept { return form_ == EnsightForm::fortran ? 4 : 0; }
     std::uint32_t word_at(std::size_t at) const noexcept;
     std::string_view record(std::uint64_t n, const char* what, std::uint64_t items);
