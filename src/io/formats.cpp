@@ -122,12 +122,15 @@ Result<Head> read_head(const std::string& path) {
     if (const auto other = what_else_than_a_file(status.st_mode); !other.empty()) {
         return Error{ErrorCode::file, fmt::format("{} is {}, but only files can be read", path, other)};
     }
-    std::array<char, 4096> buffer;
-    const ssize_t count = ::pread(descriptor.number(), buffer.data(), buffer.size(), 0);
+    constexpr std::size_t of_others = 4096, of_hdf5 = 65536; // HDF5 has the first names behind its own tables
+    std::string bytes(of_hdf5, '\0');
+    const ssize_t count = ::pread(descriptor.number(), bytes.data(), bytes.size(), 0);
     if (count < 0) return failed("cannot be read", errno);
     if (count == 0 && !is_marker(extension_of(path)))
         return Error{ErrorCode::file, fmt::format("{} is empty, so it is no grid", path)};
-    return Head{std::string(buffer.data(), static_cast<std::size_t>(count)), false};
+    bytes.resize(
+        std::min<std::size_t>(static_cast<std::size_t>(count), bytes.starts_with("\x89HDF") ? of_hdf5 : of_others));
+    return Head{std::move(bytes), false};
 }
 
 /// "little-endian" or "big-endian" where a byte order mark says that text is UTF-16, else empty.

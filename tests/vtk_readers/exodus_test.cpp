@@ -414,6 +414,16 @@ TEST_F(ReadExodusParts, JoinsByTheNumbersOfNodesAndElements) {
     }
 }
 
+TEST_F(ReadExodusParts, AreRecognizedWhereHdf5HasItsNamesFarFromTheBeginning) {
+    const std::string head = "\x89HDF\r\n\x1a\n" + std::string(10000, '\0');
+    const auto of_netcdf = inspect(folder_.write("b.e.1.0", head + "_NCProperties"));
+    ASSERT_FALSE(of_netcdf);
+    EXPECT_EQ(of_netcdf.error().message.find("neither VTKHDF"), std::string::npos) << of_netcdf.error().message;
+    const auto of_others = inspect(folder_.write("c.e.1.0", head));
+    ASSERT_FALSE(of_others);
+    EXPECT_NE(of_others.error().message.find("neither VTKHDF"), std::string::npos) << of_others.error().message;
+}
+
 TEST_F(ReadExodusParts, IsAnErrorWhenSomePartsAreMissing) {
     std::filesystem::copy_file(folder_.file("run.e.2.0"), folder_.file("run.e.3.0"));
     std::filesystem::copy_file(folder_.file("run.e.2.1"), folder_.file("run.e.3.1"));
