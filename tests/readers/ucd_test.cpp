@@ -71,11 +71,25 @@ TEST(ReadUcd, LeavesOutArraysWithoutNameAndRepeatedOnes) {
     ASSERT_EQ(unnamed->grid.point_fields.size(), 1u);
     EXPECT_EQ(unnamed->grid.point_fields[0].values.at(4, 1), 15);
     EXPECT_EQ(unnamed->info.left_out.size(), 1u);
-    text.replace(text.find(", K"), 3, "flow");
+    text.replace(text.find("2 1 2\n, K\nflow, x"), 17, "3 1 1 1\nflow\ntemp\nflow, x");
     const auto repeated = read(folder.write("a.inp", text));
     ASSERT_TRUE(repeated) << repeated.error().message;
-    EXPECT_EQ(repeated->grid.point_fields.size(), 1u);
+    EXPECT_EQ(repeated->grid.point_fields.size(), 2u);
     EXPECT_EQ(repeated->info.left_out.at(0).reason, "an earlier one has the same name");
+}
+
+TEST(ReadUcd, ArraysOfOneNameBehindEachOtherAreComponentsOfOne) { // as deal.II writes vectors
+    const TemporaryFolder folder;
+    std::string text = ucd;
+    text.replace(text.find("2 1 2\ntemp, K\nflow"), 18, "3 1 1 1\ntemp, K\nflow, m/s\nflow");
+    const auto result = read(folder.write("a.inp", text));
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_TRUE(result->info.left_out.empty());
+    ASSERT_EQ(result->grid.point_fields.size(), 2u);
+    EXPECT_EQ(result->grid.point_fields[0].values.components(), 1u);
+    EXPECT_EQ(result->grid.point_fields[1].values.components(), 2u);
+    EXPECT_EQ(result->grid.point_fields[1].values.at(1, 0), 5);
+    EXPECT_EQ(result->grid.point_fields[1].values.at(1, 1), 6);
 }
 
 TEST(ReadUcd, IsAnErrorForEveryTruncation) {

@@ -210,6 +210,10 @@ private:
             name = name.substr(0, name.find(','));
             while (!name.empty() && is_space(name.back())) name.remove_suffix(1);
             if (scanner_.left() == 0) return fail("name of an array expected");
+            if (!name.empty() && !columns.empty() && columns.back().name == name) { // as deal.II writes vectors
+                columns.back().components += count;
+                continue;
+            }
             const std::string kind = association == Association::point ? "point field" : "cell field";
             const bool repeated = std::ranges::find(columns, name, &Column::name) != columns.end();
             if (name.empty()) leave_out(result_.info, {kind, "", "it has no name"});
