@@ -148,10 +148,11 @@ std::string list_of(const std::vector<double>& times) {
     return list;
 }
 
+/// Of steps of the same time, as restarted runs append them, the last.
 Result<std::size_t> step_at(const std::vector<double>& times, double time) {
     std::size_t nearest = 0;
     for (std::size_t i = 0; i < times.size(); ++i) {
-        if (std::abs(times[i] - time) < std::abs(times[nearest] - time)) nearest = i;
+        if (std::abs(times[i] - time) <= std::abs(times[nearest] - time)) nearest = i;
     }
     constexpr double tolerance = 1e-12; // relative: a time that went through text and back
     if (times.empty()) {

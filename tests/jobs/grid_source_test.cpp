@@ -116,6 +116,11 @@ TEST(ChooseSteps, TakesOneByTimeOrNumberOrAll) {
     options.time = 0.1;
     EXPECT_EQ(choose_steps(info, options, Steps::one, listener).value(), std::vector<std::size_t>{1})
         << "a file of single precision";
+    info.times = {0, 1, 2, 1, 2};
+    options.time = 1;
+    EXPECT_EQ(choose_steps(info, options, Steps::one, listener).value(), std::vector<std::size_t>{3})
+        << "a run that was restarted";
+    info.times = {0, 0.5, 2};
     options = {};
     options.step = 2;
     EXPECT_EQ(choose_steps(info, options, Steps::one, listener).value(), std::vector<std::size_t>{2});
