@@ -2,22 +2,60 @@
 #include <isotet/jobs/look_into.hpp>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include <isotet/grid_counts.hpp>
 #include <isotet/jobs/first_choice.hpp>
 #include <isotet/jobs/output_names.hpp>
 #include <isotet/refine.hpp>
 
+#include "grid/patches.hpp"
+
 namespace isotet::jobs {
 
 namespace {
 
+/// Points, lines and faces, by VTK's numbers.
+bool has_no_volume(std::uint8_t type) {
+    return type <= 4 || type == 21 || type == 35 || type == 68 || type == 75 || core::is_flat_cell(type);
+}
+
+/// Which cells have a volume; nothing where all have.
+std::vector<std::size_t> solid_cells(const Cells& cells) {
+    if (cells.types.type() != ScalarType::uint8) return {};
+    const auto types = cells.types.as<std::uint8_t>();
+    if (std::ranges::none_of(types, has_no_volume)) return {};
+    std::vector<std::size_t> solid;
+    for (std::size_t cell = 0; cell < types.size(); ++cell)
+        if (!has_no_volume(types[cell])) solid.push_back(cell);
+    return solid;
+}
+
+Array rows_of(const Array& values, const std::vector<std::size_t>& rows) {
+    const std::size_t components = values.components();
+    return values.visit([&]<class T>(std::span<const T> from) {
+        std::vector<T> to;
+        to.reserve(rows.size() * components);
+        for (const std::size_t row : rows)
+            to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(row * components),
+                      from.begin() + static_cast<std::ptrdiff_t>((row + 1) * components));
+        return Array::own(std::move(to), components);
+    });
+}
+
+/// Of cell fields the values of cells with a volume: no surface has others.
 Result<std::vector<FieldSummary>> summarize(const Grid& grid, const Run& run) {
+    const std::vector<std::size_t> solid = solid_cells(grid.cells);
     std::vector<FieldSummary> summaries;
     for (const auto& [fields, association] :
          {std::pair{&grid.point_fields, Association::point}, {&grid.cell_fields, Association::cell}}) {
         for (const Field& field : *fields) {
-            auto components = statistics_of(field.values, run);
+            const bool in_part = association == Association::cell && !solid.empty();
+            auto components = statistics_of(in_part ? rows_of(field.values, solid) : field.values, run);
             if (!components) return components.error();
             summaries.push_back({field.name, association, field.values.type(), *std::move(components)});
         }

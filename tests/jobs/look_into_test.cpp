@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "jobs/listener.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace isotet::jobs {
 namespace {
@@ -35,6 +36,26 @@ TEST(LookInto, BoundsTheErrorOfCurvedCellsThatAreNotRefined) {
     ASSERT_EQ(summary.curved.costs.size(), 1u);
     EXPECT_GT(summary.curved.costs[0].share, 0);
     EXPECT_LT(summary.curved.costs[0].share, 1);
+}
+
+TEST(LookInto, SummarizesCellFieldsOverCellsWithAVolume) {
+    const test::TemporaryFolder folder;
+    InfoJob job;
+    job.grid.file =
+        folder.write("a.vtk", "# vtk DataFile Version 3.0\na\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 float\n"
+                              "0 0 0 1 0 0 0 1 0 0 0 1 1 1 1\nCELLS 4 17\n3 0 1 2\n4 0 1 2 3\n2 0 1\n4 1 2 3 4\n"
+                              "CELL_TYPES 4\n5 10 3 10\nCELL_DATA 4\nVECTORS v float\n7 8 9 1 2 3 nan nan nan 4 5 6\n"
+                              "SCALARS c int 1\nLOOKUP_TABLE default\n-9 2 99 3\n");
+    Listener listener;
+    const auto summary = look_into(job, listener);
+    ASSERT_TRUE(summary) << summary.error().message;
+    ASSERT_EQ(summary->fields.size(), 2u);
+    for (const FieldSummary& field : summary->fields) {
+        const bool vector = field.name == "v";
+        for (const ComponentStatistics& component : field.components) EXPECT_EQ(component.not_a_number, 0u);
+        EXPECT_EQ(field.components.back().lower, vector ? 3 : 2);
+        EXPECT_EQ(field.components.back().upper, vector ? 6 : 3);
+    }
 }
 
 TEST(LookInto, ChartsAreaAndVolume) {
