@@ -1,7 +1,8 @@
 # Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 # debian: openfoam
 # files: */*.foam */VTK/*.series */VTK/*_2.vtm */VTK/*.vtk */EnSight/*.case
-"""OpenFOAM: heat in a refined box (polyhedra), text, binary, packed, decomposed, in regions; foamToVTK and -Ensight."""
+"""OpenFOAM: heat in a refined box (polyhedra) and around a ball (snappyHexMesh), text, binary, packed, decomposed, in
+regions; foamToVTK and -Ensight."""
 import os
 import pathlib
 import shutil
@@ -31,6 +32,20 @@ CONTROL = "application laplacianFoam; startFrom startTime; startTime 0; stopAt e
 FIELD = "dimensions [0 0 0 1 0 0 0]; internalField uniform 0; " \
         "boundaryField { hot { type fixedValue; value uniform 1; } cold { type fixedValue; value uniform 0; } " \
         "sides { type zeroGradient; } \".*\" { type zeroGradient; } }"
+SNAPPED = """castellatedMesh true; snap true; addLayers true;
+geometry { ball { type searchableSphere; centre (0.55 0.52 0.5); radius 0.28; } }
+castellatedMeshControls { maxLocalCells 100000; maxGlobalCells 200000; minRefinementCells 0; nCellsBetweenLevels 1;
+    features (); refinementSurfaces { ball { level (1 2); } } resolveFeatureAngle 30; refinementRegions {}
+    locationInMesh (0.03 0.04 0.03); allowFreeStandingZoneFaces true; }
+snapControls { nSmoothPatch 3; tolerance 2; nSolveIter 30; nRelaxIter 5; }
+addLayersControls { relativeSizes true; layers { ball { nSurfaceLayers 2; } } expansionRatio 1.2;
+    finalLayerThickness 0.4; minThickness 0.1; nGrow 0; featureAngle 60; nRelaxIter 3; nSmoothSurfaceNormals 1;
+    nSmoothNormals 3; nSmoothThickness 10; maxFaceThicknessRatio 0.5; maxThicknessToMedialRatio 0.3;
+    minMedianAxisAngle 90; nBufferCellsNoExtrude 0; nLayerIter 50; }
+meshQualityControls { maxNonOrtho 65; maxBoundarySkewness 20; maxInternalSkewness 4; maxConcave 80; minVol 1e-13;
+    minTetQuality 1e-15; minArea -1; minTwist 0.02; minDeterminant 0.001; minFaceWeight 0.05; minVolRatio 0.01;
+    minTriangleTwist -1; nSmoothScale 4; errorReduction 0.75; }
+mergeTolerance 1e-6;"""
 ENVIRONMENT = {**os.environ, "WM_PROJECT_DIR": "/usr/share/openfoam", "OMPI_ALLOW_RUN_AS_ROOT": "1",
                "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
@@ -49,17 +64,20 @@ def write(case, file, text, kind="dictionary"):
     path.write_text(HEADER.format(kind, path.name) + text + "\n")
 
 
-def set_up(case, form="ascii", packed="off", refined=True):
+def set_up(case, form="ascii", packed="off", refined=True, snapped=False):
     for name, text in SYSTEM.items():
         write(case, f"system/{name}", text)
     write(case, "system/controlDict", CONTROL.format(form, packed))
     write(case, "constant/transportProperties", "DT 0.1;")
     write(case, "0/T", FIELD, "volScalarField")
-    pathlib.Path(case, "box.foam" if refined else "halves.foam").write_text("")
+    pathlib.Path(case, "ball.foam" if snapped else "box.foam" if refined else "halves.foam").write_text("")
     run(case, "blockMesh")
     run(case, "topoSet")
     if refined:
         run(case, "refineHexMesh", "-overwrite", "c0")
+    if snapped:
+        write(case, "system/snappyHexMeshDict", SNAPPED)
+        run(case, "snappyHexMesh", "-overwrite")
 
 
 set_up("text")
@@ -67,6 +85,8 @@ run("text", "laplacianFoam")
 for name, form, packed in (("packed", "ascii", "on"), ("binary", "binary", "off"), ("packed_binary", "binary", "on")):
     set_up(name, form, packed)
     run(name, "laplacianFoam")
+set_up("snapped", snapped=True, refined=False)
+run("snapped", "laplacianFoam")
 set_up("parallel")
 run("parallel", "decomposePar")
 run("parallel", "mpirun", "--oversubscribe", "-n", "3", "laplacianFoam", "-parallel")
