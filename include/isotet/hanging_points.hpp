@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -72,6 +73,25 @@ struct ISOTET_API ClosedGrid {
 /// Threads      safe from many threads on one grid
 /// Method       docs/inside/hanging.md
 ISOTET_API Result<ClosedGrid> close_hanging_points(const Grid& grid, const Run& run = {});
+
+/// What close_hanging_points() found in the last grid, for those of further time steps.
+///
+/// Threads   safe from many: one call waits for another
+class ISOTET_API KnownClosing {
+public:
+    KnownClosing();
+    ~KnownClosing();
+
+    /// close_hanging_points(grid). Where cells and points are those of the last call, in the same memory or by a fingerprint of
+    /// 128 bits, the cells, if some list points, are in the memory that that call gave.
+    ///
+    /// Cost   a pass over cells and points, and close_hanging_points() where they are others
+    Result<ClosedGrid> of(const Grid& grid, const Run& run = {});
+
+private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
 
 /// Whether the surfaces of isovalues may end at hanging points, by places: a face that they cut, and that no other cell
 /// has, lies on a larger one. For grids of which only the cells that the isovalues cut are there (active_cells.hpp):

@@ -121,9 +121,10 @@ Result<void> choose_hanging_values(ClosedGrid& closed, HangingChoice choice, Cal
 }
 
 /// Cells list their hanging points, and what was found is noted.
-Result<Grid> closed(Grid grid, HangingChoice choice, Caller& caller, const Run& run) {
+/// `known`   of steps before, or null
+Result<Grid> closed(Grid grid, HangingChoice choice, KnownClosing* known, Caller& caller, const Run& run) {
     if (choice == HangingChoice::not_sought) return grid;
-    Result<ClosedGrid> found = close_hanging_points(grid, run);
+    Result<ClosedGrid> found = known ? known->of(grid, run) : close_hanging_points(grid, run);
     if (!found) return found.error();
     if (choice == HangingChoice::leave) {
         if (found->report.points > 0)
@@ -260,6 +261,7 @@ Result<void> GridSource::look_at(std::size_t step, const Run& run) {
 
 Result<void> GridSource::look_at_steps(const std::vector<std::size_t>& steps, Caller& caller) {
     if (made_ || info_.times.size() < 2) return {};
+    if (steps.size() > 1) closing_ = std::make_shared<KnownClosing>();
     std::vector<FieldInfo> fields;
     std::vector<LeftOut> left_out;
     for (const std::size_t step : steps) {
@@ -392,7 +394,7 @@ Result<ReadResult> GridSource::read_cells(const FieldsToRead& fields, std::size_
     } else {
         caller.note(coincident_points_note(result->grid));
     }
-    Result<Grid> grid = closed(std::move(result->grid), options_.hanging_points, caller, run);
+    Result<Grid> grid = closed(std::move(result->grid), options_.hanging_points, closing_.get(), caller, run);
     if (!grid) return grid.error();
     result->grid = *std::move(grid);
     return result;
@@ -443,7 +445,7 @@ Result<ReadResult> GridSource::read_active(const FieldsToRead& fields, std::size
     caller.notes(result->notes);
     if (result->cells_in_file) return result;
     caller.note(coincident_points_note(result->grid));
-    Result<Grid> grid = closed(std::move(result->grid), options_.hanging_points, caller, caller.run());
+    Result<Grid> grid = closed(std::move(result->grid), options_.hanging_points, closing_.get(), caller, caller.run());
     if (!grid) return grid.error();
     result->grid = *std::move(grid);
     return result;

@@ -8,6 +8,7 @@
 #include <map>
 #include <random>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -18,6 +19,7 @@
 #include <isotet/contour.hpp>
 #include <isotet/grid_counts.hpp>
 #include <isotet/hanging_points.hpp>
+#include <isotet/make.hpp>
 #include <isotet/solid.hpp>
 
 #include "linear/refined_cells.hpp"
@@ -373,6 +375,39 @@ TEST(CloseHangingPoints, EndsWhenItIsCancelledAndChecksTheGrid) {
     EXPECT_EQ(may_have_hanging_points(grid, field, isovalues, run).error().code, ErrorCode::cancelled);
     field.values = Array::own(std::vector<double>(3));
     EXPECT_EQ(may_have_hanging_points(grid, field, isovalues).error().code, ErrorCode::invalid_argument);
+}
+
+TEST(KnownClosing, GivesWhatTheLastGridGaveWhereCellsAndPointsAreTheSame) {
+    const auto levels = [] {
+        Grid grid = make_grid({.shape = "octree-random", .side = 3, .fields = {"sphere"}}).value();
+        grid.cell_fields.clear();
+        return grid;
+    };
+    Grid moved = levels();
+    std::vector<float> places(moved.points.as<float>().begin(), moved.points.as<float>().end());
+    for (float& place : places) place *= 2;
+    moved.points = Array::own(std::move(places), 3);
+    const Grid without = make_grid({.shape = "hex", .side = 3, .fields = {"sphere"}}).value();
+    KnownClosing known;
+    const void* memory = nullptr;
+    for (const auto& [grid, is_known] : {std::pair{levels(), false}, {levels(), true}, {moved, false}, {without, false},
+                                         {without, true}, {levels(), false}}) {
+        const ClosedGrid closed = known.of(grid).value(), expected = close_hanging_points(grid).value();
+        EXPECT_EQ(closed.report.points, expected.report.points);
+        EXPECT_EQ(closed.report.cells, expected.report.cells);
+        EXPECT_EQ(closed.points.tuples(), expected.points.tuples());
+        EXPECT_EQ(closed.grid.points.data(), grid.points.data());
+        ASSERT_EQ(closed.grid.point_fields.size(), 1U);
+        EXPECT_EQ(closed.grid.point_fields[0].values.data(), grid.point_fields[0].values.data());
+        for (const auto& [a, b] : {std::pair{&closed.grid.cells.connectivity, &expected.grid.cells.connectivity},
+                                   {&closed.grid.cells.faces, &expected.grid.cells.faces}}) {
+            ASSERT_EQ(a->bytes(), b->bytes());
+            EXPECT_EQ(std::memcmp(a->data(), b->data(), a->bytes()), 0);
+        }
+        const bool same_memory = closed.grid.cells.connectivity.data() == memory;
+        EXPECT_EQ(same_memory, is_known && expected.report.cells > 0);
+        memory = closed.grid.cells.connectivity.data();
+    }
 }
 
 } // namespace

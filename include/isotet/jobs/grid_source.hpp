@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include <isotet/hanging_points.hpp>
 #include <isotet/jobs/job.hpp>
 #include <isotet/make.hpp>
 #include <isotet/pack.hpp>
@@ -67,7 +68,8 @@ public:
 
     const FileInfo& info() const noexcept { return info_; }
 
-    /// From now on info() has the fields of all these steps. Reading one of them passes over those that it does not have.
+    /// From now on info() has the fields of all these steps. Reading one of them passes over those that it does not have, and
+    /// looks for hanging points only where cells or points are not those of the step that was read before.
     Result<void> look_at_steps(const std::vector<std::size_t>& steps, Caller& caller);
 
     /// Whether a step that was looked at has a field of this name, or a component of it is meant; coordinates all have.
@@ -118,6 +120,7 @@ private:
     std::map<std::size_t, std::vector<FieldInfo>> step_fields_; ///< of the steps that were looked at
     ReadOptions read_options_;
     std::shared_ptr<Kept> kept_; ///< shared by copies: given out once
+    std::shared_ptr<KnownClosing> closing_; ///< of the last of several steps; shared by copies
 };
 
 /// The steps that --time, --step or --all-steps ask for; the first, with a note, when none does and there are several.
