@@ -426,7 +426,7 @@ void add_check(const Command& program, CheckCommand& check) {
     add_isovalues(command, check.isovalues, check.shares).needs(grid);
     add_refinement(command, check.refine, &check.refine_averaged);
     for (const char* name : {"--tolerance", "--distance", "--geometry-tolerance"}) command.option(name).needs(grid);
-    command.add_flag("--strict", check.strict, "Fail for more: see below");
+    command.add_flag("--strict", check.strict, "Fail also for flat triangles, touching vertices and the like (--help-all)");
     command.add_text("--format", check.format, "FORMAT", "Format of the surface; default: the name decides");
     add_reading(command, check.grid, "--grid-format");
     for (const char* name :
@@ -444,9 +444,8 @@ void add_pack(const Command& program, PackCommand& pack) {
     command.add_file("OUT", pack.out, "OUT_FILE", "The packed file: .isotet").required();
     command.add_texts(
         "--fields", [&](const std::vector<std::string>& names) { pack.fields = names; }, "FIELD[,...]",
-        "The fields to pack, separated by commas; may be repeated. Default: all point fields of one component, or else "
-        "the "
-        "field that info says is shown first");
+        "The fields to pack, separated by commas; may be repeated. Default: all point fields of one or three "
+        "components, or else the field that info says is shown first");
     command.add_flag("--cell-field", pack.cell_field,
                      "A name that is both a point and a cell field means the cell field");
     add_time(command, pack.grid);

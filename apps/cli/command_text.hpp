@@ -16,7 +16,7 @@ struct OptionText {
     std::string description;
     bool positional = false, required = false, repeatable = false;
     bool is_file = false; ///< the value is a file's name
-    bool rare = false;    ///< told by --help-all alone
+    bool rare = false;    ///< shown by --help-all alone
 };
 
 struct CommandText {

@@ -213,14 +213,11 @@ Command Command::add_command(const std::string& word, const std::string& summary
 void Command::set_details(const std::string& details) const { app_->footer(details); }
 
 void Command::set_common(const std::vector<std::string>& names) const {
-    for (CLI::Option* option : app_->get_options()) {
-        const std::vector<std::string>& own = option->get_lnames();
-        const bool is_common = std::ranges::any_of(own, [&](const std::string& name) {
-            return name == "help" || std::ranges::find(names, "--" + name) != names.end();
-        });
-        if (!option->get_positional() && !is_common) option->group(rare_options);
-    }
-    app_->set_help_all_flag("--help-all", "Show all options, and details");
+    std::vector<const CLI::Option*> common{app_->get_help_ptr(), app_->get_help_all_ptr()};
+    for (const std::string& name : names) common.push_back(app_->get_option(name));
+    for (CLI::Option* option : app_->get_options())
+        if (!option->get_positional() && std::ranges::find(common, option) == common.end())
+            option->group(rare_options);
 }
 
 void Command::hide() const { app_->group(""); }
@@ -323,6 +320,7 @@ Option Command::add_one_of(const std::string& names, std::vector<std::string> wo
 OptionTree::OptionTree(CommandLine& line)
     : line_(&line), program_(std::make_unique<CLI::App>("Isosurfaces of large unstructured grids", "isotet")) {
     program_->require_subcommand(0, 1);
+    program_->set_help_all_flag("--help-all", "Show all options, and details"); // its commands have it, too
     add_commands(Command(*program_, line.number_files), line);
 }
 
@@ -360,7 +358,7 @@ Result<void> OptionTree::parse(const std::vector<std::string>& words) {
         const std::string command = parsed_command(*program_);
         std::string unknown = unknown_option(*program_, describe(command));
         if (unknown.empty()) unknown = number_too_many(*program_);
-        return usage_error("{} (isotet{}{} --help lists the options)", unknown.empty() ? error.what() : unknown,
+        return usage_error("{} (isotet{}{} --help-all lists the options)", unknown.empty() ? error.what() : unknown,
                            command.empty() ? "" : " ", command);
     }
     line_->command = parsed_command(*program_);

@@ -69,11 +69,10 @@ public:
     /// What --help says below the options (CommandText::details).
     void set_details(const std::string& details) const;
 
-    /// Says which options people mostly need, the long names, once all are there: --help tells of these, and --help-all
-    /// of all.
+    /// Call it when the command has all of its options. --help shows these, by their long names, and --help-all all.
     void set_common(const std::vector<std::string>& names) const;
 
-    /// Leaves the command out of --help, man page, completion and markdown.
+    /// Leaves the command out of --help, man page, completions and markdown.
     void hide() const;
 
     /// The option that has this name.

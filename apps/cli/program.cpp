@@ -27,7 +27,7 @@ bool looks_like_command(const std::string& word) {
 /// `isotet FILE` is short for `isotet info FILE`.
 Result<void> complete_bare_file(std::vector<std::string>& words, const OptionTree& tree) {
     if (words.size() < 2 || tree.has_command(words[1])) return {};
-    for (const char* own : {"-h", "--help", "--version"}) {
+    for (const char* own : {"-h", "--help", "--help-all", "--version"}) {
         if (words[1] == own) return {};
     }
     if (looks_like_command(words[1])) {

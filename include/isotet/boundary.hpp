@@ -43,7 +43,7 @@ ISOTET_API Result<Surface> boundary_of(const PackedGrid& packed, const std::vect
 ///              buckets that fit a processor's cache, where their faces are counted
 ISOTET_API Result<Surface> boundary_of(const Grid& grid, const Run& run = {});
 
-/// The boundary of the last grid, for those of further time steps.
+/// Finds boundaries, and gives the last one again for a grid with the same cells and points, as time steps mostly have.
 ///
 /// Threads   one call at a time
 class ISOTET_API KnownBoundary {

@@ -74,7 +74,7 @@ struct ISOTET_API ClosedGrid {
 /// Method       docs/inside/hanging.md
 ISOTET_API Result<ClosedGrid> close_hanging_points(const Grid& grid, const Run& run = {});
 
-/// What close_hanging_points() found in the last grid, for those of further time steps.
+/// Closes grids, and gives the last cells again for a grid with the same cells and points, as time steps mostly have.
 ///
 /// Threads   safe from many: one call waits for another
 class ISOTET_API KnownClosing {

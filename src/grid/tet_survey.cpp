@@ -24,7 +24,7 @@ struct Partial {
     Orienter::Counts orientation;
 };
 
-/// Says that tets have points.
+/// Marks points as used.
 class Marker {
 public:
     explicit Marker(Buffer<std::uint8_t>& used) : used_(used.data()) {}

@@ -353,7 +353,7 @@ Result<void> ExtractRun::prepare_and_look(std::size_t step) {
 
 /// Opens the grid as a packed file, where surfaces as the job asks for them come from its chunks.
 Result<void> ExtractRun::open_packed() {
-    if (source_->info().format != "isotet") return {};
+    if (!source_->is_packed_file()) return {};
     Result<PackedFile> file = PackedFile::open(job_.grid.file, {job_.memory.value_or(0)}, caller_.run());
     if (!file) return file.error();
     const PackedFileInfo& info = file->info();

@@ -374,7 +374,7 @@ Result<ReadResult> GridSource::read_unclosed(const FieldsToRead& fields, std::si
         return result;
     }
     ReadOptions options = read_options_;
-    if (cells == CellsToRead::some && !options_.merge_points && options_.displace.empty())
+    if (cells == CellsToRead::some && is_packed_file() && !options_.merge_points && options_.displace.empty())
         options.some_cells = FieldSample::max_cells;
     Result<ReadResult> result = read_file(fields, step, std::move(options), run);
     if (result) caller.notes(result->notes);

@@ -106,7 +106,7 @@ Result<PictureSource> PictureSource::open(const DrawJob& job, Caller& caller) {
     if (!grid) return grid.error();
     if (auto paths = check_output_paths(grid->info().files, job.other_outputs); !paths) return paths.error();
     source.source_ = *std::move(grid);
-    if (source.source_->info().format == "isotet" && !needs_cells(job)) {
+    if (source.source_->is_packed_file() && !needs_cells(job)) {
         Result<PackedFile> file = PackedFile::open(job.grid.file, {job.memory.value_or(0)}, caller.run());
         if (!file) return file.error();
         source.packed_ = *std::move(file);

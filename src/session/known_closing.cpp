@@ -6,6 +6,7 @@
 #include <isotet/hanging_points.hpp>
 
 #include "base/guard.hpp"
+#include "base/parallel.hpp"
 #include "session/marks.hpp"
 
 namespace isotet {
@@ -28,7 +29,10 @@ Result<ClosedGrid> KnownClosing::of(const Grid& grid, const Run& run) {
     return core::guarded("looking for hanging points", [&]() -> Result<ClosedGrid> {
         const std::lock_guard lock(data_->mutex);
         std::optional<Data::Last>& last = data_->last;
-        if (last && last->cells.is(grid) && last->points.is(grid.points)) {
+        bool is_same = false;
+        core::with_threads(run.threads,
+                           [&] { is_same = last && last->cells.is(grid) && last->points.is(grid.points); });
+        if (is_same) {
             ClosedGrid closed = last->closed;
             closed.grid = grid;
             if (closed.report.cells > 0) closed.grid.cells = last->closed.grid.cells;
@@ -37,7 +41,9 @@ Result<ClosedGrid> KnownClosing::of(const Grid& grid, const Run& run) {
         last.reset();
         Result<ClosedGrid> closed = close_hanging_points(grid, run);
         if (!closed) return closed;
-        last.emplace(Data::Last{session::CellsMark(grid), session::ArrayMark(grid.points), *closed});
+        core::with_threads(run.threads, [&] {
+            last.emplace(Data::Last{session::CellsMark(grid), session::ArrayMark(grid.points), *closed});
+        });
         if (closed->report.cells == 0) last->closed.grid.cells = {};
         last->closed.grid.points = {};
         last->closed.grid.point_fields = last->closed.grid.cell_fields = {};

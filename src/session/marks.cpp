@@ -15,10 +15,18 @@ CellsMark::CellsMark(const Grid& grid)
     : connectivity_(grid.cells.connectivity),
       offsets_(grid.cells.offsets),
       types_(grid.cells.types),
+      faces_(grid.cells.faces),
+      face_offsets_(grid.cells.face_offsets),
       numbers_(grid.point_numbers),
       uniform_type_(grid.cells.uniform_type),
       print_(fingerprint(grid.cells)),
       numbers_print_(fingerprint(grid.point_numbers)) {}
+
+bool CellsMark::has_the_memory_of(const Cells& cells) const {
+    return is_same(connectivity_, cells.connectivity) && is_same(offsets_, cells.offsets) &&
+           is_same(types_, cells.types) && is_same(faces_, cells.faces) && is_same(face_offsets_, cells.face_offsets) &&
+           uniform_type_ == cells.uniform_type;
+}
 
 bool CellsMark::is(const Grid& grid) {
     const Cells& cells = grid.cells;
@@ -26,13 +34,13 @@ bool CellsMark::is(const Grid& grid) {
         if (numbers_print_ != fingerprint(grid.point_numbers)) return false;
         numbers_ = core::ArrayIdentity(grid.point_numbers);
     }
-    const bool same_memory = is_same(connectivity_, cells.connectivity) && is_same(offsets_, cells.offsets) &&
-                             is_same(types_, cells.types) && uniform_type_ == cells.uniform_type;
-    if (same_memory) return true;
+    if (has_the_memory_of(cells)) return true;
     if (print_ != fingerprint(cells)) return false;
     connectivity_ = core::ArrayIdentity(cells.connectivity);
     offsets_ = core::ArrayIdentity(cells.offsets);
     types_ = core::ArrayIdentity(cells.types);
+    faces_ = core::ArrayIdentity(cells.faces);
+    face_offsets_ = core::ArrayIdentity(cells.face_offsets);
     uniform_type_ = cells.uniform_type;
     return true;
 }

@@ -18,7 +18,9 @@ public:
     bool is(const Grid& grid);
 
 private:
-    core::ArrayIdentity connectivity_, offsets_, types_, numbers_;
+    bool has_the_memory_of(const Cells& cells) const;
+
+    core::ArrayIdentity connectivity_, offsets_, types_, faces_, face_offsets_, numbers_;
     CellType uniform_type_;
     Fingerprint print_, numbers_print_;
 };

@@ -2,9 +2,12 @@
 #include <isotet/jobs/pack_file.hpp>
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include <isotet/jobs/draw_files.hpp>
 #include <isotet/jobs/extract_files.hpp>
 #include <isotet/make.hpp>
 #include <isotet/packed_file.hpp>
@@ -88,6 +91,45 @@ TEST(PackFile, SurfacesCarryVectorsAsThoseOfTheGrid) {
         const std::string expected = surface_of(grid, with, "a.vtp");
         EXPECT_TRUE(surface_of(path, with, "b.vtp") == expected) << testing::PrintToString(with);
     }
+}
+
+/// Of which the step is what a file says it is, and not the first file's.
+TEST(PackFile, SeveralFilesAreTimeSteps) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    std::vector<std::string> files;
+    std::vector<double> areas;
+    for (const char* fields : {"gyroid", "sphere"}) {
+        Grid grid = make_grid({.shape = "hex", .side = 6, .fields = {fields}}).value();
+        grid.point_fields[0].name = "f";
+        const std::string plain = folder.file(std::string(fields) + ".vtu");
+        write_grid(grid, plain).value();
+        PackJob pack;
+        pack.grid.file = plain;
+        pack.out = files.emplace_back(folder.file("step" + std::to_string(files.size()) + ".isotet"));
+        pack_file(pack, listener).value();
+        ExtractJob one;
+        one.grid.file = plain;
+        one.isovalues = {0.1};
+        areas.push_back(extract_files(one, listener).value().surfaces.front().area);
+    }
+    EXPECT_NE(areas[0], areas[1]);
+    ExtractJob all;
+    all.grid.file = files[0];
+    all.grid.more_files = {files[1]};
+    all.field.name = "f";
+    all.isovalues = {0.1};
+    all.all_steps = true;
+    const ExtractNumbers numbers = extract_files(all, listener).value();
+    ASSERT_EQ(numbers.surfaces.size(), 2U);
+    EXPECT_EQ(numbers.surfaces[0].area, areas[0]);
+    EXPECT_EQ(numbers.surfaces[1].area, areas[1]);
+    DrawJob draw;
+    draw.grid = all.grid;
+    draw.out = folder.file("p-{frame}.png");
+    draw.picture.width = draw.picture.height = 64;
+    draw.all_steps = true;
+    EXPECT_EQ(draw_files(draw, listener).value().pictures.pictures, 2U);
 }
 
 } // namespace

@@ -80,6 +80,17 @@ TEST(KnownBoundary, IsFoundAgainWhereCellsOrPointsAreOthers) {
     }
 }
 
+TEST(KnownBoundary, IsFoundAgainWhereOnlyFacesAreOthers) {
+    Grid grid = make_grid({.shape = "kelvin", .side = 2, .fields = {"sphere"}}).value();
+    KnownBoundary known;
+    const std::size_t all = known.of(grid, {.threads = 1}).value().triangle_count();
+    std::vector<std::int64_t> offsets(grid.cells.count() + 1, 0); // no cell has faces
+    grid.cells.face_offsets = Array::own(std::move(offsets));
+    const Result<Surface> others = known.of(grid, {.threads = 1}), expected = boundary_of(grid);
+    EXPECT_EQ(static_cast<bool>(others), static_cast<bool>(expected));
+    EXPECT_FALSE(others && others->triangle_count() == all);
+}
+
 TEST(KnownBoundary, ForgetsTheGridBeforeOneThatIsWrong) {
     const Grid grid = make_grid({.shape = "hex", .side = 3, .fields = {"sphere"}}).value();
     Grid wrong = grid;

@@ -68,6 +68,9 @@ public:
 
     const FileInfo& info() const noexcept { return info_; }
 
+    /// All of it is one packed file, GridOptions::file.
+    bool is_packed_file() const { return info_.format == "isotet" && options_.more_files.empty(); }
+
     /// From now on info() has the fields of all these steps. Reading one of them passes over those that it does not have, and
     /// looks for hanging points only where cells or points are not those of the step that was read before.
     Result<void> look_at_steps(const std::vector<std::size_t>& steps, Caller& caller);

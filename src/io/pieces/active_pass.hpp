@@ -70,7 +70,7 @@ public:
         bool typed = false;                 ///< the filter takes cells with their types
         std::uint64_t first = 0;            ///< number of the piece's first cell in the joined grid
         std::uint32_t piece = 0;
-        SharedHashes* hashes = nullptr; ///< are told of all shared cells
+        SharedHashes* hashes = nullptr; ///< get all shared cells
         std::uint64_t place = 0;        ///< of the piece's first cell there
         SharedCells* shared = nullptr;  ///< has those instead of the filter that `repeated` marks
         std::span<const std::uint8_t> repeated{};

@@ -188,12 +188,14 @@ private:
         if (!marks) return marks.error();
         RepeatedCells repeated;
         if (!marks->empty()) { // cells were kept that may be those of other pieces
+            filter.reset(); // its memory is needed again
             filter = active_filter(result.grid, type_, options_);
             targets = targets_for(*filter);
             SharedCells shared;
             for (std::size_t p = 0; p < all_.size(); ++p)
                 targets[p].shared = &shared, targets[p].repeated = (*marks)[p];
             if (auto done = pass_all(joined->numbers, targets, again); !done) return done.error();
+            if (needs_all_ || again) return std::optional<ReadResult>();
             repeated = shared.settle(*filter, typed_);
         }
         note_repeated(repeated, all_.pieces, result.notes);
