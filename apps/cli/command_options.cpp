@@ -446,6 +446,9 @@ void add_pack(const Command& program, PackCommand& pack) {
         "--fields", [&](const std::vector<std::string>& names) { pack.fields = names; }, "FIELD[,...]",
         "The fields to pack, separated by commas; may be repeated. Default: all point fields of one or three "
         "components, or else the field that info says is shown first");
+    command.add_texts(
+        "--cell-fields", [&](const std::vector<std::string>& names) { pack.cell_fields = names; }, "FIELD[,...]",
+        "Pack these cell fields as they are, and source cells, for --with and --color-by");
     command.add_flag("--cell-field", pack.cell_field,
                      "A name that is both a point and a cell field means the cell field");
     add_time(command, pack.grid);

@@ -60,6 +60,12 @@ std::string packed_table(const PackedFileInfo& info, const std::string& path) {
         if (info.steps > 1) text += fmt::format(", step {}", field.step);
         table.row({"field", text});
     }
+    for (const PackedCellFieldInfo& field : info.cell_fields) {
+        std::string text = fmt::format("{}: {}", field.name, name_of(field.type));
+        if (field.components > 1) text += fmt::format(", {} components", field.components);
+        if (info.steps > 1) text += fmt::format(", from step {}", field.step);
+        table.row({"cell field", text});
+    }
     return table.text();
 }
 
@@ -95,6 +101,13 @@ Json packed_json(const PackedFileInfo& info, const std::string& path, const std:
                           {"gradients", field.gradients}});
     }
     report["fields"] = std::move(fields);
+    Json cell_fields = Json::array();
+    for (const PackedCellFieldInfo& field : info.cell_fields)
+        cell_fields.push_back({{"name", json_text(field.name)},
+                               {"step", field.step},
+                               {"type", name_of(field.type)},
+                               {"components", field.components}});
+    report["cell_fields"] = std::move(cell_fields);
     return report;
 }
 

@@ -116,7 +116,7 @@ enum class ExtractOn : std::uint8_t {
 /// A packed grid to contour, of a PackedFile say: no grid is needed, and surfaces come from the clusters that they meet.
 struct PackedScene {
     PackedGrid grid;                  ///< with the field to contour
-    std::optional<PackedGrid> colors; ///< with the field of SceneLook::colors or boundary_colors
+    std::optional<PackedGrid> colors; ///< with the field of SceneLook::colors or boundary_colors, if it is one of points
     bool contours = true;             ///< else only the boundary is drawn
 };
 
@@ -137,7 +137,8 @@ struct IsosurfaceOptions {
     std::function<Result<Grid>(const Run& run)> all_cells = {};
     std::vector<double> expected_isovalues = {}; ///< these
     Box bounds = {};                             ///< of the points that any cell has; with `packed`, too
-    /// In place of `grid` and `field`. The CPU extracts; there are no slices, solids, volumes and colours of cells.
+    /// In place of `grid` and `field`. The CPU extracts; there are no slices, solids and volumes, and cells colour isosurfaces
+    /// only, of a grid that was packed with source cells.
     std::optional<PackedScene> packed = {};
     std::shared_ptr<KnownBoundary> known_boundary = {}; ///< of scenes before, whose grids may have the same cells; or null
 };

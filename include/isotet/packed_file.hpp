@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <isotet/export.hpp>
+#include <isotet/grid.hpp>
 #include <isotet/pack.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
@@ -63,6 +64,10 @@ public:
     Result<void> add_field(const PackedGrid& packed);
     Result<void> add_step(const PackedGrid& packed, std::optional<double> time);
 
+    /// A cell field of the same step, as it is: surfaces can carry it. Nothing is written where it is that of the step before.
+    /// Errors   as save_packed(); invalid_argument: the grid was packed without source cells, or has another number of cells
+    Result<void> add_cell_field(const Field& field);
+
     /// The file appears under its name. Nothing else can be done afterwards.
     Result<std::uint64_t> commit(); ///< bytes of the file
 
@@ -80,6 +85,14 @@ struct PackedFieldInfo {
     bool gradients = false;
 };
 
+/// A cell field of a packed file, from this step on until there is another of the same name.
+struct PackedCellFieldInfo {
+    std::size_t step = 0;
+    std::string name;
+    ScalarType type = ScalarType::float32;
+    std::size_t components = 1;
+};
+
 /// What a packed file holds: all that opening it tells.
 struct PackedFileInfo {
     std::uint32_t major = 1, minor = 0; ///< version of the format
@@ -94,6 +107,7 @@ struct PackedFileInfo {
     std::size_t steps = 1;
     std::vector<double> times;           ///< one a step; empty where they are not known
     std::vector<PackedFieldInfo> fields; ///< by step, then in the order of saving
+    std::vector<PackedCellFieldInfo> cell_fields; ///< likewise
 };
 
 struct PackedFileOptions {
@@ -143,8 +157,17 @@ public:
     /// The same with all of its arrays in memory, everything checked.
     Result<PackedGrid> load(std::string_view field = {}, std::size_t step = 0, const Run& run = {}) const;
 
-    /// Reads all fields of all steps, and checks what load() does.
+    /// A cell field at a step, by the user's cells, for ExtractOptions::cell_fields. All of it is read.
+    /// Errors       as grid()
+    Result<Field> cell_field(std::string_view name, std::size_t step = 0, const Run& run = {}) const;
+
+    /// Reads all fields of all steps, and checks what load() does; the boundary against that of the cells.
     Result<void> check(const Run& run = {}) const;
+
+    /// Asks the system to read meanwhile what surfaces like those before need of another step: ranges, and the values of the
+    /// chunks that are in memory. Returns at once.
+    /// Returns   the bytes that were asked for; 0 where there is no such field or step
+    std::uint64_t read_ahead(std::string_view field, std::size_t step) const;
 
     ResidencyReport residency() const;
 

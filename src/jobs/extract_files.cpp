@@ -46,6 +46,7 @@ private:
     Result<bool> load_packed(std::size_t step);
     std::vector<ComponentGroup> carried_of_packed(std::size_t step);
     Result<void> join_vectors(Surface& surface) const;
+    void read_ahead(std::size_t step) const;
     Result<void> prepare_and_look(std::size_t step);
     Result<std::optional<std::uint64_t>> read_field_of(std::size_t step, bool& found);
     void note_what_steps_miss();
@@ -77,6 +78,7 @@ private:
     std::optional<GridSource> source_;
     std::optional<PackedFile> packed_;    ///< where chunks of it are read in place of a grid
     std::vector<ComponentGroup> vectors_; ///< that surfaces of it carry, by component
+    std::vector<std::string> packed_names_; ///< of the fields that are read from it
     ExtractPlan plan_;
     std::shared_ptr<const Engine> device_; ///< null: the CPU extracts
     std::optional<Contour> contour_;
@@ -367,9 +369,8 @@ Result<void> ExtractRun::open_packed() {
     const auto is_packed = [&](const FoundField& component) {
         return std::ranges::any_of(info.fields, [&](const auto& field) { return field.report.name == component.name; });
     };
-    const bool has_all =
-        std::ranges::any_of(info.fields, has_field) && (!job_.source_cells || info.source_cells) &&
-        (!plan_.carried || (std::ranges::all_of(plan_.carried->components, is_packed) && plan_.carried->cell.empty()));
+    const bool has_all = std::ranges::any_of(info.fields, has_field) && (!job_.source_cells || info.source_cells) &&
+                         (!plan_.carried || std::ranges::all_of(plan_.carried->components, is_packed));
     if (reworks_cells || !has_all) {
         caller_.note(
             "all of the packed file is read and unpacked: what was asked for needs its cells, or is not packed");
@@ -432,13 +433,21 @@ Result<bool> ExtractRun::load_packed(std::size_t step) {
     ContourInput input;
     input.packed = *grid;
     vectors_.clear();
+    packed_names_ = {name};
     for (const ComponentGroup& carried : carried_of_packed(step)) {
         for (const std::string& part : carried.parts) {
+            add_names(packed_names_, {part});
             Result<PackedGrid> other = part == name ? grid : packed_->grid(part, step, caller_.run());
             if (!other) return other.error();
             input.packed_fields.push_back(*std::move(other));
         }
         if (carried.parts.size() > 1) vectors_.push_back(carried);
+    }
+    for (const std::string& carried : plan_.carried ? plan_.carried->cell : std::vector<std::string>()) {
+        Result<Field> field = packed_->cell_field(carried, step, caller_.run());
+        if (field) input.cell_fields.push_back(*std::move(field));
+        else if (field.error().code == ErrorCode::invalid_argument) not_carried_.insert(carried);
+        else return field.error();
     }
     numbers_.cells = packed_->info().user_cells;
     numbers_.read_seconds += reading.seconds();
@@ -699,6 +708,12 @@ Result<void> ExtractRun::write(Surface surface, SurfaceNumbers& numbers) {
     return {};
 }
 
+/// What the next step needs of a packed file, while the surfaces of this one are written.
+void ExtractRun::read_ahead(std::size_t step) const {
+    if (!packed_ || step > plan_.steps.back()) return;
+    for (const std::string& name : packed_names_) packed_->read_ahead(name, step);
+}
+
 Result<void> ExtractRun::extract_step(std::size_t step) {
     const bool one_file = goes_into_one_file();
     const std::size_t before = numbers_.surfaces.size();
@@ -714,6 +729,7 @@ Result<void> ExtractRun::extract_step(std::size_t step) {
         }
         if (!surfaces) return surfaces.error();
         left = left.subspan(pass.size());
+        if (left.empty()) read_ahead(step + 1);
         const std::size_t first = numbers_.surfaces.size() - pass.size();
         for (std::size_t i = 0; i < pass.size() && !plan_.names.none(); ++i) {
             SurfaceNumbers& numbers = numbers_.surfaces[first + i];

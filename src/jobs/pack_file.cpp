@@ -33,6 +33,8 @@ private:
     Result<void> look_at_file();
     Result<void> choose_names();
     Result<void> take_all_fields();
+    Result<void> choose_cell_fields();
+    Result<void> write_cell_fields(const Grid& grid);
     std::vector<std::string> packed_names(const std::string& name) const;
     Result<void> pack_step(std::size_t step);
     Result<PackedGrid> packed_with(const Grid& grid, PointField field, std::size_t step);
@@ -79,6 +81,7 @@ Result<void> PackRun::look_at_file() {
     job_.precision = info.precision;
     job_.source_cells = info.source_cells;
     job_.gradients = info.fields.back().gradients;
+    for (const PackedCellFieldInfo& field : info.cell_fields) add_names(job_.cell_fields, {field.name});
     if (!job_.fields.empty()) return {};
     for (const PackedFieldInfo& field : info.fields)
         if (field.step + 1 == info.steps) job_.fields.push_back(field.report.name);
@@ -100,17 +103,34 @@ Result<void> PackRun::take_all_fields() {
     for (const FieldInfo& field : source_->info().fields) {
         const bool of_points = field.association == Association::point;
         if (of_points && (field.components == 1 || field.components == 3)) add_names(names_, packed_names(field.name));
-        else
+        else if (std::ranges::find(job_.cell_fields, field.name) == job_.cell_fields.end() || of_points)
             left_out.push_back(fmt::format("'{}' ({})", field.name,
                                            of_points ? fmt::format("{} components", field.components) : "of cells"));
     }
     if (!left_out.empty())
-        caller_.note(fmt::format("not packed: {}; `fields` takes components, and cell fields averaged to the points",
+        caller_.note(fmt::format("not packed: {}; `fields` takes components, `cell_fields` fields of cells",
                                  fmt::join(left_out, ", ")));
     return {};
 }
 
+/// Names in lists separated by commas, or names with commas.
+Result<void> PackRun::choose_cell_fields() {
+    if (job_.cell_fields.empty()) return {};
+    if (auto looked = source_->look_at_steps({steps_.front()}, caller_); !looked) return looked;
+    auto named = choose_field_names(*source_, std::exchange(job_.cell_fields, {}), {{}, true, false, {}});
+    if (!named) return named.error();
+    const std::vector<std::string> known = source_->names(Association::cell);
+    for (const std::string& name : *named) {
+        if (std::ranges::find(known, name) == known.end())
+            return refusal("`cell_fields` got '{}', but whole cell fields are packed: {}", name, quoted_list(known));
+        add_names(job_.cell_fields, {name});
+    }
+    job_.source_cells = true;
+    return {};
+}
+
 Result<void> PackRun::choose_names() {
+    if (auto chosen = choose_cell_fields(); !chosen) return chosen;
     auto named = choose_field_names(*source_, job_.fields, choice({}));
     if (!named) return named.error();
     for (const std::string& name : *named) add_names(names_, packed_names(name));
@@ -175,6 +195,17 @@ Result<void> PackRun::write(const PackedGrid& packed, std::size_t step, bool fir
     return written;
 }
 
+Result<void> PackRun::write_cell_fields(const Grid& grid) {
+    const core::Stopwatch writing;
+    for (const std::string& name : job_.cell_fields) {
+        const auto field = std::ranges::find(grid.cell_fields, name, &Field::name);
+        if (field == grid.cell_fields.end()) continue; // not in this step
+        if (auto written = writer_->add_cell_field(*field); !written) return written;
+    }
+    numbers_.write_seconds += writing.seconds();
+    return {};
+}
+
 Result<void> PackRun::pack_step(std::size_t step) {
     const core::Stopwatch reading;
     caller_.detail(fmt::format("reading step {}", step));
@@ -185,6 +216,7 @@ Result<void> PackRun::pack_step(std::size_t step) {
         add_names(*read.point, found->point);
         add_names(*read.cell, found->cell);
     }
+    add_names(*read.cell, job_.cell_fields);
     const Result<Grid> grid = source_->read(read, step, caller_);
     if (!grid) return grid.error();
     numbers_.cells = grid->cells.count();
@@ -202,7 +234,7 @@ Result<void> PackRun::pack_step(std::size_t step) {
         numbers_.fields.push_back(packed->field());
         numbers_.pack = packed->report();
     }
-    return {};
+    return write_cell_fields(*grid);
 }
 
 Result<void> PackRun::run() {

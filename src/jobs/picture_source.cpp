@@ -225,17 +225,20 @@ Result<DrawInput> PictureSource::take_surface(const std::optional<Device>& devic
     return input;
 }
 
+/// A grid with what a field needs: of a packed file with some of the cells, where its points do.
+Result<Grid> PictureSource::read_for(const FoundField& field, std::size_t step, Caller& caller) {
+    const FieldsToRead read{field.point, field.cell};
+    if (!packed_ || field.neighbours || !field.cell.empty()) return source_->read(read, step, caller);
+    Result<ReadResult> some = source_->read_some(read, step, caller, caller.run());
+    if (!some) return some.error();
+    return std::move(some->grid);
+}
+
 /// The values of the field that is contoured, of all points.
 Result<PointField> PictureSource::field_at(std::size_t step, const std::string& name, Caller& caller) {
     const Result<FoundField> found = choose_field(*source_, {name, job_.field.cell_field});
     if (!found) return found.error();
-    const FieldsToRead read{found->point, found->cell};
-    if (packed_) {
-        const Result<ReadResult> some = source_->read_some(read, step, caller, caller.run());
-        if (!some) return some.error();
-        return find_chosen(some->grid, name, job_.field, caller);
-    }
-    const Result<Grid> grid = source_->read(read, step, caller);
+    const Result<Grid> grid = read_for(*found, step, caller);
     if (!grid) return grid.error();
     return find_chosen(*grid, name, job_.field, caller);
 }
@@ -253,11 +256,14 @@ Result<ColorField> PictureSource::colors_at(std::size_t step, const std::string&
     }
     const Result<FoundField> found = choose_field(*source_, {name, false});
     if (!found) return found.error();
-    const FieldsToRead read{found->point, found->cell};
-    Result<ReadResult> some = Error{};
-    if (packed) some = source_->read_some(read, step, caller, caller.run());
-    if (packed && !some) return some.error();
-    const Result<Grid> grid = packed ? std::move(some->grid) : source_->read(read, step, caller);
+    if (packed_ && has_cell_field(*found, step)) {
+        Result<Field> field = packed_->cell_field(found->name, step, caller.run());
+        if (!field) return field.error();
+        Grid grid;
+        grid.cell_fields = {*std::move(field)};
+        return colors_of(grid, name, source_->info().regions, job_, caller);
+    }
+    const Result<Grid> grid = read_for(*found, step, caller);
     if (!grid) return grid.error();
     return colors_of(*grid, name, source_->info().regions, job_, caller);
 }
@@ -389,7 +395,16 @@ bool PictureSource::is_packed(std::size_t step, const FoundField& contoured, con
     const auto has = [&](const FoundField& field, bool gradients) {
         return field.name.empty() || packed_field(packed_->info(), field.name, step, gradients);
     };
-    return has(contoured, job_.shade_by == ShadeBy::gradient) && has(colored, false);
+    const bool of_cells = !contoured.name.empty() && job_.boundary_color_by.empty() && has_cell_field(colored, step);
+    return has(contoured, job_.shade_by == ShadeBy::gradient) && (of_cells || has(colored, false));
+}
+
+/// Whether a field that colours is one of cells, which the packed file has.
+bool PictureSource::has_cell_field(const FoundField& colored, std::size_t step) const {
+    return colored.point.empty() && !colored.is_expression &&
+           std::ranges::any_of(packed_->info().cell_fields, [&](const PackedCellFieldInfo& field) {
+               return field.name == colored.name && field.step <= step && field.components == 1;
+           });
 }
 
 /// Takes packed fields in place of a grid. Values are read only where isovalues follow from them.
@@ -415,6 +430,13 @@ Result<void> PictureSource::take_packed(const FoundField& contoured, const Found
         }
     }
     if (colored.name.empty()) return {};
+    if (has_cell_field(colored, step)) {
+        if (auto widened = widen_range(colored.name, caller); !widened) return widened;
+        Result<ColorField> field = colors_at(step, colored.name, caller);
+        if (!field) return field.error();
+        contents.colors = *std::move(field);
+        return {};
+    }
     Result<PackedGrid> colors = colored.name == contoured.name ? grid : grid_of(colored.name);
     if (!colors) return colors.error();
     contents.packed->colors = *std::move(colors);

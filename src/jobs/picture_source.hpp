@@ -50,9 +50,11 @@ private:
                                                 const FieldsToRead& read) const;
     Result<void> read_cells(const FieldsToRead& fields, std::size_t step, const std::optional<ReadActiveCells>& active,
                             Contents& contents, Caller& caller);
+    bool has_cell_field(const FoundField& colored, std::size_t step) const;
     bool is_packed(std::size_t step, const FoundField& contoured, const FoundField& colored) const;
     Result<void> take_packed(const FoundField& contoured, const FoundField& colored, std::size_t step,
                              Contents& contents, Caller& caller);
+    Result<Grid> read_for(const FoundField& field, std::size_t step, Caller& caller);
     Result<ColorField> colors_at(std::size_t step, const std::string& name, Caller& caller);
     Result<PointField> field_at(std::size_t step, const std::string& name, Caller& caller);
     Result<void> take_volume(Contents& contents, Caller& caller);

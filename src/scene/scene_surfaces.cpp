@@ -92,18 +92,19 @@ Result<void> IsosurfaceScene::Data::start_packed(const IsosurfaceOptions& wanted
     const auto by_cells = [](const std::optional<ColorField>& field) {
         return field && field->association == Association::cell;
     };
-    const bool reworks = look.volume || look.solid || !look.slices.empty() || wanted.draw || by_cells(look.colors) ||
+    const bool reworks = look.volume || look.solid || !look.slices.empty() || wanted.draw ||
                          by_cells(look.boundary_colors) || wanted.where == ExtractOn::device;
-    if (reworks || ((look.colors || look.boundary_colors) && !wanted.packed->colors))
-        return invalid_argument(
-            "a packed grid is given, of which the CPU draws isosurfaces and the boundary, coloured by "
-            "packed fields, and nothing else");
+    const bool by_points = (look.colors && !by_cells(look.colors)) || look.boundary_colors;
+    if (reworks || (by_points && !wanted.packed->colors))
+        return invalid_argument("a packed grid is given, of which the CPU draws isosurfaces, and the boundary coloured by "
+                                "packed fields, and nothing else");
     bounds = wanted.bounds;
     if (auto looked = look_around_packed(wanted, run); !looked) return looked;
     if (!wanted.packed->contours) return {};
     ContourInput input;
     input.packed = wanted.packed->grid;
-    if (look.colors) input.packed_fields = {*wanted.packed->colors};
+    if (by_cells(look.colors)) input.cell_fields = {{look.colors->name, look.colors->values}};
+    else if (look.colors) input.packed_fields = {*wanted.packed->colors};
     ContourOptions options;
     options.precision = wanted.packed->grid.precision();
     options.normals = look.shade_by == ShadeBy::gradient ? Normals::gradient : Normals::none;

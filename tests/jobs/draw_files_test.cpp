@@ -94,7 +94,7 @@ TEST(DrawFiles, DrawsThePictureOfAllCellsFromActiveOnes) {
 
 std::string packed_file(const test::TemporaryFolder& folder) {
     PackJob pack;
-    pack.grid.file = "make:mixed:9:gyroid,plane";
+    pack.grid.file = "make:mixed:6:gyroid,plane";
     pack.out = folder.file("grid.isotet");
     pack.gradients = true;
     Listener listener;

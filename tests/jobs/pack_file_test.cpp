@@ -33,15 +33,18 @@ std::string grid_with_all_kinds(const test::TemporaryFolder& folder) {
     }
     grid.point_fields.push_back({"U", Array::own(std::move(velocity), 3)});
     grid.point_fields.push_back({"stress", Array::own(std::move(stress), 9)});
-    std::vector<std::int32_t> region(grid.cells.count(), 7);
+    std::vector<std::int32_t> region(grid.cells.count());
+    for (std::size_t i = 0; i < region.size(); ++i) region[i] = static_cast<std::int32_t>(3 * i / region.size());
     grid.cell_fields = {{"region", Array::own(std::move(region))}};
     std::string path = folder.file("grid.vtu");
     write_grid(grid, path).value();
     return path;
 }
 
-std::string packed(const std::string& grid, const test::TemporaryFolder& folder, Listener& listener) {
+std::string packed(const std::string& grid, const test::TemporaryFolder& folder, Listener& listener,
+                   std::vector<std::string> cell_fields = {}) {
     PackJob job;
+    job.cell_fields = std::move(cell_fields);
     job.grid.file = grid;
     job.out = folder.file("grid.isotet");
     pack_file(job, listener).value();
@@ -53,9 +56,8 @@ TEST(PackFile, PacksVectorsAsComponentsAndNamesWhatIsNotPacked) {
     Listener listener;
     const std::string grid = grid_with_all_kinds(folder), path = packed(grid, folder, listener);
     ASSERT_EQ(listener.noted.size(), 1u);
-    EXPECT_EQ(listener.noted[0],
-              "not packed: 'stress' (9 components), 'region' (of cells); `fields` takes components, and "
-              "cell fields averaged to the points");
+    EXPECT_EQ(listener.noted[0], "not packed: 'stress' (9 components), 'region' (of cells); `fields` takes components, "
+                                 "`cell_fields` fields of cells");
     std::vector<std::string> names;
     for (const PackedFieldInfo& field : PackedFile::open(path).value().info().fields)
         names.push_back(field.report.name);
@@ -130,6 +132,47 @@ TEST(PackFile, SeveralFilesAreTimeSteps) {
     draw.picture.width = draw.picture.height = 64;
     draw.all_steps = true;
     EXPECT_EQ(draw_files(draw, listener).value().pictures.pictures, 2U);
+}
+
+TEST(PackFile, SurfacesCarryCellFieldsAsThoseOfTheGrid) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    const std::string grid = grid_with_all_kinds(folder), path = packed(grid, folder, listener, {"region"});
+    EXPECT_EQ(listener.noted.front(),
+              "not packed: 'stress' (9 components); `fields` takes components, `cell_fields` fields "
+              "of cells");
+    std::string contents[2], pictures[2];
+    for (const bool from_file : {false, true}) {
+        ExtractJob extract;
+        extract.grid.file = from_file ? path : grid;
+        extract.out = folder.file("a.vtp");
+        extract.field.name = "U:mag";
+        extract.isovalues = {0.7};
+        extract.with = std::vector<std::string>{"region"};
+        if (!from_file) extract.method = Method::clusters;
+        Listener told;
+        extract_files(extract, told).value();
+        contents[from_file] = test::content_of(extract.out);
+        DrawJob draw;
+        draw.grid.file = extract.grid.file;
+        draw.out = folder.file("a.png");
+        draw.field.name = "U:mag";
+        draw.isovalues = {0.7};
+        draw.boundary = 0;
+        draw.color_by = "region";
+        draw.picture.width = 160;
+        draw.picture.height = 120;
+        draw_files(draw, told).value();
+        pictures[from_file] = test::content_of(draw.out);
+        for (const std::string& note : told.noted) EXPECT_EQ(note.find("all of the packed file"), note.npos) << note;
+    }
+    EXPECT_TRUE(contents[0] == contents[1]);
+    EXPECT_TRUE(pictures[0] == pictures[1]);
+    PackJob missing;
+    missing.grid.file = grid;
+    missing.out = folder.file("b.isotet");
+    missing.cell_fields = {"gyroid"};
+    EXPECT_FALSE(pack_file(missing, listener)) << "it is no cell field";
 }
 
 } // namespace

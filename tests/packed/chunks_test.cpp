@@ -287,6 +287,7 @@ TEST(PackedChunks, OfAnOldVersionAreReadAndAddedTo) {
     for (const std::size_t steps : {1, 2}) {
         const PackedFile file = PackedFile::open(path).value();
         ASSERT_EQ(file.info().steps, steps);
+        EXPECT_EQ(file.info().minor, 0u);
         EXPECT_TRUE(file.check());
         const PackedGrid last = file.grid({}, steps - 1).value();
         EXPECT_TRUE(bytes_of(boundary_of(last).value()) == bytes_of(boundary_of(packed).value()));

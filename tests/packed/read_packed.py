@@ -91,6 +91,16 @@ def read_field(content, chunks):
     return field
 
 
+def check_cell_field(data, content, cells):
+    c = Cursor(content)
+    _, kind, components, _, at = c.take("IBBHQ")
+    size = cells * components * (1, 1, 2, 2, 4, 4, 8, 8, 4, 8)[kind]
+    for begin in range(at, at + size, 1 << 20):
+        end = min(begin + (1 << 20), at + size)
+        check(crc32c(data[begin:end]) == c.take("I"), "cell field")
+    print(content[c.at + 4:c.at + 4 + c.take("I")].decode(), "of cells", components)
+
+
 def numbers(form, data):
     out = array(form)
     out.frombytes(data)
@@ -137,6 +147,8 @@ def main(path):
             chunks = list(struct.iter_unpack("<8I", content))
         elif name == "FIELD":
             fields.append(read_field(content, len(chunks)))
+        elif name == "CELLFLD":
+            check_cell_field(data, content, grid["user_cells"])
         elif name == "BOUNDARY":
             boundary = struct.unpack_from("<3QI", content)
         elif name == "BVALUES":

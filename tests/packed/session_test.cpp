@@ -63,6 +63,27 @@ TEST(PackedSession, ReadsOnlyValuesOfAnotherStep) {
     EXPECT_EQ(contour.set(packed_input(second)).value(), ContourUpdate::nothing);
 }
 
+TEST(PackedSession, AsksForWhatTheSameSurfaceNeedsOfTheNextStep) {
+    const Grid grid = made_grid("kuhn", 12, {"sphere"});
+    const PackedGrid packed = pack(grid, point_field(grid)).value();
+    const TemporaryFolder folder;
+    const std::string path = saved(packed, folder, 2'000);
+    PackedWriter::append(packed, path, 1.0).value().commit().value();
+    const PackedFile file = PackedFile::open(path).value();
+    EXPECT_EQ(file.read_ahead("sphere", 1), 0u) << "nothing was read yet";
+    const PackedGrid first = file.grid("sphere", 0).value();
+    const std::uint64_t ranges = file.read_ahead("sphere", 1);
+    EXPECT_GE(ranges, 9 * first.report().clusters) << "no chunk is in memory";
+    ASSERT_TRUE(extract(first, 0.2));
+    const std::uint64_t some = file.read_ahead("sphere", 1);
+    ASSERT_TRUE(extract(first, 0.7));
+    const std::uint64_t more = file.read_ahead("sphere", 1);
+    EXPECT_LT(ranges, some);
+    EXPECT_LT(some, more);
+    EXPECT_EQ(file.read_ahead("sphere", 2), 0u);
+    EXPECT_EQ(file.read_ahead("plane", 1), 0u);
+}
+
 TEST(PackedSession, ChangesBetweenFilesAndGrids) {
     const Grid grid = made_grid("kuhn", 5, {"gyroid"});
     const PackedGrid packed = pack(grid, point_field(grid)).value();

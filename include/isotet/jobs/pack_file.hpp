@@ -23,6 +23,7 @@ struct PackJob {
     std::vector<std::string> fields; ///< as choose_field_names(); empty: all point fields of one or three components, or if
                                      ///< there are none the one that is shown first. A vector is packed as its components
                                      ///< and its magnitude
+    std::vector<std::string> cell_fields; ///< packed as they are; source cells are packed, too
     bool cell_field = false;         ///< as FieldChoice
     Precision precision = Precision::float32;
     bool source_cells = false;

@@ -160,6 +160,14 @@ void ChunkCache::unpin(std::span<const PieceWanted> wanted) {
     unpin_locked(wanted);
 }
 
+std::vector<std::size_t> ChunkCache::present(const CachedPieces& pieces) const {
+    const std::lock_guard lock(mutex_);
+    std::vector<std::size_t> chunks;
+    for (std::size_t chunk = 0; chunk < pieces.states_.size(); ++chunk)
+        if (pieces.states_[chunk].is == CachedPieces::Is::present) chunks.push_back(chunk);
+    return chunks;
+}
+
 ResidencyReport ChunkCache::report() const {
     const std::lock_guard lock(mutex_);
     ResidencyReport report = report_;

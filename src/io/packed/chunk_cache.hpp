@@ -67,6 +67,8 @@ public:
     std::uint64_t bytes_in_memory(const CachedPieces& pieces, std::size_t chunk) const;
     std::uint64_t limit() const { return limit_; }
     ResidencyReport report() const;
+    /// Chunks whose pieces are in memory, ascending.
+    std::vector<std::size_t> present(const CachedPieces& pieces) const;
 
 private:
     void make_room(std::uint64_t bytes);

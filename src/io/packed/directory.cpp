@@ -89,7 +89,7 @@ private:
 
 constexpr std::string_view grid_section = "GRID    ", chunk_section = "CHUNKS  ", frame_section = "FRAME   ",
                            boundary_section = "BOUNDARY", boundary_values_section = "BVALUES ",
-                           field_section = "FIELD   ";
+                           field_section = "FIELD   ", cell_field_section = "CELLFLD ";
 
 constexpr std::uint32_t has_wide_points = 1, has_cells = 2, has_wide_cells = 4, has_ranks = 8; ///< bits of flags
 
@@ -184,6 +184,19 @@ std::vector<std::byte> encode_boundary_values_table(const std::vector<FieldEntry
         out.number(field.boundary_checksum);
         out.pad();
     }
+    return out.take();
+}
+
+std::vector<std::byte> encode_cell_field(const CellFieldEntry& field) {
+    ByteWriter out;
+    out.number(field.step);
+    out.number(static_cast<std::uint8_t>(field.type));
+    out.number(field.components);
+    out.number(std::uint16_t{0});
+    out.number(field.offset);
+    for (const std::uint32_t checksum : field.checksums) out.number(checksum);
+    out.text(field.name);
+    out.pad();
     return out.take();
 }
 
@@ -295,8 +308,6 @@ Result<void> decode_boundary_values(ByteCursor in, PackedDirectory& d) {
     return {};
 }
 
-constexpr std::size_t field_entry_bytes = 8 + 10 * 8 + 4; // with an empty name, without checksums
-
 /// `chunks`   of the file
 Result<void> decode_field(ByteCursor in, std::size_t chunks, PackedDirectory& d) {
     FieldEntry field;
@@ -331,6 +342,30 @@ Result<void> decode_field(ByteCursor in, std::size_t chunks, PackedDirectory& d)
     field.report.scale = storage.scale;
     field.report.unchanged = storage.unchanged;
     d.fields.push_back(std::move(field));
+    return {};
+}
+
+/// Needs the section of the grid.
+Result<void> decode_cell_field(ByteCursor in, std::uint64_t file_bytes, PackedDirectory& d) {
+    CellFieldEntry field;
+    in.into(field.step);
+    const auto type = scalar_type(in.number<std::uint8_t>());
+    in.into(field.components);
+    in.number<std::uint16_t>();
+    in.into(field.offset);
+    if (!type || field.components == 0 || !d.cell_ids)
+        return broken_directory(
+            "a cell field has a type or a number of components that there is not, or is in a file without "
+            "source cells");
+    field.type = *type;
+    if (d.user_cells > file_bytes / (field.components * size_of(field.type)))
+        return broken_directory(fmt::format("a cell field of {} cells has more bytes than the file", d.user_cells));
+    const std::uint64_t blocks = CellFieldEntry::blocks(field.bytes(d.user_cells));
+    if (in.left() / 4 < blocks) return broken_directory("a cell field has fewer checksums than blocks");
+    for (std::uint64_t i = 0; i < blocks; ++i) field.checksums.push_back(in.number<std::uint32_t>());
+    field.name = in.text();
+    if (!in.ok()) return broken_directory("a cell field ends early");
+    d.cell_fields.push_back(std::move(field));
     return {};
 }
 
@@ -374,12 +409,26 @@ Result<void> check_places(const PackedDirectory& d, std::uint64_t file_bytes) {
             if (!lies_within(field.boundary_offset, d.boundary->points * d.real_bytes(), file_bytes))
                 return outside("values of a field at the boundary");
     }
+    for (const CellFieldEntry& field : d.cell_fields)
+        if (!lies_within(field.offset, field.bytes(d.user_cells), file_bytes)) return outside("values of a cell field");
     for (const FieldEntry& field : d.fields) {
         std::uint64_t values_bytes = 0;
         for (const ChunkEntry& chunk : d.chunks) values_bytes += align_piece(d.values_bytes(chunk, field));
         if (!lies_within(field.ranges_offset, ranges_bytes, file_bytes) ||
             !lies_within(field.values_offset, values_bytes, file_bytes))
             return outside("values of a field");
+    }
+    return {};
+}
+
+Result<void> check_cell_fields(const PackedDirectory& d) {
+    for (std::size_t i = 0; i < d.cell_fields.size(); ++i) {
+        const CellFieldEntry& field = d.cell_fields[i];
+        if (field.step > d.fields.back().step || (i > 0 && field.step < d.cell_fields[i - 1].step))
+            return broken_directory("steps of cell fields do not ascend, or there is no such step");
+        for (std::size_t k = i; k-- > 0 && d.cell_fields[k].step == field.step;)
+            if (d.cell_fields[k].name == field.name)
+                return broken_directory(fmt::format("step {} has two cell fields of the same name", field.step));
     }
     return {};
 }
@@ -412,6 +461,7 @@ std::vector<std::byte> encode_directory(const PackedDirectory& directory) {
     add(chunk_section, encode_chunks(directory));
     if (directory.frame) add(frame_section, encode_frame(*directory.frame));
     for (const FieldEntry& field : directory.fields) add(field_section, encode_field(field));
+    for (const CellFieldEntry& field : directory.cell_fields) add(cell_field_section, encode_cell_field(field));
     if (!directory.boundary) return out;
     add(boundary_section, encode_boundary_entry(*directory.boundary));
     add(boundary_values_section, encode_boundary_values_table(directory.fields));
@@ -440,6 +490,9 @@ Result<PackedDirectory> decode_directory(std::span<const std::byte> bytes, std::
         } else if (name == field_section) {
             decoded = chunks ? decode_field(content, d.chunks.size(), d)
                              : broken_directory("a field stands before the chunks");
+        } else if (name == cell_field_section) {
+            decoded = grid ? decode_cell_field(content, file_bytes, d)
+                           : broken_directory("a cell field stands before the grid");
         } else if (name == boundary_section) {
             decoded = decode_boundary(content, d);
         } else if (name == boundary_values_section) {
@@ -449,6 +502,7 @@ Result<PackedDirectory> decode_directory(std::span<const std::byte> bytes, std::
     }
     if (!grid || !chunks) return broken_directory("the section of the grid or of the chunks is missing");
     if (auto ok = check_fields(d); !ok) return ok.error();
+    if (auto ok = check_cell_fields(d); !ok) return ok.error();
     if (d.boundary.has_value() != boundary_values.has_value())
         return broken_directory("the section of the boundary or that of its values is missing");
     if (boundary_values)
@@ -490,7 +544,7 @@ std::array<std::byte, packed_header_bytes> encode_packed_header() {
     std::array<std::byte, packed_header_bytes> bytes{};
     std::memcpy(bytes.data(), packed_magic.data(), packed_magic.size());
     put_number(bytes, 8, packed_major);
-    put_number(bytes, 10, packed_minor);
+    put_number(bytes, packed_minor_at, packed_minor);
     put_number(bytes, 12, packed_byte_order);
     put_number(bytes, 16, static_cast<std::uint32_t>(packed_header_bytes));
     put_number(bytes, identity_bytes, crc32c(std::span(bytes).first(identity_bytes)));
@@ -522,7 +576,7 @@ Result<DirectorySlot> decode_packed_header(std::span<const std::byte> bytes, std
         return invalid_data("its header is broken: the checksum differs");
     if (major != packed_major)
         return invalid_data(fmt::format("it has version {}.{} of the format, but this isotet reads {}.x", major,
-                                        number_at<std::uint16_t>(bytes, 10), packed_major));
+                                        number_at<std::uint16_t>(bytes, packed_minor_at), packed_major));
     std::optional<DirectorySlot> newest;
     for (std::size_t i = 0; i < packed_slots.size(); ++i) {
         const auto slot = decode_slot(bytes.subspan(packed_slots[i], packed_slot_bytes));

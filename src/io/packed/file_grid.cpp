@@ -1,6 +1,8 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "io/packed/file_grid.hpp"
 
+#include <fcntl.h>
+
 #include <algorithm>
 #include <atomic>
 #include <type_traits>
@@ -143,6 +145,23 @@ Result<std::shared_ptr<PackedStore>> PackedStore::open(std::shared_ptr<const Pac
     if (!headers) return headers.error();
     store->packed_.headers = *std::move(headers);
     return store;
+}
+
+std::uint64_t PackedStore::read_ahead(const FieldEntry& field) const {
+    const PackedDirectory& d = source().directory;
+    std::uint64_t asked = 0;
+    const auto ask = [&](std::uint64_t offset, std::uint64_t bytes) {
+        ::posix_fadvise(source().file.descriptor.number(), static_cast<off_t>(offset), static_cast<off_t>(bytes),
+                        POSIX_FADV_WILLNEED); // without it they are read later
+        asked += bytes;
+    };
+    std::uint64_t ranges = 0;
+    for (const ChunkEntry& chunk : d.chunks) ranges += d.ranges_bytes(chunk);
+    ask(field.ranges_offset, ranges);
+    const std::vector<std::uint64_t> offsets = values_offsets(d, field);
+    for (const std::size_t chunk : cache_.present(*topology_))
+        ask(offsets[chunk], d.values_bytes(d.chunks[chunk], field));
+    return asked;
 }
 
 /// Brings the chunks of a field.

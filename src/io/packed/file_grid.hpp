@@ -23,6 +23,9 @@ public:
     ChunkCache& cache() { return cache_; }
     const PackedSource& source() const { return cache_.source(); }
 
+    /// As PackedFile::read_ahead().
+    std::uint64_t read_ahead(const FieldEntry& field) const;
+
 private:
     PackedStore(std::shared_ptr<const PackedSource> source, std::uint64_t limit);
     friend class FileResidency;

@@ -7,6 +7,7 @@
 //   boundary      its points by packed number, their positions, triangles
 //   field, step   ranges and has_no_data of all clusters; then a piece a chunk: values, group ranges, gradients; then values at
 //                 the points of the boundary
+//   cell fields   the user's arrays
 //   directory     what is where, with checksums
 #pragma once
 
@@ -29,7 +30,7 @@ namespace isotet::io {
 constexpr std::string_view packed_magic = "isotetP\n";
 constexpr std::uint16_t packed_major = 1, packed_minor = 1;
 constexpr std::uint32_t packed_byte_order = 0x01020304;
-constexpr std::size_t packed_header_bytes = 4096;
+constexpr std::size_t packed_header_bytes = 4096, packed_minor_at = 10;
 constexpr std::array<std::size_t, 2> packed_slots{512, 1024}; ///< a sector each: written at once
 constexpr std::size_t packed_slot_bytes = 40;
 constexpr std::uint64_t piece_alignment = 64;
@@ -80,6 +81,21 @@ struct FieldEntry {
     std::uint32_t boundary_checksum = 0;
 };
 
+constexpr std::size_t cell_block_bytes = std::size_t{1} << 20; ///< that a checksum is of
+
+/// A field of the user's cells, from a step on until there is another of this name.
+struct CellFieldEntry {
+    std::string name;
+    std::uint32_t step = 0;
+    ScalarType type = ScalarType::float32;
+    std::uint8_t components = 1;
+    std::uint64_t offset = 0;
+    std::vector<std::uint32_t> checksums; ///< a block
+
+    std::uint64_t bytes(std::uint64_t user_cells) const { return user_cells * components * size_of(type); }
+    static std::uint64_t blocks(std::uint64_t bytes) { return (bytes + cell_block_bytes - 1) / cell_block_bytes; }
+};
+
 /// What a packed file holds.
 struct PackedDirectory {
     Precision precision = Precision::float32;
@@ -95,6 +111,7 @@ struct PackedDirectory {
     std::vector<ChunkEntry> chunks;
     std::optional<BoundaryEntry> boundary; ///< since version 1.1
     std::vector<FieldEntry> fields;
+    std::vector<CellFieldEntry> cell_fields; ///< by step; since version 1.1; source cells are there
 
     std::size_t real_bytes() const { return precision == Precision::float32 ? 4 : 8; }
     std::uint64_t count(Unit unit) const { return counts[static_cast<std::size_t>(unit)]; }

@@ -16,6 +16,7 @@
 #include "io/files/crc32c.hpp"
 #include "io/files/text_scanner.hpp"
 #include "io/packed/boundary_piece.hpp"
+#include "io/packed/cell_fields.hpp"
 #include "io/packed/file_grid.hpp"
 
 namespace isotet {
@@ -37,7 +38,7 @@ PackedFileInfo info_of(const io::PackedSource& source) {
     const io::PackedDirectory& d = source.directory;
     PackedFileInfo info;
     info.major = io::packed_major;
-    info.minor = io::packed_minor;
+    info.minor = source.minor;
     info.file_bytes = source.file.size;
     info.precision = d.precision;
     info.point_type = d.point_type;
@@ -53,6 +54,8 @@ PackedFileInfo info_of(const io::PackedSource& source) {
         if (field.step == info.times.size() && !std::isnan(field.time)) info.times.push_back(field.time);
         info.fields.push_back({field.step, field.type, field.report, field.gradients});
     }
+    for (const io::CellFieldEntry& field : d.cell_fields)
+        info.cell_fields.push_back({field.step, field.name, field.type, field.components});
     if (info.times.size() < info.steps) info.times.clear();
     return info;
 }
@@ -157,6 +160,25 @@ Result<PackedGrid> PackedFile::load(std::string_view field, std::size_t step, co
     });
 }
 
+Result<Field> PackedFile::cell_field(std::string_view name, std::size_t step, const Run& run) const {
+    return core::carry_out("reading a packed file", run, [&](const Progress& progress) -> Result<Field> {
+        const io::PackedDirectory& directory = data_->source->directory;
+        const io::CellFieldEntry* const entry = io::find_cell_field(directory, name, step);
+        if (entry && step < data_->info.steps) {
+            Result<Array> values = io::read_cell_field(*data_->source, *entry, progress);
+            if (!values) return values.error();
+            return Field{entry->name, *std::move(values)};
+        }
+        std::vector<std::string> names;
+        for (const io::CellFieldEntry* const field : io::cell_fields_at(directory, step)) names.push_back(field->name);
+        names = nearest_first(name, std::move(names));
+        for (std::string& one : names) one = io::in_quotes(one);
+        return invalid_argument(fmt::format("cell field {} is not in the file at step {}, which has {}",
+                                            io::in_quotes(name), step,
+                                            names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+    });
+}
+
 Result<void> PackedFile::check(const Run& run) const {
     return core::carry_out("checking a packed file", run, [&](const Progress& progress) -> Result<void> {
         std::shared_ptr<const core::Packed> first;
@@ -168,8 +190,16 @@ Result<void> PackedFile::check(const Run& run) const {
             if (auto ok = check_boundary_values(*data_->source, entry, **packed); !ok) return ok;
             if (!first) first = *std::move(packed);
         }
+        for (const io::CellFieldEntry& field : data_->source->directory.cell_fields)
+            if (auto read = io::read_cell_field(*data_->source, field, progress); !read) return read.error();
         return {};
     });
+}
+
+std::uint64_t PackedFile::read_ahead(std::string_view field, std::size_t step) const {
+    const auto entry = data_->find(field, step);
+    const std::lock_guard lock(data_->mutex);
+    return entry && data_->store ? data_->store->read_ahead(**entry) : 0;
 }
 
 ResidencyReport PackedFile::residency() const {

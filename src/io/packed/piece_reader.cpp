@@ -152,6 +152,7 @@ Result<std::shared_ptr<const PackedSource>> PackedSource::open(const std::string
     const Result<DirectorySlot> slot = decode_packed_header(header, source->file.size, &source->slot_place);
     if (!slot) return source->in_file(slot.error());
     source->slot = *slot;
+    std::memcpy(&source->minor, header.data() + packed_minor_at, sizeof source->minor);
     core::Buffer<std::byte> bytes(slot->bytes);
     const std::span<std::byte> all(bytes.data(), bytes.size());
     if (auto ok = source->read(slot->offset, all); !ok) return ok.error();

@@ -27,6 +27,7 @@ struct PackedSource {
     PackedDirectory directory;
     DirectorySlot slot;         ///< that holds
     std::size_t slot_place = 0; ///< the first or the second
+    std::uint16_t minor = 0;    ///< version of the writer that began the file
     mutable std::atomic<std::uint64_t> bytes_read{0}, reads{0};
 
     /// Reads header and directory.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <span>
 #include <utility>
 
 #include <fmt/core.h>
@@ -11,9 +12,12 @@
 #include <isotet/component_groups.hpp>
 #include <isotet/packed_file.hpp>
 
+#include "base/buffer.hpp"
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
+#include "io/packed/cell_fields.hpp"
 #include "io/packed/file_grid.hpp"
+#include "packed/source_cells.hpp"
 
 namespace isotet::io {
 
@@ -55,6 +59,8 @@ FileInfo file_info_of(const PackedDirectory& directory, std::size_t step) {
     }
     for (const UserField& field : user_fields(directory, step))
         info.fields.push_back({field.name, Association::point, field.parts.front()->type, field.parts.size()});
+    for (const CellFieldEntry* const field : cell_fields_at(directory, step))
+        info.fields.push_back({field->name, Association::cell, field->type, field->components});
     if (steps == 1 && directory.fields.front().time != directory.fields.front().time) info.times.clear();
     return info;
 }
@@ -80,12 +86,38 @@ std::uint64_t unpacked_bytes(const PackedDirectory& d, std::size_t step) {
     return bytes;
 }
 
+/// Tuples of an array.
+Array gathered(const Array& values, std::span<const std::uint64_t> numbers) {
+    const std::size_t components = values.components();
+    return values.visit([&]<class T>(std::span<const T> scalars) {
+        core::Buffer<T> out(numbers.size() * components);
+        core::parallel_each(numbers.size(), 1 << 14, [&](std::size_t i) {
+            std::copy_n(scalars.data() + numbers[i] * components, components, out.data() + i * components);
+        });
+        return std::move(out).to_array(components);
+    });
+}
+
 /// One field of its parts.
 Result<Field> joined(const std::string& name, std::vector<Field> parts) {
     if (parts.size() == 1) return std::move(parts.front());
     std::vector<std::string> names;
     for (const Field& part : parts) names.push_back(part.name);
     return gather_components(parts, name, names);
+}
+
+/// Of the unpacked cells.
+Result<void> take_cell_fields(const PackedSource& source, std::size_t step, const core::Packed& packed,
+                              const ReadOptions& options, Grid& grid, const Progress& progress) {
+    Array cells;
+    for (const CellFieldEntry* const field : cell_fields_at(source.directory, step)) {
+        if (!wanted(options, Association::cell, field->name)) continue;
+        const Result<Array> values = read_cell_field(source, *field, progress);
+        if (!values) return values.error();
+        if (cells.empty()) cells = core::source_cells_of(packed);
+        grid.cell_fields.push_back({field->name, gathered(*values, cells.as<std::uint64_t>())});
+    }
+    return {};
 }
 
 using LoadField = std::function<Result<std::shared_ptr<const core::Packed>>(const FieldEntry&)>;
@@ -115,12 +147,14 @@ Result<ReadResult> read_isotet(const std::string& path, const ReadOptions& optio
     if (!step) return step.error();
     result.step = *step;
     const Run run{core::threads_here(), progress};
-    if (options.some_cells == 0)
+    // Cell fields are by the user's cells, which a sample does not tell.
+    const bool some = options.some_cells > 0 && (!options.cell_fields || options.cell_fields->empty());
+    if (!some)
         if (auto fits =
                 core::require_memory(fmt::format("all of {}, unpacked,", path), unpacked_bytes(directory, *step));
             !fits)
             return fits.error();
-    const auto load = loader(*source, options.some_cells > 0, progress);
+    const auto load = loader(*source, some, progress);
     if (!load) return load.error();
     std::shared_ptr<const core::Packed> cells;
     std::vector<Field> fields;
@@ -144,7 +178,7 @@ Result<ReadResult> read_isotet(const std::string& path, const ReadOptions& optio
         if (!packed) return packed.error();
         cells = *packed;
     }
-    if (options.some_cells > 0) {
+    if (some) {
         Result<UnpackedSample> sample = unpack_sample(PackedGrid(cells), options.some_cells, run);
         if (!sample) return sample.error();
         result.grid = std::move(sample->grid);
@@ -153,6 +187,8 @@ Result<ReadResult> read_isotet(const std::string& path, const ReadOptions& optio
         Result<Grid> grid = unpack(PackedGrid(cells), run);
         if (!grid) return grid.error();
         result.grid = *std::move(grid);
+        if (auto taken = take_cell_fields(**source, *step, *cells, options, result.grid, progress); !taken)
+            return taken.error();
     }
     result.grid.point_fields = std::move(fields);
     return result;

@@ -17,6 +17,7 @@
 #include "io/files/text_scanner.hpp"
 #include "io/packed/appended_file.hpp"
 #include "io/packed/boundary_piece.hpp"
+#include "io/packed/cell_fields.hpp"
 #include "io/packed/chunk_places.hpp"
 #include "io/packed/directory.hpp"
 #include "packed/residency.hpp"
@@ -30,6 +31,7 @@ namespace {
 using core::ClusterHeader;
 using core::Packed;
 
+constexpr std::size_t most_components = 9; ///< of a cell field
 constexpr std::uint32_t most_chunk_bytes = std::uint32_t{1} << 24;
 
 /// Chunks end where their topology has `chunk_bytes` or more.
@@ -124,6 +126,7 @@ public:
     Result<void> compare_cells() const;
     void take_boundary(std::vector<std::uint64_t> points) { boundary_points_ = std::move(points); }
     Result<void> write_field(const Packed& packed, std::uint32_t step, std::optional<double> time);
+    Result<void> write_cell_field(const Field& field);
     Result<std::uint64_t> finish();
     std::uint32_t last_step() const { return directory_.fields.back().step; }
     double last_time() const { return directory_.fields.back().time; }
@@ -342,6 +345,32 @@ Result<void> PackedOutput::write_field(const Packed& packed, std::uint32_t step,
     return {};
 }
 
+/// Of the last step.
+Result<void> PackedOutput::write_cell_field(const Field& field) {
+    const Array& values = field.values;
+    if (!directory_.cell_ids)
+        return invalid_argument(
+            fmt::format("cell field {} needs a grid that was packed with source cells, but this one was not",
+                        in_quotes(field.name)));
+    if (values.tuples() != directory_.user_cells || values.components() < 1 || values.components() > most_components)
+        return invalid_argument(fmt::format(
+            "cell field {} has {} tuples of {} components, but the grid has {} cells, and 1 to "
+            "{} components are packed",
+            in_quotes(field.name), values.tuples(), values.components(), directory_.user_cells, most_components));
+    CellFieldEntry entry{field.name,    last_step(),
+                         values.type(), static_cast<std::uint8_t>(values.components()),
+                         bytes(),       block_checksums(values)};
+    const CellFieldEntry* const before = find_cell_field(directory_, field.name, last_step());
+    if (before && before->step == last_step())
+        return invalid_argument(fmt::format("step {} has cell field {} already", last_step(), in_quotes(field.name)));
+    const bool same = before && before->type == entry.type && before->components == entry.components &&
+                      before->checksums == entry.checksums;
+    if (same) return {};
+    if (auto ok = write({static_cast<const std::byte*>(values.data()), values.bytes()}); !ok) return ok;
+    directory_.cell_fields.push_back(std::move(entry));
+    return align();
+}
+
 Result<std::uint64_t> PackedOutput::finish() {
     const std::vector<std::byte> directory = encode_directory(directory_);
     DirectorySlot slot{1, bytes(), directory.size(), bytes() + directory.size(), crc32c(directory)};
@@ -418,6 +447,13 @@ Result<void> PackedWriter::add_step(const PackedGrid& packed, std::optional<doub
     return core::guarded("saving a step", [&]() -> Result<void> {
         if (!data_) return moved_from("the writer");
         return data_->output.write_field(packed.data(), data_->output.last_step() + 1, time);
+    });
+}
+
+Result<void> PackedWriter::add_cell_field(const Field& field) {
+    return core::guarded("saving a cell field", [&]() -> Result<void> {
+        if (!data_) return moved_from("the writer");
+        return data_->output.write_cell_field(field);
     });
 }
 
