@@ -90,24 +90,41 @@ Result<void> PackRun::look_at_file() {
 
 /// What a field is packed as: a vector as its components and its magnitude.
 std::vector<std::string> PackRun::packed_names(const std::string& name) const {
-    const bool is_vector = !job_.cell_field && std::ranges::any_of(source_->info().fields, [&](const FieldInfo& field) {
-        return field.name == name && field.association == Association::point && field.components == 3;
-    });
+    const bool is_vector =
+        !job_.cell_field && !job_.scalars_only &&
+        std::ranges::any_of(source_->info().fields, [&](const FieldInfo& field) {
+            return field.name == name && field.association == Association::point && field.components == 3;
+        });
     return is_vector ? packed_names_of_vector(name) : std::vector<std::string>{name};
 }
 
-/// All point fields that can be packed; the others are named.
+/// Takes all point fields that can be packed, or else the one that is shown first; the others are named.
 Result<void> PackRun::take_all_fields() {
     if (auto looked = source_->look_at_steps({steps_.front()}, caller_); !looked) return looked;
-    std::vector<std::string> left_out;
+    std::vector<FieldInfo> others;
     for (const FieldInfo& field : source_->info().fields) {
         const bool of_points = field.association == Association::point;
-        if (of_points && (field.components == 1 || field.components == 3)) add_names(names_, packed_names(field.name));
+        if (of_points && (field.components == 1 || (field.components == 3 && !job_.scalars_only)))
+            add_names(names_, packed_names(field.name));
         else if (std::ranges::find(job_.cell_fields, field.name) == job_.cell_fields.end() || of_points)
-            left_out.push_back(fmt::format("'{}' ({})", field.name,
-                                           of_points ? fmt::format("{} components", field.components) : "of cells"));
+            others.push_back(field);
     }
-    if (!left_out.empty())
+    if (names_.empty()) {
+        const auto first = choose_first(*source_, job_.grid, {Steps::one, {}, {}, true, true}, caller_, caller_.run());
+        if (!first) return first.error();
+        if (first->view.field.empty())
+            return refusal("the grid has no field to pack with; `fields` x packs a coordinate");
+        names_ = {first->view.field};
+        caller_.note(note_of(first->view));
+        std::erase_if(others, [&](const FieldInfo& field) { return field.name == names_.front(); });
+    }
+    std::vector<std::string> left_out;
+    for (const FieldInfo& field : others)
+        left_out.push_back(fmt::format("'{}' ({})", field.name,
+                                       field.association == Association::point
+                                           ? fmt::format("{} components", field.components)
+                                           : std::string("of cells")));
+    if (!left_out.empty() && !job_.scalars_only)
         caller_.note(fmt::format("not packed: {}; `fields` takes components, `cell_fields` fields of cells",
                                  fmt::join(left_out, ", ")));
     return {};
@@ -134,15 +151,7 @@ Result<void> PackRun::choose_names() {
     auto named = choose_field_names(*source_, job_.fields, choice({}));
     if (!named) return named.error();
     for (const std::string& name : *named) add_names(names_, packed_names(name));
-    if (!names_.empty()) return {};
-    if (auto taken = take_all_fields(); !taken) return taken;
-    if (!names_.empty()) return {};
-    const auto first = choose_first(*source_, job_.grid, {Steps::one, {}, {}, true, true}, caller_, caller_.run());
-    if (!first) return first.error();
-    if (first->view.field.empty()) return refusal("the grid has no field to pack with; `fields` x packs a coordinate");
-    names_ = {first->view.field};
-    caller_.note(note_of(first->view));
-    return {};
+    return names_.empty() ? take_all_fields() : Result<void>();
 }
 
 /// The step as the session has it: packed once, with another field where only that is new.
@@ -159,8 +168,9 @@ Result<PackedGrid> PackRun::packed_with(const Grid& grid, PointField field, std:
         if (!started) return started.error();
         contour_ = *std::move(started);
         if (contour_->linear_grid() && job_.source_cells)
-            return refusal("`source_cells` of polyhedra and quadratic cells are not kept in packed files: these cells are "
-                           "split first");
+            return refusal(
+                "`source_cells` of polyhedra and quadratic cells are not kept in packed files: these cells are "
+                "split first");
     } else {
         const Result<ContourUpdate> update = contour_->set(std::move(input), caller_.run());
         if (!update) return update.error();
@@ -183,9 +193,8 @@ Result<void> PackRun::write(const PackedGrid& packed, std::size_t step, bool fir
     if (!writer_) {
         SavePackedOptions options;
         options.time = time;
-        Result<PackedWriter> writer = job_.append
-                                          ? PackedWriter::append(packed, job_.out, time, caller_.run())
-                                          : PackedWriter::create(packed, job_.out, options, caller_.run());
+        Result<PackedWriter> writer = job_.append ? PackedWriter::append(packed, job_.out, time, caller_.run())
+                                                  : PackedWriter::create(packed, job_.out, options, caller_.run());
         if (!writer) return writer.error();
         writer_ = *std::move(writer);
     } else {

@@ -175,5 +175,25 @@ TEST(PackFile, SurfacesCarryCellFieldsAsThoseOfTheGrid) {
     EXPECT_FALSE(pack_file(missing, listener)) << "it is no cell field";
 }
 
+TEST(PackFile, NamesNoFieldAsLeftOutThatItPacks) {
+    const test::TemporaryFolder folder;
+    Grid grid = make_grid({.shape = "hex", .side = 4, .fields = {"sphere"}}).value();
+    grid.point_fields.clear();
+    for (const char* name : {"p", "T"}) {
+        std::vector<float> values;
+        for (std::size_t i = 0; i < grid.cells.count(); ++i) values.push_back(static_cast<float>(i));
+        grid.cell_fields.push_back({name, Array::own(std::move(values))});
+    }
+    const std::string plain = folder.file("cells.vtu");
+    write_grid(grid, plain).value();
+    Listener listener;
+    const PackedFile file = PackedFile::open(packed(plain, folder, listener)).value();
+    ASSERT_EQ(file.info().fields.size(), 1U);
+    const std::string taken = file.info().fields[0].report.name, left_out = taken == "p" ? "T" : "p";
+    ASSERT_EQ(listener.noted.size(), 2U);
+    EXPECT_EQ(listener.noted[1], "not packed: '" + left_out +
+                                     "' (of cells); `fields` takes components, `cell_fields` fields of cells");
+}
+
 } // namespace
 } // namespace isotet::jobs

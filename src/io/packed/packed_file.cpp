@@ -60,26 +60,25 @@ PackedFileInfo info_of(const io::PackedSource& source) {
     return info;
 }
 
-/// The boundary in the file against that of the cells.
-Result<void> check_boundary(const io::PackedSource& source, const core::Packed& packed, const Progress& progress) {
-    if (!source.directory.boundary) return {};
-    if (const auto stored = io::read_boundary(source); !stored) return stored.error();
+/// The boundary in the file against that of the cells. Its points.
+Result<std::vector<std::uint64_t>> check_boundary(const io::PackedSource& source, const core::Packed& packed,
+                                                  const Progress& progress) {
+    auto stored = io::read_boundary(source);
+    if (!stored) return stored.error();
     const auto found = core::find_boundary(packed, progress);
     if (!found) return found.error();
     const io::BoundaryEntry& entry = *source.directory.boundary;
-    const bool same = entry.points == found->points.size() && entry.triangles == found->triangles.tuples() &&
-                      entry.checksum == io::crc32c(io::encode_boundary(packed, *found));
-    return same ? Result<void>() : source.in_file(invalid_data("the boundary is broken: it is not that of the cells"));
+    if (entry.points != found->points.size() || entry.triangles != found->triangles.tuples() ||
+        entry.checksum != io::crc32c(io::encode_boundary(packed, *found)))
+        return source.in_file(invalid_data("the boundary is broken: it is not that of the cells"));
+    return std::move(stored->points);
 }
 
-/// Values of a field at the boundary against those of the points.
+/// Values of a field at the points of the boundary against those of the grid.
 Result<void> check_boundary_values(const io::PackedSource& source, const io::FieldEntry& field,
-                                   const core::Packed& packed) {
-    if (!source.directory.boundary) return {};
-    const auto boundary = io::read_boundary(source);
-    if (!boundary) return boundary.error();
+                                   const core::Packed& packed, const std::vector<std::uint64_t>& points) {
     if (const auto values = io::read_boundary_values(source, field); !values) return values.error();
-    if (io::crc32c(io::encode_boundary_values(packed, boundary->points)) == field.boundary_checksum) return {};
+    if (io::crc32c(io::encode_boundary_values(packed, points)) == field.boundary_checksum) return {};
     return source.in_file(invalid_data(fmt::format(
         "the boundary is broken: the values of {} there are not those of the points", io::in_quotes(field.name))));
 }
@@ -181,13 +180,19 @@ Result<Field> PackedFile::cell_field(std::string_view name, std::size_t step, co
 
 Result<void> PackedFile::check(const Run& run) const {
     return core::carry_out("checking a packed file", run, [&](const Progress& progress) -> Result<void> {
+        const io::PackedSource& source = *data_->source;
         std::shared_ptr<const core::Packed> first;
-        for (const io::FieldEntry& entry : data_->source->directory.fields) {
-            auto packed = io::whole_grid_of_file(*data_->source, entry, first.get(), progress);
+        std::optional<std::vector<std::uint64_t>> boundary; ///< its points, where the file has it
+        for (const io::FieldEntry& entry : source.directory.fields) {
+            auto packed = io::whole_grid_of_file(source, entry, first.get(), progress);
             if (!packed) return packed.error();
-            if (!first)
-                if (auto ok = check_boundary(*data_->source, **packed, progress); !ok) return ok;
-            if (auto ok = check_boundary_values(*data_->source, entry, **packed); !ok) return ok;
+            if (!first && source.directory.boundary) {
+                auto points = check_boundary(source, **packed, progress);
+                if (!points) return points.error();
+                boundary = *std::move(points);
+            }
+            if (boundary)
+                if (auto ok = check_boundary_values(source, entry, **packed, *boundary); !ok) return ok;
             if (!first) first = *std::move(packed);
         }
         for (const io::CellFieldEntry& field : data_->source->directory.cell_fields)

@@ -73,16 +73,19 @@ Result<FileInfo> inspect_isotet(const std::string& path, const ReadOptions& opti
     return info;
 }
 
-/// What a step takes as a grid: the arrays beside the packed ones that they are made of.
-std::uint64_t unpacked_bytes(const PackedDirectory& d, std::size_t step) {
+/// What a step with the fields that are asked for takes as a grid: the arrays beside the packed ones that they are made of.
+std::uint64_t unpacked_bytes(const PackedDirectory& d, std::size_t step, const ReadOptions& options) {
     const PackReport& cells = d.report;
     const std::uint64_t corners = 4 * cells.tets + 5 * cells.pyramids + 6 * cells.wedges + 8 * cells.hexahedra;
     const std::uint64_t others = cells.pyramids + cells.wedges + cells.hexahedra;
     std::uint64_t bytes = bytes_of_whole(d, d.fields.front()) +
                           corners * (d.user_points < (std::uint64_t{1} << 31) ? 4 : 8) +
                           (others ? (others + cells.tets) * 9 : 0) + 3 * d.user_points * size_of(d.point_type);
-    for (const FieldEntry& field : d.fields)
-        if (field.step == step) bytes += d.user_points * size_of(field.type);
+    for (const UserField& field : user_fields(d, step))
+        if (wanted(options, Association::point, field.name))
+            bytes += d.user_points * field.parts.size() * size_of(field.parts.front()->type);
+    for (const CellFieldEntry* const field : cell_fields_at(d, step))
+        if (wanted(options, Association::cell, field->name)) bytes += field->bytes(cells.tets + others);
     return bytes;
 }
 
@@ -151,7 +154,7 @@ Result<ReadResult> read_isotet(const std::string& path, const ReadOptions& optio
     const bool some = options.some_cells > 0 && (!options.cell_fields || options.cell_fields->empty());
     if (!some)
         if (auto fits =
-                core::require_memory(fmt::format("all of {}, unpacked,", path), unpacked_bytes(directory, *step));
+                core::require_memory(fmt::format("all of {}, unpacked,", path), unpacked_bytes(directory, *step, options));
             !fits)
             return fits.error();
     const auto load = loader(*source, some, progress);
