@@ -58,6 +58,7 @@ struct CheckOptions {
                                 ///< cells; needs surface.edge_ends
     const PointField* field = nullptr; ///< with `grid`: cells with a corner of no data are not valid
     bool split_cells = false;          ///< with `grid`: the surface was made with PackOptions::split_cells
+    bool conforming = false;           ///< with `grid`: it has no hanging points, which are not looked for
     bool weld = false;                 ///< weld first: by edge ends where there are some (pieces), else by exact
                                        ///< coordinates (STL)
     int max_findings = 5;              ///< of each kind

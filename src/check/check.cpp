@@ -194,7 +194,8 @@ private:
             if (const auto set = grid_points<2>({edge.low, edge.high})) sets.push_back(*set);
         for (const Repeat& repeat : lists_.duplicate_list)
             if (const auto set = grid_points<3>(mesh_.corners(repeat.triangle))) sets.push_back(*set);
-        const auto faces = GridFaces::find(*options_.grid, options_.field, options_.split_cells, sets, progress_);
+        const auto faces = GridFaces::find(*options_.grid, options_.field, options_.split_cells,
+                                            options_.conforming, sets, progress_);
         if (!faces) return faces.error();
 
         for (const EdgeUse& edge : lists_.unequal_edges) {

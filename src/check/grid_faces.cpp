@@ -206,7 +206,7 @@ bool PointSet::add(std::uint64_t point) {
     return true;
 }
 
-Result<GridFaces> GridFaces::find(const Grid& grid, const PointField* field, bool split_cells,
+Result<GridFaces> GridFaces::find(const Grid& grid, const PointField* field, bool split_cells, bool conforming,
                                   const std::vector<PointSet>& sets, const Progress& progress) {
     const auto cells = core::CellReader::open(grid);
     if (!cells) return cells.error();
@@ -243,7 +243,7 @@ Result<GridFaces> GridFaces::find(const Grid& grid, const PointField* field, boo
         if (forward != backward) boundary.push_back(all[begin].around);
     }
     for (const auto& around : boundary) faces.boundary_.add(around);
-    if (!boundary.empty()) {
+    if (!boundary.empty() && !conforming) {
         const auto hanging = core::find_hanging(grid, *cells, progress);
         if (!hanging) return hanging.error();
         for (const auto& around : boundary)

@@ -50,9 +50,10 @@ class GridFaces {
 public:
     /// `field`         null: every cell is valid
     /// `split_cells`   as PackOptions::split_cells
+    /// `conforming`    no faces are looked for that lie on one another
     ///
     /// Errors    invalid_data as survey(); invalid_argument when the field does not fit the grid; cancelled
-    static Result<GridFaces> find(const Grid& grid, const PointField* field, bool split_cells,
+    static Result<GridFaces> find(const Grid& grid, const PointField* field, bool split_cells, bool conforming,
                                   const std::vector<PointSet>& sets, const Progress& progress);
 
     /// True when some face that the cells do not use equally often in its two directions has all points of the set.

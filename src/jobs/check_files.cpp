@@ -176,6 +176,7 @@ Result<CheckedFiles> check_files(const CheckJob& job, Caller& caller) {
         const Result<bool> found = has_hanging_points_on_curved_cells(read->grid, caller.run());
         if (!found) return found.error();
         hangs = *found;
+        options.conforming = curved && !hangs; // of refined cells only those near the isovalues are kept
         read = refined_origin(*std::move(read), job, *file, caller.run());
         if (!read) return read.error();
         origin = *std::move(read);

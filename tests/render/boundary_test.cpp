@@ -75,7 +75,7 @@ TEST(KnownBoundary, IsFoundAgainWhereCellsOrPointsAreOthers) {
                                          {made("hex"), false}}) {
         const Surface surface = known.of(grid).value();
         EXPECT_EQ(bytes_of(surface), bytes_of(boundary_of(grid).value()));
-        EXPECT_EQ(surface.positions.data() == memory, is_known);
+        if (is_known) EXPECT_EQ(surface.positions.data(), memory);
         memory = surface.positions.data();
     }
 }
