@@ -70,7 +70,8 @@ Place bent(Place p) {
     return {radius * std::cos(angle), radius * std::sin(angle), p[2]};
 }
 
-SurfaceReport report_of(const Grid& grid, double isovalue, bool split_cells = false) {
+SurfaceReport report_of(const Grid& grid, double isovalue, bool split_cells = false,
+                        bool conforming = false) {
     std::vector<double> heights;
     for (std::size_t i = 0; i < grid.points.tuples(); ++i) heights.push_back(grid.points.at(i, 2));
     const PointField field{"height", Array::own(std::move(heights)), false, {}};
@@ -78,7 +79,8 @@ SurfaceReport report_of(const Grid& grid, double isovalue, bool split_cells = fa
     options.edge_ends = true;
     options.split_cells = split_cells;
     const auto result = Contour::create({grid, field, {}, {}}, options).value().extract(isovalue).value();
-    return check(result.surfaces[0].surface, {.grid = &grid, .field = &field, .split_cells = split_cells}).value();
+    CheckOptions how{.grid = &grid, .field = &field, .split_cells = split_cells, .conforming = conforming};
+    return check(result.surfaces[0].surface, how).value();
 }
 
 std::uint64_t hanging_points(const Grid& grid) { return count_hanging_points(grid).value(); }
@@ -126,6 +128,17 @@ TEST(HangingPoints, OpenTheSurfaceWhichIsThenNotClean) {
         EXPECT_TRUE(closed.clean);
     }
     EXPECT_EQ(report_of(grid_of_cubes(coarse_and_fine(2)), 0.7).hanging_edges, 3u);
+}
+
+/// As of curved cells, of which only those near the isovalues are kept: their rims are no levels.
+TEST(HangingPoints, AreNotLookedForInAGridThatConforms) {
+    const Grid grid = grid_of_cubes(coarse_and_fine(2));
+    const SurfaceReport levels = report_of(grid, 0.7), conforming = report_of(grid, 0.7, false, true);
+    EXPECT_GT(levels.hanging_edges, 0u);
+    EXPECT_EQ(conforming.hanging_edges, 0u);
+    EXPECT_EQ(conforming.boundary_edges, levels.boundary_edges);
+    EXPECT_TRUE(conforming.sound);
+    EXPECT_TRUE(conforming.clean);
 }
 
 } // namespace
