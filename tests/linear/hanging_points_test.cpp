@@ -404,7 +404,9 @@ TEST(KnownClosing, GivesWhatTheLastGridGaveWhereCellsAndPointsAreTheSame) {
             ASSERT_EQ(a->bytes(), b->bytes());
             EXPECT_EQ(std::memcmp(a->data(), b->data(), a->bytes()), 0);
         }
-        if (is_known && expected.report.cells > 0) EXPECT_EQ(closed.grid.cells.connectivity.data(), memory);
+        if (is_known && expected.report.cells > 0) {
+            EXPECT_EQ(closed.grid.cells.connectivity.data(), memory);
+        }
         memory = closed.grid.cells.connectivity.data();
     }
 }

@@ -75,7 +75,9 @@ TEST(KnownBoundary, IsFoundAgainWhereCellsOrPointsAreOthers) {
                                          {made("hex"), false}}) {
         const Surface surface = known.of(grid).value();
         EXPECT_EQ(bytes_of(surface), bytes_of(boundary_of(grid).value()));
-        if (is_known) EXPECT_EQ(surface.positions.data(), memory);
+        if (is_known) {
+            EXPECT_EQ(surface.positions.data(), memory);
+        }
         memory = surface.positions.data();
     }
 }
