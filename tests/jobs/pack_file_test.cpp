@@ -60,8 +60,8 @@ TEST(PackFile, PacksVectorsAsComponentsAndNamesWhatIsNotPacked) {
     EXPECT_EQ(listener.noted[0], "not packed: 'stress' (9 components), 'region' (of cells); `fields` takes components, "
                                  "`cell_fields` fields of cells");
     std::vector<std::string> names;
-    for (const PackedFieldInfo& field : PackedFile::open(path).value().info().fields)
-        names.push_back(field.report.name);
+    const PackedFile file = PackedFile::open(path).value();
+    for (const PackedFieldInfo& field : file.info().fields) names.push_back(field.report.name);
     EXPECT_EQ(names, (std::vector<std::string>{"gyroid", "U:x", "U:y", "U:z", "U:mag"}));
     const ReadResult read = isotet::read(path).value(), original = isotet::read(grid).value();
     ASSERT_EQ(read.info.fields.size(), 2u);

@@ -402,7 +402,9 @@ TEST(KnownClosing, GivesWhatTheLastGridGaveWhereCellsAndPointsAreTheSame) {
         for (const auto& [a, b] : {std::pair{&closed.grid.cells.connectivity, &expected.grid.cells.connectivity},
                                    {&closed.grid.cells.faces, &expected.grid.cells.faces}}) {
             ASSERT_EQ(a->bytes(), b->bytes());
-            EXPECT_EQ(std::memcmp(a->data(), b->data(), a->bytes()), 0);
+            if (a->bytes() > 0) {
+                EXPECT_EQ(std::memcmp(a->data(), b->data(), a->bytes()), 0);
+            }
         }
         if (is_known && expected.report.cells > 0) {
             EXPECT_EQ(closed.grid.cells.connectivity.data(), memory);
