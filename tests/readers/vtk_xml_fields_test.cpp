@@ -392,6 +392,18 @@ TEST(VtkXmlCells, MustBeAsManyAsAreAnnounced) {
               "NumberOfCells is 1: the array 'types': it holds 2 values, but 1 are announced");
 }
 
+TEST(VtkXmlFields, AreSaidToHoldMoreThanIsAnnounced) {
+    const std::string too_many = array_of("Float32", "T", "1 2 3 4 5 6 7 8 9 10 11 12");
+    const std::string points = array_of("Float32", "Points", "0 0 0 1 0 0 0 1 0 0 0 1 7", "NumberOfComponents=\"3\"");
+    const io::Loaded file = loaded(vtu(Tet{.point_data = too_many, .points = points}.piece()));
+    EXPECT_EQ(point_values(file, "T"), (std::vector<double>{1, 2, 3, 4}));
+    EXPECT_EQ(file.notes, Names{"there are more values of points, 'T' than are announced: the first ones were read"});
+    const std::string five_bytes = array_of("UInt8", "T", "BQAAAAECAwQF", "format=\"binary\"");
+    EXPECT_EQ(loaded(vtu(Tet{.point_data = five_bytes}.piece())).notes.size(), 1u);
+    const std::string four_bytes = array_of("UInt8", "T", "BAAAAAECAwQ=", "format=\"binary\"");
+    EXPECT_EQ(loaded(vtu(Tet{.point_data = four_bytes}.piece())).notes.size(), 0u);
+}
+
 TEST(VtkXmlCells, PointsMayBeOfAnyType) {
     for (const auto& [type, read_as] : {std::pair{"Int32", ScalarType::float64},
                                         {"UInt8", ScalarType::float64},

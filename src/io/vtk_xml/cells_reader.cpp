@@ -292,7 +292,7 @@ private:
 
     static Result<void> read_types(const StoredArray& stored, Cells& cells) {
         auto types = filled_array(stored.array().type, static_cast<std::size_t>(stored.scalars()), 1,
-                                  [&](std::byte* to) { return stored.decode(to, StoredArray::Rest::is_error); });
+                                  [&](std::byte* to) { return stored.decode_all(to); });
         if (!types) return types.error();
         if (types->type() != ScalarType::uint8) {
             const bool fits = all_pieces(*types, [](std::uint64_t, auto values) {
@@ -328,7 +328,7 @@ private:
         const ScalarType type = stored.array().type;
         auto offsets = filled_array(type, static_cast<std::size_t>(count_) + 1, 1, [&](std::byte* to) {
             std::memset(to, 0, size_of(type));
-            return stored.decode(to + size_of(type), StoredArray::Rest::is_error);
+            return stored.decode_all(to + size_of(type));
         });
         if (!offsets) return offsets;
         return as_indices_of_cells(std::move(*offsets), "offsets");

@@ -192,37 +192,38 @@ Result<void> find_values(Document& document, const Layout& layout, const Progres
     return {};
 }
 
-/// The values of one piece in the type of the column.
-Result<void> decode_as(const StoredArray& stored, ScalarType type, std::byte* to) {
-    if (stored.array().type == type) return stored.decode(to);
+/// The values of one piece in the type of the column. Sets `more` where others stand behind them.
+Result<void> decode_as(const StoredArray& stored, ScalarType type, std::byte* to, bool& more) {
+    if (stored.array().type == type) return stored.decode(to, &more);
     const auto values = filled_array(stored.array().type, static_cast<std::size_t>(stored.scalars()), 1,
-                                     [&](std::byte* own) { return stored.decode(own); });
+                                     [&](std::byte* own) { return stored.decode(own, &more); });
     if (!values) return values.error();
     convert_scalars(*values, type, to);
     return {};
 }
 
-Result<Array> load_values(const Column& column, const Layout& layout) {
+Result<Array> load_values(const Column& column, const Layout& layout, bool& more) {
     const std::size_t components = column.components, tuple = components * size_of(column.type);
     bool missing = false;
     for (std::size_t piece = 0; piece < column.stored.size(); ++piece)
         missing = missing || (!column.stored[piece] && layout.tuples[piece] > 0);
-    return filled_array(
-        column.type, static_cast<std::size_t>(layout.total), components, [&](std::byte* to) -> Result<void> {
-            if (missing) fill_missing(column.type, static_cast<std::size_t>(layout.total) * components, to);
-            for (std::size_t piece = 0; piece < column.stored.size(); ++piece) {
-                const auto bytes = static_cast<std::size_t>(layout.tuples[piece] * tuple);
-                if (column.stored[piece]) {
-                    core::Buffer<std::byte> apart(layout.place ? bytes : 0);
-                    if (auto done = decode_as(*column.stored[piece], column.type, layout.place ? apart.data() : to);
-                        !done)
-                        return done;
-                    if (layout.place) layout.place(piece, apart.data(), to, tuple);
-                }
-                if (!layout.place) to += bytes;
-            }
-            return {};
-        });
+    return filled_array(column.type, static_cast<std::size_t>(layout.total), components,
+                        [&](std::byte* to) -> Result<void> {
+                            if (missing)
+                                fill_missing(column.type, static_cast<std::size_t>(layout.total) * components, to);
+                            for (std::size_t piece = 0; piece < column.stored.size(); ++piece) {
+                                const auto bytes = static_cast<std::size_t>(layout.tuples[piece] * tuple);
+                                if (column.stored[piece]) {
+                                    core::Buffer<std::byte> apart(layout.place ? bytes : 0);
+                                    std::byte* const own = layout.place ? apart.data() : to;
+                                    if (auto done = decode_as(*column.stored[piece], column.type, own, more); !done)
+                                        return done;
+                                    if (layout.place) layout.place(piece, apart.data(), to, tuple);
+                                }
+                                if (!layout.place) to += bytes;
+                            }
+                            return {};
+                        });
 }
 
 /// A column that is read, and what becomes of it.
@@ -231,6 +232,7 @@ struct Job {
     Association association;
     const Layout* layout;
     bool is_field = false, is_ghost = false, is_ids = false;
+    bool has_more = false; ///< values than there are points or cells
     Array values;
     std::optional<Error> error;
 };
@@ -249,7 +251,7 @@ void add_jobs(const Document& document, Association association, const Layout& l
     const Column* const ids =
         !wanted.ids ? nullptr : global_ids(columns, of_points ? std::span(point_id_names) : std::span(cell_id_names));
     for (Column& column : columns.columns) {
-        Job job{{}, association, &layout, false, false, &column == ids, {}, {}};
+        Job job{{}, association, &layout, false, false, &column == ids, false, {}, {}};
         job.is_ghost = is_ghost_array(column.name);
         job.is_field = !job.is_ghost && io::wanted(wanted.options, association, column.name);
         job.is_ghost = !of_points && (job.is_ghost || column.name == ghost_rank_name);
@@ -433,7 +435,10 @@ Result<Array> load_points(Document& document, const std::vector<pugi::xml_node>&
     unite_parts(column, layout, counts);
     column.type = with_missing(column.type); // integers become float64
     if (auto found = find_values(document, layout, progress, column); !found) return found.error();
-    return load_values(column, layout);
+    bool more = false;
+    auto values = load_values(column, layout, more);
+    if (more) document.longer.emplace_back("points");
+    return values;
 }
 
 Result<void> load_fields(Document& document, const Layouts& layouts, const Wanted& wanted, const Progress& progress,
@@ -445,7 +450,7 @@ Result<void> load_fields(Document& document, const Layouts& layouts, const Wante
         if (auto found = find_values(document, *job.layout, progress, job.column); !found) job.error = found.error();
     core::parallel_each(jobs.size(), 1, [&](std::size_t i) {
         if (jobs[i].error) return;
-        auto values = load_values(jobs[i].column, *jobs[i].layout);
+        auto values = load_values(jobs[i].column, *jobs[i].layout, jobs[i].has_more);
         if (values) jobs[i].values = std::move(*values);
         else jobs[i].error = values.error();
     });
@@ -455,6 +460,7 @@ Result<void> load_fields(Document& document, const Layouts& layouts, const Wante
                 loaded.notes.push_back(
                     fmt::format("{} value{} of {} {} beyond float32, the type of the array: infinite", count,
                                 count == 1 ? "" : "s", in_quotes(job.column.name), count == 1 ? "is" : "are"));
+            if (job.has_more) document.longer.push_back(in_quotes(job.column.name));
             give(job, piece);
             continue;
         }

@@ -46,6 +46,7 @@ struct Document {
     std::set<std::size_t> appended_begins; ///< of arrays that were found
     std::uint64_t shared_bytes = 0;        ///< of values of arrays that begin where an earlier one does
     std::vector<std::string> odd_lengths;  ///< arrays whose stated length is not that of their data
+    std::vector<std::string> longer;       ///< arrays with more values than are announced, as they are told
 
     /// The element of the file's type.
     pugi::xml_node primary() const { return tree.child("VTKFile").child(type.c_str()); }

@@ -27,6 +27,13 @@ void note_odd_lengths(const Document& document, std::vector<std::string>& notes)
                                 fmt::join(names, ", ")));
 }
 
+/// Such arrays have perhaps lost their number of components, so that what is read of them is not what is meant.
+void note_longer(const Document& document, std::vector<std::string>& notes) {
+    if (document.longer.empty()) return;
+    notes.push_back(fmt::format("there are more values of {} than are announced: the first ones were read",
+                                fmt::join(document.longer, ", ")));
+}
+
 Array no_points() { return {ScalarType::float32, nullptr, 0, 3, nullptr}; }
 
 /// What a process without cells writes that leaves out the Piece, too.
@@ -63,6 +70,7 @@ Result<Loaded> load_document(const std::shared_ptr<Document>& shared, const std:
     for (Piece& piece : loaded.pieces)
         if (piece.grid.points.empty()) piece.grid.points = no_points();
     note_odd_lengths(document, loaded.notes);
+    note_longer(document, loaded.notes);
     return loaded;
 }
 

@@ -317,18 +317,17 @@ Result<bool> StoredArray::for_blocks(const BlockWork& work) const {
     return needed.load();
 }
 
-Result<void> StoredArray::decode(std::byte* to, Rest rest) const {
+Result<void> StoredArray::decode(std::byte* to, bool* more) const {
     if (scalars_ == 0) return {};
     if (array_.form == DataArray::Form::ascii) {
         const auto end = read_numbers(array_.source(*document_), array_.place.begin, array_.place.end, array_.type, scalars_,
                                       fmt::format("the array {}", in_quotes(array_.name)), to, *progress_);
         if (!end) return end.error();
-        const Result<bool> blank = rest == Rest::passed_over
-                                       ? Result<bool>(true)
-                                       : is_blank(array_.source(*document_), {*end, array_.place.end});
-        if (!blank) return blank.error();
-        if (!*blank) return wrong(fmt::format("it holds more than the {} values that are announced", scalars_));
         for (std::uint64_t i = 0; array_.bits && i < scalars_; ++i) to[i] = std::byte{to[i] != std::byte{0}};
+        if (!more) return {};
+        const auto blank = is_blank(array_.source(*document_), {*end, array_.place.end});
+        if (!blank) return blank.error();
+        *more = *more || !*blank;
         return {};
     }
     core::Buffer<std::byte> bits(array_.bits ? static_cast<std::size_t>(needed_) : 0);
@@ -346,13 +345,25 @@ Result<void> StoredArray::decode(std::byte* to, Rest rest) const {
             static_cast<std::size_t>(scalars_), std::size_t{1} << 18,
             [&](std::size_t begin, std::size_t end) { swap_bytes(to + begin * size, end - begin, size); });
     }
+    if (more) *more = *more || has_more();
     return {};
 }
 
+Result<void> StoredArray::decode_all(std::byte* to) const {
+    bool more = false;
+    if (auto done = decode(to, &more); !done) return done;
+    if (more) return wrong(fmt::format("it holds more than the {} values that are announced", scalars_));
+    return {};
+}
+
+/// Of what is not text.
+bool StoredArray::has_more() const {
+    return array_.form != DataArray::Form::ascii && !array_.bits && stored_ >= needed_ + size_of(array_.type);
+}
+
 Result<void> StoredArray::check_stored() const {
-    const std::size_t size = size_of(array_.type);
-    if (array_.form == DataArray::Form::ascii || array_.bits || stored_ < needed_ + size) return {};
-    return wrong(fmt::format("it holds {} values, but {} are announced", stored_ / size, scalars_));
+    if (!has_more()) return {};
+    return wrong(fmt::format("it holds {} values, but {} are announced", stored_ / size_of(array_.type), scalars_));
 }
 
 bool StoredArray::has_blocks() const {

@@ -46,15 +46,15 @@ public:
     static Result<StoredArray> find(Document& document, const DataArray& array, std::uint64_t scalars,
                                     const Progress& progress);
 
-    /// Text behind the values that were looked for.
-    enum class Rest : std::uint8_t { passed_over, is_error };
-
-    /// Writes the values, in this machine's byte order.
+    /// Writes the values, in this machine's byte order. Sets `more` where others stand behind them.
     ///
     /// `to`     room for them
     /// Errors   invalid_data: blocks that cannot be inflated, words that are no numbers; file, machine; cancelled
     /// Cost     parallel by blocks; a thread takes 256 KB or, where that is more, a block as it is stored and as it becomes
-    Result<void> decode(std::byte* to, Rest rest = Rest::passed_over) const;
+    Result<void> decode(std::byte* to, bool* more = nullptr) const;
+
+    /// The same. More values than were looked for are an error.
+    Result<void> decode_all(std::byte* to) const;
 
     /// Errors   invalid_data: more values are stored than were looked for. Of text only decode() tells
     Result<void> check_stored() const;
@@ -104,6 +104,7 @@ private:
     Result<std::string_view> packed_bytes(std::size_t begin, std::size_t end, Scratch& scratch) const;
     Result<void> read_block(const Block& block, std::span<std::byte> to) const;
     bool is_told_by_checksum(const Block& block, const Expect& expect) const;
+    bool has_more() const;
 
     const Document* document_;
     DataArray array_;
