@@ -414,6 +414,19 @@ TEST(ReadLegacyBinary, OfLittleEndianNumbersIsNamed) {
               "the numbers of CELL_TYPES" + message);
 }
 
+TEST(ReadLegacyCells, TakesOffsetsAndCornersOfAnyType) {
+    const auto file = [](const std::string& type, const char* corners) {
+        return "# vtk DataFile Version 5.1\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 "
+               "1\n"
+               "CELLS 2 4\nOFFSETS " +
+               type + "\n0 4\nCONNECTIVITY " + type + "\n" + corners + "\nCELL_TYPES 1\n10\n";
+    };
+    for (const char* type : {"char", "unsigned_char", "short", "unsigned_short", "float", "double"})
+        EXPECT_EQ(error_in_legacy(file(type, "0 1 2 3")), "no error") << type;
+    EXPECT_EQ(error_in_legacy(file("float", "0 1 2.5 3")), "cells: 2.5 is no offset or corner");
+    EXPECT_EQ(error_in_legacy(file("short", "0 1 -2 3")), "cells: -2 is no offset or corner");
+}
+
 TEST(ReadLegacyPlanes, AreToldAsWhatTheyAre) {
     const TemporaryFolder folder;
     const auto message = [&](std::string_view dataset) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <atomic>
 #include <bit>
+#include <cmath>
 #include <utility>
 
 #include <fmt/core.h>
@@ -191,22 +192,21 @@ private:
                         fmt::format("{}: {} where connectivity was expected", keyword, in_quotes(word)));
             const auto type = values_.read_type();
             if (!type) return type.error();
-            if (is_floating(type->type) || size_of(type->type) < 4)
-                return invalid_data(fmt::format("{}: offsets or connectivity of type {}", keyword, type->name));
             const std::uint64_t needed = first ? count : size;
-            if (first && values_.binary() && geometry_ && count > 1) {
+            const bool usual = !is_floating(type->type) && size_of(type->type) >= 4;
+            if (usual && first && values_.binary() && geometry_ && count > 1) {
                 const auto corners = read_regular(*type, count, size, keyword);
                 if (!corners) return corners.error();
                 cells.corners = *corners;
                 if (*corners > 0) continue;
             }
-            if (!first && leaves_ && cells.corners > 0 && type->type != ScalarType::uint64) {
+            if (usual && !first && leaves_ && cells.corners > 0 && type->type != ScalarType::uint64) {
                 cells.in_file = {values_.scanner().position(), *type, needed, cells.corners, false};
                 const auto skipped = values_.read_values(*type, needed, 1, keyword, false);
                 if (!skipped) return skipped.error();
                 continue;
             }
-            auto values = read_indices(*type, needed, keyword);
+            auto values = usual ? read_indices(*type, needed, keyword) : read_odd_indices(*type, needed, keyword);
             if (!values) return values.error();
             *numbers = *std::move(values);
         }
@@ -240,6 +240,22 @@ private:
             if (*narrow) return **std::move(narrow);
         }
         return values_.read_values(type, count, 1, keyword, geometry_);
+    }
+
+    /// Of types that VTK reads as indices, but never writes.
+    Result<Array> read_odd_indices(const LegacyType& type, std::uint64_t count, std::string_view keyword) {
+        auto values = values_.read_values(type, count, 1, keyword, geometry_);
+        if (!values || !geometry_) return values;
+        return values->visit([&](auto numbers) -> Result<Array> {
+            core::Buffer<std::int64_t> indices(numbers.size());
+            for (std::size_t i = 0; i < numbers.size(); ++i) {
+                const auto number = static_cast<double>(numbers[i]);
+                if (!(number >= 0 && number < 0x1p53 && std::trunc(number) == number))
+                    return invalid_data(fmt::format("{}: {} is no offset or corner", keyword, numbers[i]));
+                indices[i] = static_cast<std::int64_t>(numbers[i]);
+            }
+            return std::move(indices).to_array();
+        });
     }
 
     /// How many corners each cell has; 0, and the place as before, where not all have as many, one after another.
