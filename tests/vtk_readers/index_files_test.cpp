@@ -199,6 +199,17 @@ TEST_F(Collections, SeriesTakeTimesThatAreTexts) {
               std::string::npos);
 }
 
+TEST_F(Collections, SeriesWithoutTimesAreNumbered) {
+    const std::string path = folder_.write("run.vtu.series", R"({"files": [{"name": "t2.vtu"}, {"name": "t1.vtu"}]})");
+    ReadOptions options;
+    options.step = 1;
+    const auto second = read(path, options);
+    ASSERT_TRUE(second) << second.error().message;
+    EXPECT_EQ(second->grid.cells.count(), 6u);
+    EXPECT_EQ(second->info.times, (std::vector<double>{0, 1}));
+    EXPECT_EQ(second->notes.at(0), "the series has no times: the numbers of its files were taken, from 0");
+}
+
 TEST_F(IndexFiles, PiecesWithoutAPieceHaveNoCells) {
     folder_.write("case/none.vtu", "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid/></VTKFile>");
     expect_sample(read(folder_.write("case/grid.pvtu", pvtu({"none.vtu", "parts/a.vtu", "none.vtu"}))));

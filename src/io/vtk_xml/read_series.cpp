@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // A file series of ParaView, as OpenFOAM writes them: JSON that names a file of each time.
+#include <algorithm>
 #include <optional>
 
 #include <fmt/core.h>
@@ -28,7 +29,11 @@ std::optional<double> time_of(const Json& file) {
     return value;
 }
 
-/// Of several files of one time the last counts, as where a run was restarted.
+bool has_no_times(const Json& files) {
+    return std::ranges::none_of(files, [](const Json& file) { return file.is_object() && file.contains("time"); });
+}
+
+/// Of several files of one time the last counts, as where a run was restarted. Without times their numbers are these.
 Result<NamesByTime> entries(const std::string& path, std::string_view text, std::vector<std::string>& notes) {
     const Json series = Json::parse(text, nullptr, false);
     if (series.is_discarded()) return broken(path, "this is not JSON");
@@ -36,13 +41,14 @@ Result<NamesByTime> entries(const std::string& path, std::string_view text, std:
     if (!series.is_object() || files == series.end() || !files->is_array() || files->empty())
         return broken(path, "there is no list \"files\" with entries");
     NamesByTime names;
+    const bool numbered = has_no_times(*files);
+    if (numbered) notes.emplace_back("the series has no times: the numbers of its files were taken, from 0");
     for (const Json& file : *files) {
         if (!file.is_object() || !file.contains("name") || !file["name"].is_string())
             return broken(path, "an entry of \"files\" has no \"name\"");
         const auto& name = file["name"].get_ref<const std::string&>();
-        const auto time = time_of(file);
-        if (!time)
-            return broken(path, fmt::format("the entry \"{}\" has no number as its \"time\"", escaped(name)));
+        const auto time = numbered ? static_cast<double>(names.size()) : time_of(file);
+        if (!time) return broken(path, fmt::format("the entry \"{}\" has no number as its \"time\"", escaped(name)));
         names[*time] = {name};
     }
     if (const std::size_t replaced = files->size() - names.size(); replaced > 0)
