@@ -242,6 +242,7 @@ Result<Piece> EnsightLoad::piece_of(EnsightPart& part) {
 
 Result<Loaded> EnsightLoad::load() {
     loaded_.info.times = times_of(case_);
+    for (const LeftOut& item : case_.left_out) leave_out(loaded_.info, item);
     const auto step = choose_step(loaded_.info, options_);
     if (!step) return step.error();
     loaded_.step = *step;

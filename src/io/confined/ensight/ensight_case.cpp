@@ -136,9 +136,16 @@ void add_time_values(EnsightCase::TimeSet& set, const Words& words) {
         if (parse_number(word, value)) set.values.push_back(value);
 }
 
-/// Sections of the format that are not read.
+std::string in_lower_case(std::string_view text) {
+    std::string lower(text);
+    for (char& c : lower)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return lower;
+}
+
+/// Sections of the format that are not read, and those that are not known: words in capitals.
 bool begins_other_section(std::string_view line) {
-    return line == "MATERIAL" || line == "BLOCK CONTINUATION" || line == "SCRIPTS";
+    return std::ranges::all_of(line, [](char c) { return (c >= 'A' && c <= 'Z') || c == ' ' || c == '_'; });
 }
 
 class CaseParser {
@@ -148,7 +155,7 @@ public:
             const std::size_t end = std::min(text.find('\n'), text.size());
             std::string_view line = text.substr(0, end);
             text.remove_prefix(std::min(end + 1, text.size()));
-            while (!line.empty() && is_space(line.back())) line.remove_suffix(1);
+            line = without_outer_spaces(line);
             if (!line.empty() && line[0] != '#') take(line);
         }
         for (auto& set : found_.time_sets) keep_steps(set);
@@ -168,12 +175,14 @@ private:
         for (const Name& name :
              {Name{"FORMAT", Section::format}, Name{"GEOMETRY", Section::geometry}, Name{"VARIABLE", Section::variable},
               Name{"TIME", Section::time}, Name{"FILE", Section::file}})
-            if (line.starts_with(name.word)) {
+            if (line == name.word || in_lower_case(line) == in_lower_case(name.word) ||
+                (line.starts_with(name.word) && is_space(line[name.word.size()]))) {
                 section_ = name.section;
                 return true;
             }
         if (!begins_other_section(line)) return false;
         section_ = Section::other;
+        found_.left_out.push_back({"section", std::string(line), "its content is not read"});
         return true;
     }
 
@@ -199,8 +208,9 @@ private:
         case Section::format:
             if (found_.is_ensight) return refuse(line, "GEOMETRY");
             found_.is_ensight = true;
-            found_.is_gold = words.size() > 1 && words[1] == "gold";
-            if (key != "type" || words.empty() || words[0] != "ensight" || (words.size() > 1 && !found_.is_gold))
+            found_.is_gold = words.size() > 1 && in_lower_case(words[1]) == "gold";
+            if (key != "type" || words.empty() || in_lower_case(words[0]) != "ensight" ||
+                (words.size() > 1 && !found_.is_gold))
                 refuse(line, "\"type: ensight\" or \"type: ensight gold\"");
             return;
         case Section::geometry:
@@ -210,7 +220,8 @@ private:
         case Section::variable:
             if (line.starts_with("constant")) return;
             if (auto variable = variable_of(key, rest)) found_.variables.push_back(*std::move(variable));
-            else refuse(line, "a variable");
+            else if (key.empty()) refuse(line, "a variable");
+            else found_.left_out.push_back({"variable", std::string(line), "no kind of variable that is known"});
             return;
         case Section::file: return take_file_set(key, words);
         case Section::other: return;

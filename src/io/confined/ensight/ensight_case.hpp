@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include <isotet/read.hpp>
+
 namespace isotet::io::confined {
 
 struct EnsightCase {
@@ -40,6 +42,7 @@ struct EnsightCase {
         std::vector<std::uint64_t> steps;         ///< of each file
     };
     std::string error; ///< a line that stands where it may not; empty: none
+    std::vector<LeftOut> left_out; ///< sections and variables that are not read
     bool is_ensight = false, is_gold = false, has_time = false, has_file_sets = false;
     File model;
     bool model_names_sets = false;
@@ -48,7 +51,7 @@ struct EnsightCase {
     std::vector<FileSet> file_sets;
 };
 
-/// Empty lines and comments are left out, and a section begins at the first column. A file name is the last word, or what stands
+/// Empty lines, comments and blanks at the ends of lines are left out. A file name is the last word, or what stands
 /// in quotes at the end of the line; the name of a variable is all before it.
 EnsightCase parse_case(std::string_view text);
 
