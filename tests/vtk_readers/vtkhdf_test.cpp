@@ -118,7 +118,7 @@ TEST(ReadVtkhdf, ReadsNarrowIndicesAndOtherFloats) {
         file.data("/VTKHDF/Connectivity",
                   std::vector<std::uint8_t>(strip.connectivity.begin(), strip.connectivity.end()), {28});
         file.data("/VTKHDF/Offsets", strip.offsets, {8});
-        file.data("/VTKHDF/Types", strip.types, {7});
+        file.data("/VTKHDF/Types", std::vector<std::int64_t>(strip.types.begin(), strip.types.end()), {7});
         for (const hsize_t chunk : {0, 4})
             for (const bool half : {false, true}) {
                 const std::string name = std::string(half ? "half" : "long") + (chunk > 0 ? " in chunks" : "");
@@ -416,8 +416,8 @@ TEST(ReadVtkhdf, RefusesWhatDoesNotFit) {
     expect(count("NumberOfConnectivityIds", 9), "\"/VTKHDF/Connectivity\" has 8 rows, but 9");
     for (const char* name : {"NumberOfPoints", "NumberOfCells", "Points", "Connectivity", "Offsets", "Types"})
         EXPECT_NE(message_with(name, [](Hdf5Writer&) {}), "read") << name << " is not there";
-    expect(message_with("Types", [](Hdf5Writer& file) { file.data<std::int64_t>("/VTKHDF/Types", {10, 10}, {2}); }),
-           "\"Types\" are int64, but must be uint8");
+    expect(message_with("Types", [](Hdf5Writer& file) { file.data<std::int64_t>("/VTKHDF/Types", {10, 256}, {2}); }),
+           "\"Types\" are int64, and not all whole numbers from 0 to 255");
     expect(message_with("Connectivity",
                         [](Hdf5Writer& file) {
                             file.data<std::int64_t>("/VTKHDF/Connectivity", {0, 1, 2, 3, 1, 2, 3, 5}, {8});

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <numeric>
+#include <optional>
 #include <type_traits>
 #include <utility>
 
@@ -41,6 +43,19 @@ bool are_begins_of(const CellPlaces& places, std::uint64_t first, std::span<cons
         }
         return wrong == 0;
     }
+}
+
+/// Types of cells, which the format has as bytes; h5py makes int64 of a list. Nothing where one is no byte.
+std::optional<Array> as_bytes(Array types) {
+    if (types.type() == ScalarType::uint8) return types;
+    return types.visit([](auto values) -> std::optional<Array> {
+        if (!std::ranges::all_of(values,
+                                 [](auto type) { return type >= 0 && type <= 255 && type == std::trunc(type); }))
+            return std::nullopt;
+        core::Buffer<std::uint8_t> bytes(values.size());
+        std::ranges::transform(values, bytes.data(), [](auto type) { return static_cast<std::uint8_t>(type); });
+        return std::move(bytes).to_array();
+    });
 }
 
 } // namespace
@@ -216,9 +231,10 @@ Result<void> HdfGrid::load_types(const HdfPartition& part, HdfCells& cells) cons
     if (auto there = rows_.check(group_ + "Offsets", part.first_offset, part.cells + 1); !there) return there;
     auto types = rows_.read(group_ + "Types", part.first_cell, part.cells);
     if (!types) return types.error();
-    if (types->type() != ScalarType::uint8)
-        return wrong(fmt::format("\"Types\" are {}, but must be uint8", name_of(types->type())));
-    cells.types = *std::move(types);
+    auto bytes = as_bytes(*types);
+    if (!bytes)
+        return wrong(fmt::format("\"Types\" are {}, and not all whole numbers from 0 to 255", name_of(types->type())));
+    cells.types = *std::move(bytes);
     if (auto places = CellPlaces::make(cells.types.as<std::uint8_t>())) {
         const auto told = are_offsets_told(part, *places);
         if (!told) return told.error();
