@@ -15,6 +15,7 @@
 #include "support/places.hpp"
 #include "pieces/partition.hpp"
 #include "vtk_readers/active_cells.hpp"
+#include "vtk_readers/hdf5_writer.hpp"
 #include "vtk_readers/sample_exodus.hpp"
 #include "vtk_readers/sample_grid.hpp"
 #include "support/temporary_folder.hpp"
@@ -320,6 +321,33 @@ TEST_P(ReadExodus, IsAnErrorWhenASetHasAnElementThatIsNotThere) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Containers, ReadExodus, testing::Values(0, EX_64BIT_OFFSET, EX_64BIT_DATA, EX_NETCDF4));
+
+TEST(ReadExodusPieces, VariablesOfNodesMayBeOneArrayAsBeforeVersion202) {
+    const TemporaryFolder folder;
+    ExodusSample sample;
+    sample.format = EX_NETCDF4;
+    write_exodus(sample, folder.file("a.e"));
+    {
+        Hdf5Writer file(folder.file("a.e"), {"vals_nod_var1", "vals_nod_var2", "vals_nod_var3", "vals_nod_var4", "coordx",
+                                             "coordy", "coordz"});
+        std::vector<double> values(2 * 4 * 5), places;
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            for (const auto& node : sample.nodes) places.push_back(node[axis]);
+        file.data("vals_nod_var", values, {2, 4, 5});
+        file.data("coord", places, {3, 5});
+    }
+    ReadOptions options;
+    options.step = 1;
+    const auto result = read(folder.file("a.e"), options);
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_TRUE(result->info.left_out.empty());
+    ASSERT_EQ(result->grid.point_fields.size(), 4u);
+    for (std::size_t i = 0; i < 5; ++i) {
+        EXPECT_EQ(result->grid.point_fields[3].values.at(i), static_cast<double>(35 + i));
+        for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_EQ(result->grid.points.at(i, axis), sample.nodes[i][axis]);
+    }
+}
 
 TEST(ReadExodusPieces, AVariableThatIsBrokenIsLeftOutAndOthersAreRead) {
     const TemporaryFolder folder;

@@ -18,6 +18,11 @@ class Hdf5Writer {
 public:
     explicit Hdf5Writer(const std::string& path)
         : file_(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)) {}
+    /// Of a file that is there, from which data are removed.
+    Hdf5Writer(const std::string& path, const std::vector<std::string>& removed)
+        : file_(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT)) {
+        for (const std::string& name : removed) H5Ldelete(file_, name.c_str(), H5P_DEFAULT);
+    }
     Hdf5Writer(const Hdf5Writer&) = delete;
     Hdf5Writer& operator=(const Hdf5Writer&) = delete;
     ~Hdf5Writer() { H5Fclose(file_); }

@@ -21,11 +21,14 @@ public:
         return lengths && lengths->size() == 1 ? std::optional(lengths->front()) : std::nullopt;
     }
     std::optional<std::vector<std::uint64_t>> shape(const std::string& variable) const override {
-        if (!rows_.shape(variable)) return std::nullopt;
         auto described = read_hdf5_array(path_, variable, {}, Depth::description);
-        return described ? std::optional(std::move(described->dimensions)) : std::nullopt;
+        if (!described || (!rows_.shape(variable) && !has_many(described->dimensions))) return std::nullopt;
+        return std::move(described->dimensions);
     }
     Result<Array> rows(const std::string& variable, std::uint64_t first, std::uint64_t count) const override {
+        if (!rows_.shape(variable))
+            if (const auto extents = shape(variable))
+                return rows_of_many_dimensions(variable, *extents, first, count);
         const auto read = rows_.read(variable, first, count);
         if (!read) return read.error();
         return Array(read->type(), read->data(), read->size(), 1, read->owner().lock());
@@ -41,6 +44,18 @@ public:
     }
 
 private:
+    /// More than Hdf5Rows reads.
+    static bool has_many(const std::vector<std::uint64_t>& dimensions) { return dimensions.size() > 2; }
+
+    Result<Array> rows_of_many_dimensions(const std::string& variable, std::vector<std::uint64_t> extents,
+                                          std::uint64_t first, std::uint64_t count) const {
+        Box box{std::vector<std::uint64_t>(extents.size(), 0), std::vector<std::uint64_t>(extents.size(), 1),
+                std::move(extents)};
+        box.start[0] = first;
+        box.count[0] = count;
+        auto read = read_hdf5_array(path_, variable, box, Depth::arrays);
+        return read ? Result<Array>(std::move(read->values)) : read.error();
+    }
     static std::string object(const std::string& variable) { return variable.empty() ? "/" : variable; }
 
     std::string path_;
