@@ -131,6 +131,7 @@ Examples:
   isotet pack grid.vtu grid.isotet
   isotet extract grid.isotet -f pressure -i 0.5 -o front.vtp
   isotet pack run.pvd run.isotet --all-steps --fields p,T
+  isotet pack huge.vtu huge.isotet --memory 8GB --scratch /data
   isotet check grid.isotet
 )";
 
@@ -467,6 +468,9 @@ void add_pack(const Command& program, PackCommand& pack) {
     command.add_choice<Precision>("--precision", pack.precision,
                                   {{"float", Precision::float32}, {"double", Precision::float64}},
                                   "Precision of the packed grid");
+    add_bytes(command, "--memory", pack.memory,
+              "Aim for less memory than this, such as 2GB: what needs more lies in files meanwhile; default: no limit");
+    command.add_file("--scratch", pack.scratch, "FOLDER", "The folder of these files; default: that of OUT");
     add_reading(command, pack.grid, "--format");
     add_common(command, pack.common);
     command.set_common({"--fields", "--all-steps", "--append", "--time", "--step", "--split-cells"});

@@ -32,6 +32,7 @@ std::string pack_table(const PackJob& job, const PackNumbers& done) {
     if (done.steps > 1) table.row({"time steps", grouped(done.steps)});
     table.row({"time", fmt::format("read {}, pack {}, write {}", seconds_text(done.read_seconds),
                                    seconds_text(done.pack_seconds), seconds_text(done.write_seconds))});
+    if (done.scratch_bytes) table.row({"scratch", format_bytes(done.scratch_bytes) + " at most"});
     table.row({"file", fmt::format("{} ({}, {:.1f} bytes a cell)", job.out, format_bytes(done.bytes),
                                    static_cast<double>(done.bytes) /
                                        static_cast<double>(std::max<std::uint64_t>(stored_cells(done.pack), 1)))});
@@ -59,6 +60,7 @@ Result<ExitCode> run_pack(const PackCommand& command) {
     report["steps"] = done->steps;
     report["seconds"] = {
         {"read", done->read_seconds}, {"pack", done->pack_seconds}, {"write", done->write_seconds}};
+    report["scratch_bytes"] = done->scratch_bytes;
     report["file"] = json_text(job.out);
     report["bytes"] = done->bytes;
     return finish(console, command.common, pack_table(job, *done), std::move(report));

@@ -1,8 +1,10 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "base/block.hpp"
+#include "base/block_place.hpp"
 #include "base/block_reuse.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <mutex>
 #include <new>
@@ -109,10 +111,11 @@ public:
         return block;
     }
 
-    /// Keeps the block, and lets the oldest go for it. False when it is larger than all that may be kept.
-    bool keep(Block block) {
+    /// Keeps the block, and lets the oldest go for it. False when it is larger than all that may be kept, or not wanted.
+    bool keep(Block block, bool wanted) {
         const std::lock_guard lock(mutex_);
         in_use_ -= block.bytes;
+        if (!wanted) return false;
         if (!reuses_ && block.bytes > max_to_keep()) return false;
         make_room_for_one();
         blocks_.push_back(block);
@@ -127,6 +130,11 @@ public:
         for (const Block& block : blocks_) release(block);
         blocks_.clear();
         return dropped;
+    }
+
+    std::size_t in_use() {
+        const std::lock_guard lock(mutex_);
+        return in_use_;
     }
 
     void begin_reuse() {
@@ -198,12 +206,18 @@ KeptBlocks& kept_blocks() {
     return *blocks;
 }
 
+std::atomic<BlockPlace*> other_place{nullptr};
+
 } // namespace
+
+void use_block_place(BlockPlace& place) noexcept { other_place = &place; }
 
 BlockReuse::BlockReuse() { kept_blocks().begin_reuse(); }
 BlockReuse::~BlockReuse() { kept_blocks().end_reuse(); }
 
 Block take_block(std::size_t bytes) {
+    if (BlockPlace* const place = other_place; place && bytes >= large_block)
+        if (const Block block = place->take(bytes, kept_blocks().in_use()); block.data) return block;
     if (!is_large(bytes)) return {::operator new(bytes), bytes};
     KeptBlocks& kept = kept_blocks();
     if (const Block block = kept.take(bytes); block.data) return block;
@@ -211,12 +225,14 @@ Block take_block(std::size_t bytes) {
 }
 
 void give_back(Block block) noexcept {
+    BlockPlace* const place = block.bytes >= large_block ? other_place.load() : nullptr;
+    if (place && place->give_back(block)) return;
     if (!is_large(block.bytes)) {
         ::operator delete(block.data);
         return;
     }
     try {
-        if (kept_blocks().keep(block)) return;
+        if (kept_blocks().keep(block, !place || place->lets_keep())) return;
     } catch (...) { // no memory for the list, or no lock
     }
     munmap(block.data, block.bytes);

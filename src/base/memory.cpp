@@ -11,6 +11,7 @@
 #include <sys/resource.h>
 
 #include "base/block.hpp"
+#include "base/scratch_memory.hpp"
 
 namespace isotet::core {
 
@@ -88,6 +89,7 @@ std::uint64_t free_memory() {
 }
 
 Result<void> require_memory(std::string_view what, std::uint64_t bytes) {
+    if (auto there = require_scratch(what, bytes)) return *std::move(there);
     std::uint64_t free = free_memory();
     if (bytes > free && drop_kept_blocks() > 0) free = free_memory();
     if (bytes <= free) return {};

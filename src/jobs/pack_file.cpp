@@ -2,6 +2,7 @@
 #include <isotet/jobs/pack_file.hpp>
 
 #include <algorithm>
+#include <filesystem>
 #include <optional>
 #include <utility>
 
@@ -13,7 +14,10 @@
 #include <isotet/jobs/first_choice.hpp>
 #include <isotet/jobs/output_names.hpp>
 #include <isotet/packed_file.hpp>
+#include <isotet/scratch_memory.hpp>
+#include <isotet/text.hpp>
 
+#include "base/memory.hpp"
 #include "base/stopwatch.hpp"
 #include "jobs/refuse.hpp"
 
@@ -27,8 +31,13 @@ public:
 
     Result<void> run();
     PackNumbers take_numbers() { return std::move(numbers_); }
+    /// What was wrong with scratch files, where that ended the run.
+    Error explain(Error error) const;
 
 private:
+    Result<void> begin_scratch();
+    Result<void> check_memory(std::uint64_t cells, std::uint64_t points) const;
+    Result<void> check_scratch(std::uint64_t cells) const;
     Result<void> open();
     Result<void> look_at_file();
     Result<void> choose_names();
@@ -43,6 +52,7 @@ private:
 
     PackJob job_;
     Caller& caller_;
+    std::optional<ScratchMemory> scratch_; ///< outlives the arrays
     std::optional<GridSource> source_;
     std::vector<std::size_t> steps_;
     std::vector<std::string> names_; ///< of fields
@@ -51,15 +61,52 @@ private:
     PackNumbers numbers_;
 };
 
+/// What packing takes beside arrays, and a few megabytes of each of them.
+std::uint64_t least_memory(std::uint64_t cells, std::uint64_t points) { return 80'000'000 + 5 * cells + 25 * points; }
+
+Result<void> PackRun::check_memory(std::uint64_t cells, std::uint64_t points) const {
+    if (!scratch_) return {};
+    const std::uint64_t least = least_memory(cells, points);
+    if (*job_.memory >= least) return {};
+    return Error{ErrorCode::out_of_memory, fmt::format("packing needs at least {} of memory, but `memory` is {}",
+                                                       format_bytes(least), format_bytes(*job_.memory))};
+}
+
+/// Before anything is read: what a grid of tets takes at least.
+Result<void> PackRun::check_scratch(std::uint64_t cells) const {
+    constexpr std::uint64_t bytes_a_cell = 36;
+    if (!scratch_ || bytes_a_cell * cells <= *job_.memory) return {};
+    return scratch_->require("packing", bytes_a_cell * cells - *job_.memory);
+}
+
+Result<void> PackRun::begin_scratch() {
+    if (!job_.memory && job_.scratch.empty()) return {};
+    if (!job_.memory) job_.memory = core::free_memory() / 2;
+    if (job_.scratch.empty()) job_.scratch = std::filesystem::path(job_.out).parent_path().string();
+    if (job_.scratch.empty()) job_.scratch = ".";
+    Result<ScratchMemory> begun = ScratchMemory::begin({job_.scratch, *job_.memory});
+    if (!begun) return begun.error();
+    scratch_ = *std::move(begun);
+    return {};
+}
+
+Error PackRun::explain(Error error) const {
+    if (!scratch_ || error.code != ErrorCode::out_of_memory) return error;
+    return scratch_->failure().value_or(std::move(error));
+}
+
 Result<void> PackRun::open() {
     if (ending_of(job_.out) != ".isotet")
         return refusal("OUT, '{}', is a packed file, so its name must end in .isotet", job_.out);
     std::vector<std::string> outputs{job_.out};
     outputs.insert(outputs.end(), job_.other_outputs.begin(), job_.other_outputs.end());
     if (auto paths = check_output_paths({job_.grid.file}, outputs); !paths) return paths;
+    if (auto begun = begin_scratch(); !begun) return begun;
     Result<GridSource> source = GridSource::open(job_.grid, caller_);
     if (!source) return source.error();
     source_ = *std::move(source);
+    if (auto enough = check_memory(source_->info().cells, 0); !enough) return enough;
+    if (auto enough = check_scratch(source_->info().cells); !enough) return enough;
     if (auto paths = check_output_paths(source_->info().files, outputs); !paths) return paths;
     const Steps which = job_.all_steps ? Steps::all : Steps::one;
     auto steps = choose_steps(source_->info(), job_.grid, which, caller_);
@@ -229,6 +276,7 @@ Result<void> PackRun::pack_step(std::size_t step) {
     const Result<Grid> grid = source_->read(read, step, caller_);
     if (!grid) return grid.error();
     numbers_.cells = grid->cells.count();
+    if (auto enough = check_memory(numbers_.cells, grid->points.tuples()); !enough) return enough;
     numbers_.read_seconds += reading.seconds();
     numbers_.fields.clear();
     for (const std::string& name : names_) {
@@ -254,6 +302,7 @@ Result<void> PackRun::run() {
     const Result<std::uint64_t> bytes = writer_->commit();
     if (!bytes) return bytes.error();
     numbers_.bytes = *bytes;
+    if (scratch_) numbers_.scratch_bytes = scratch_->report().peak_bytes;
     numbers_.write_seconds += writing.seconds();
     return {};
 }
@@ -262,7 +311,7 @@ Result<void> PackRun::run() {
 
 Result<PackNumbers> pack_file(const PackJob& job, Caller& caller) {
     PackRun run(job, caller);
-    if (auto done = run.run(); !done) return done.error();
+    if (auto done = run.run(); !done) return run.explain(done.error());
     return run.take_numbers();
 }
 

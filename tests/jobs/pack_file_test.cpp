@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include <isotet/make.hpp>
 #include <isotet/packed_file.hpp>
 #include <isotet/read.hpp>
+#include <isotet/scratch_memory.hpp>
 #include <isotet/write.hpp>
 
 #include "jobs/listener.hpp"
@@ -191,8 +193,69 @@ TEST(PackFile, NamesNoFieldAsLeftOutThatItPacks) {
     ASSERT_EQ(file.info().fields.size(), 1U);
     const std::string taken = file.info().fields[0].report.name, left_out = taken == "p" ? "T" : "p";
     ASSERT_EQ(listener.noted.size(), 2U);
-    EXPECT_EQ(listener.noted[1], "not packed: '" + left_out +
-                                     "' (of cells); `fields` takes components, `cell_fields` fields of cells");
+    EXPECT_EQ(listener.noted[1],
+              "not packed: '" + left_out + "' (of cells); `fields` takes components, `cell_fields` fields of cells");
+}
+
+TEST(PackFile, GivesTheSameFileWithItsArraysInScratchFiles) {
+    const test::TemporaryFolder folder;
+    Listener listener(2);
+    const std::string kinds = grid_with_all_kinds(folder);
+    for (const std::string& grid : {std::string("make:kelvin:4:gyroid,sphere"), kinds}) {
+        PackJob job;
+        job.grid.file = grid;
+        job.out = folder.file("plain.isotet");
+        job.precision = Precision::float64;
+        job.gradients = true;
+        if (grid == kinds) job.cell_fields = {"region"};
+        EXPECT_EQ(pack_file(job, listener).value().scratch_bytes, 0U);
+        const std::string expected = test::content_of(job.out);
+        const ScratchMemory scratch = ScratchMemory::begin({folder.file(""), 1}).value(); // less than a job may ask for
+        job.out = folder.file("scratch.isotet");
+        pack_file(job, listener).value();
+        EXPECT_TRUE(test::content_of(job.out) == expected) << grid;
+        EXPECT_GT(scratch.report().peak_bytes, 0U) << grid;
+    }
+}
+
+TEST(PackFile, StaysBelowTheMemoryThatIsWanted) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    PackJob job;
+    job.grid.file = "make:kuhn:40:gyroid"; // of whose arrays one is larger than a sixteenth of that
+    job.out = folder.file("a.isotet");
+    job.memory = 84'000'000;
+    job.scratch = folder.file("");
+    EXPECT_GT(pack_file(job, listener).value().scratch_bytes, 0U);
+    const std::string content = test::content_of(job.out);
+    job.memory.reset();
+    job.scratch.clear();
+    EXPECT_EQ(pack_file(job, listener).value().scratch_bytes, 0U);
+    EXPECT_TRUE(test::content_of(job.out) == content);
+}
+
+TEST(PackFile, RefusesLessMemoryThanItNeeds) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    PackJob job;
+    job.grid.file = "make:kuhn:20:gyroid";
+    job.out = folder.file("a.isotet");
+    const auto refusal_of = [&](std::uint64_t memory) {
+        job.memory = memory;
+        const auto refused = pack_file(job, listener);
+        EXPECT_FALSE(refused);
+        if (refused) return std::string();
+        EXPECT_EQ(refused.error().code, ErrorCode::out_of_memory);
+        return refused.error().message;
+    };
+    EXPECT_EQ(refusal_of(50'000'000), "packing needs at least 80.0 MB of memory, but `memory` is 50.0 MB"); // not read
+    EXPECT_EQ(refusal_of(80'100'000), "packing needs at least 80.5 MB of memory, but `memory` is 80.1 MB");
+    job.memory = 100'000'000;
+    job.scratch = folder.file("nowhere");
+    const auto nowhere = pack_file(job, listener);
+    ASSERT_FALSE(nowhere);
+    EXPECT_EQ(nowhere.error().code, ErrorCode::cannot_write);
+    EXPECT_FALSE(std::filesystem::exists(job.out));
 }
 
 } // namespace

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,10 @@ struct PackJob {
     bool source_cells = false;
     bool gradients = false;
     bool split_cells = false;
+    std::optional<std::uint64_t> memory; ///< of the program while packing: what needs more lies in files
+                                         ///< (scratch_memory.hpp). Nothing: half of what is free where a scratch
+                                         ///< folder is named, else no limit
+    std::string scratch;                 ///< the folder of these files; empty: that of OUT
 };
 
 /// What was done.
@@ -40,14 +45,17 @@ struct PackNumbers {
     std::vector<FieldReport> fields; ///< of the last step
     std::size_t steps = 1;
     std::uint64_t bytes = 0; ///< of the file
+    std::uint64_t scratch_bytes = 0; ///< at most in scratch files
     double read_seconds = 0, pack_seconds = 0, write_seconds = 0;
 };
 
 /// Packs the grid once and saves it with all fields and steps. Polyhedra and quadratic cells are made linear first, these
 /// split at their nodes.
 ///
+/// Guarantees   the same file for any limit of memory
 /// Errors   invalid_argument: a field or step is not there, source cells are asked for of cells that are made linear;
-///          invalid_data: a step has other cells or points than the first; as of reading, Contour and save_packed()
+///          invalid_data: a step has other cells or points than the first; as of reading, Contour and save_packed();
+///          out_of_memory: `memory` is below the least; cannot_write: the scratch folder has no room
 Result<PackNumbers> pack_file(const PackJob& job, Caller& caller);
 
 } // namespace isotet::jobs

@@ -1,0 +1,62 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Large arrays in files of a folder, for grids whose packing does not fit into memory.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <isotet/export.hpp>
+#include <isotet/result.hpp>
+
+namespace isotet {
+
+struct ScratchOptions {
+    std::string folder;       ///< on a disk: a folder that is itself memory gains nothing
+    std::uint64_t memory = 0; ///< bytes of the machine's memory that the process aims to stay below
+};
+
+/// What lies in files.
+struct ScratchReport {
+    std::uint64_t bytes = 0, peak_bytes = 0; ///< now, at most
+};
+
+/// While one lives, all arrays that isotet makes in this process (grids that are read or made, packed grids, what
+/// packing needs) lie in files of a folder where they would take more memory than is wanted: three eighths of
+/// `memory` are for arrays, a quarter for those of a sixty-fourth or more, a sixteenth at most for one. Pages of the
+/// files that are in memory are let go of when the process comes near `memory`; the system keeps what of them it has
+/// room for in its cache, and writes the rest. Results are the same.
+///
+/// The files have no names: nothing of them stays when the process ends, however it does. Their room is asked of the
+/// file system before they are written to. An array that lies in a file does so until it is destroyed, also after the
+/// ScratchMemory is. What is not an array of isotet's, such as the caller's, is not moved; when that alone takes more
+/// than `memory`, the process does.
+///
+/// Threads   safe from many threads; one at a time in a process
+class ISOTET_API ScratchMemory {
+public:
+    /// Errors   invalid_argument: another one lives, or `memory` is 0; cannot_write: no file can be made in the folder
+    static Result<ScratchMemory> begin(const ScratchOptions& options);
+
+    ScratchMemory(ScratchMemory&&) noexcept;
+    ScratchMemory& operator=(ScratchMemory&&) noexcept;
+    ~ScratchMemory();
+
+    ScratchReport report() const;
+
+    /// An error when the file system has no room for so many bytes: "packing needs 3 GB in the scratch folder
+    /// '/data', but 2 GB are free".
+    Result<void> require(std::string_view what, std::uint64_t bytes) const;
+
+    /// Why an array could not be had of the folder, if that happened: then what asked for it ends with out_of_memory.
+    std::optional<Error> failure() const;
+
+private:
+    struct Data;
+    explicit ScratchMemory(std::unique_ptr<Data> data);
+    std::unique_ptr<Data> data_;
+};
+
+} // namespace isotet
