@@ -52,15 +52,17 @@ Place3 apex_of(const Polygon& polygon, double volume) {
 }
 
 void share_difference(double whole, std::span<const Polygon> parts, std::span<double> volumes) {
-    double sum = 0, areas = 0;
+    const auto size = [](const Polygon& part) { // a volume as wide as the part
+        const double area = std::sqrt(scalar_product(part.area, part.area));
+        return area * std::sqrt(area);
+    };
+    double sum = 0, sizes = 0;
     for (const Polygon& part : parts) {
         sum += part.volume;
-        areas += std::sqrt(scalar_product(part.area, part.area));
+        sizes += size(part);
     }
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-        const double share = areas > 0 ? std::sqrt(scalar_product(parts[i].area, parts[i].area)) / areas : 0;
-        volumes[i] = parts[i].volume + (whole - sum) * share;
-    }
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        volumes[i] = parts[i].volume + (sizes > 0 ? (whole - sum) * (size(parts[i]) / sizes) : 0);
 }
 
 } // namespace isotet::solid

@@ -127,6 +127,32 @@ TEST(Solid, OfCellsWithWarpedFacesIsClosedAndWhole) {
                          {.precision = Precision::float64}, {-0.3, 0, 0.5, 1}, of_doubles);
 }
 
+/// The point inside a part of a face that is not flat stays near the part, however small that is.
+TEST(Solid, HasNoNeedlesAtWarpedFaces) {
+    Grid grid;
+    grid.points =
+        Array::own(std::vector<double>{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 1, 1, 1.4, 0, 1, 1}, 3);
+    grid.cells.connectivity = Array::own(std::vector<std::int64_t>{0, 1, 2, 3, 4, 5, 6, 7});
+    grid.cells.offsets = Array::own(std::vector<std::int64_t>{0, 8});
+    grid.cells.types = Array::own(std::vector<std::uint8_t>{12});
+    const Array values = Array::own(std::vector<double>{0, 0, 0, 0, 0, 1, 0, 0});
+    ContourInput input;
+    input.grid = grid;
+    input.field = {"f", values, false, {}};
+    Solids solids = Solids::create(std::move(input), {.precision = Precision::float64}).value();
+    for (const double size : {0.3, 0.01, 1e-4}) {
+        const Solid solid = solids.extract(SolidRange::above(1 - size)).value();
+        ASSERT_EQ(solid.open_edges, 0u);
+        for (std::size_t i = 0; i < solid.surface.vertex_count(); ++i) {
+            const Array& places = solid.surface.positions;
+            EXPECT_LT(std::hypot(places.at(i, 0) - 1, places.at(i, 1), places.at(i, 2) - 1), 2 * size) << size;
+        }
+        EXPECT_LT(solid.volume, size * size * size);
+        const Solid rest = solids.extract(SolidRange::below(1 - size)).value();
+        EXPECT_NEAR(solid.volume + rest.volume, solids.grid_volume(), 1e-12);
+    }
+}
+
 TEST(Solid, OfCollapsedCellsIsClosed) {
     for (const std::uint32_t seed : Seeds(400, 8)) {
         Solids solids =
