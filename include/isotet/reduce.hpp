@@ -34,12 +34,13 @@ struct ReducedSurface {
 /// Leaves out vertices and joins the triangles around them, where that moves the surface least.
 ///
 /// Vertices that stay are those of `surface`, with their fields. Triangles that differ in the cell field isovalue, part
-/// or boundary are reduced by themselves, and vertices at borders of these and of the surface stay: what was closed is
-/// closed. Other cell fields, edge_ends and source_cells are left out; normals of triangles and of Normals::vertex are
+/// or boundary are reduced by themselves, all to one error, and vertices at borders of these and of the surface stay:
+/// what was closed is closed. Other cell fields, edge_ends and source_cells are left out; normals of triangles and of Normals::vertex are
 /// worked out anew.
 ///
 /// Guarantees   the same for any thread count; other versions of meshoptimizer may choose other vertices
-/// Cost         O(F log F) on one thread, about a second a million triangles; 150 bytes a triangle while it works
+/// Cost         O(F log F) on one thread, about a second a million triangles, up to nine where there are such
+///              parts; 150 bytes a triangle while it works
 /// Errors       invalid_argument: a share outside 0 to 1, an error below 0, from 2^32 vertices on; invalid_data as
 ///              check(); out_of_memory; cancelled, between parts
 ISOTET_API Result<ReducedSurface> reduce(const Surface& surface, const ReduceOptions& options = {},

@@ -58,21 +58,109 @@ Piece piece_of(const Mesh& mesh, std::span<const std::uint64_t> triangles) {
     return piece;
 }
 
-/// Leaves fewer indices; returns the error in units of the grid.
-double simplify(Piece& piece, const ReduceOptions& options) {
+/// What is left of a piece.
+struct Simplified {
+    std::vector<unsigned> indices;
+    double error = 0; ///< in units of the grid
+
+    std::size_t triangles() const { return indices.size() / 3; }
+};
+
+/// Leaves triangles out until `wanted` are left, or the next one would move the piece farther than `limit`.
+Simplified simplify(const Piece& piece, std::size_t wanted, double limit) {
     constexpr std::size_t stride = 3 * sizeof(float);
     const auto scale =
         static_cast<double>(meshopt_simplifyScale(piece.positions.data(), piece.vertices.size(), stride));
-    const double limit = scale > 0 ? std::min(options.error / scale, 1.0) : 0;
-    const std::size_t triangles = piece.indices.size() / 3;
-    const auto wanted = static_cast<std::size_t>(std::ceil(static_cast<double>(triangles) * (1 - options.share)));
+    Simplified out;
+    out.indices.resize(piece.indices.size());
     float reached = 0;
-    const std::size_t left = meshopt_simplify(piece.indices.data(), piece.indices.data(), piece.indices.size(),
+    const std::size_t left = meshopt_simplify(out.indices.data(), piece.indices.data(), piece.indices.size(),
                                               piece.positions.data(), piece.vertices.size(), stride, 3 * wanted,
-                                              static_cast<float>(limit), meshopt_SimplifyLockBorder, &reached);
-    piece.indices.resize(left);
-    return static_cast<double>(reached) * scale;
+                                              static_cast<float>(scale > 0 ? std::min(limit / scale, 1.0) : 0),
+                                              meshopt_SimplifyLockBorder, &reached);
+    out.indices.resize(left);
+    out.error = static_cast<double>(reached) * scale;
+    return out;
 }
+
+/// How far one of several pieces may go.
+struct Goal {
+    std::size_t wanted = 0;
+    double limit = 0;
+};
+
+/// Pieces are reduced to one error: each to its share of the triangles would move the one whose vertices are nearly all at
+/// borders far, beside one that is flat.
+class Goals {
+public:
+    Goals(std::span<const Piece> pieces, const ReduceOptions& options, const Progress& progress)
+        : pieces_(pieces), progress_(progress) {
+        for (const Piece& piece : pieces) {
+            const std::size_t triangles = piece.indices.size() / 3;
+            goals_.push_back({wanted_of(triangles, options), options.error});
+            triangles_ += triangles;
+        }
+        wanted_ = wanted_of(triangles_, options);
+        if (pieces.size() > 1) share_error();
+    }
+
+    const Goal& operator[](std::size_t piece) const { return goals_[piece]; }
+
+private:
+    static std::size_t wanted_of(std::size_t triangles, const ReduceOptions& options) {
+        return static_cast<std::size_t>(std::ceil(static_cast<double>(triangles) * (1 - options.share)));
+    }
+
+    /// The triangles of each piece that are left at an error.
+    struct Counts {
+        double limit = 0;
+        std::vector<std::size_t> left;
+        std::size_t sum = 0;
+    };
+    Counts counts_at(double limit) const {
+        Counts counts{limit, {}, 0};
+        for (const Piece& piece : pieces_) {
+            if (progress_.cancelled()) break;
+            counts.left.push_back(simplify(piece, 0, limit).triangles());
+            counts.sum += counts.left.back();
+        }
+        counts.left.resize(pieces_.size());
+        return counts;
+    }
+
+    /// Between the errors of all pieces at their shares lies one at which all together have as many triangles as are wanted.
+    void share_error() {
+        constexpr int halvings = 5;
+        double lowest = std::numeric_limits<double>::infinity(), highest = 0;
+        for (std::size_t i = 0; i < pieces_.size() && !progress_.cancelled(); ++i) {
+            const double error = simplify(pieces_[i], goals_[i].wanted, goals_[i].limit).error;
+            lowest = std::min(lowest, error);
+            highest = std::max(highest, error);
+        }
+        if (!(highest > 1.1 * lowest) || progress_.cancelled()) return;
+        Counts above = counts_at(highest), below = counts_at(lowest);
+        for (int i = 0; i < halvings && below.sum > wanted_ && !progress_.cancelled(); ++i) {
+            Counts middle = counts_at(std::sqrt(std::max(below.limit, 1e-6 * above.limit) * above.limit));
+            (middle.sum >= wanted_ ? below : above) = std::move(middle);
+        }
+        const std::size_t between = below.sum - above.sum;
+        for (std::size_t i = 0; i < pieces_.size(); ++i) {
+            // Of what goes between both errors as large a part of each as makes the sum.
+            const std::size_t goes = below.left[i] - std::min(above.left[i], below.left[i]);
+            const double part = between == 0 ? 0
+                                             : static_cast<double>(below.sum - std::min(wanted_, below.sum)) /
+                                                   static_cast<double>(between);
+            goals_[i] = {below.left[i] -
+                             static_cast<std::size_t>(std::floor(static_cast<double>(goes) * std::min(part, 1.0))),
+                         above.limit};
+        }
+    }
+
+    std::span<const Piece> pieces_;
+    const Progress& progress_;
+    std::vector<Goal> goals_;
+    std::size_t triangles_ = 0, wanted_ = 0; ///< of all
+};
 
 /// What of the surface is left: triangles by numbers of its vertices, and for each a triangle of the surface that is of
 /// the same group.
@@ -165,14 +253,18 @@ Result<ReducedSurface> reduced(const Surface& surface, const ReduceOptions& opti
     ReducedSurface out;
     out.triangles_before = surface.triangle_count();
     out.left_out = left_out_of(surface);
+    const std::vector<TriangleGroup> groups = triangle_groups(surface, kept_fields);
+    std::vector<Piece> pieces;
+    for (const TriangleGroup& group : groups) pieces.push_back(piece_of(*mesh, group.triangles));
+    const Goals goals(pieces, options, progress);
     Left left;
-    for (const TriangleGroup& group : triangle_groups(surface, kept_fields)) {
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
         if (progress.cancelled()) return Error{ErrorCode::cancelled, "reducing a surface was cancelled"};
-        Piece piece = piece_of(*mesh, group.triangles);
-        out.error = std::max(out.error, simplify(piece, options));
-        for (const unsigned index : piece.indices) left.corners.push_back(piece.vertices[index]);
-        left.like.insert(left.like.end(), piece.indices.size() / 3, group.triangles.front());
-        progress("reduce", static_cast<double>(left.like.size()) / static_cast<double>(out.triangles_before));
+        const Simplified simplified = simplify(pieces[i], goals[i].wanted, goals[i].limit);
+        out.error = std::max(out.error, simplified.error);
+        for (const unsigned index : simplified.indices) left.corners.push_back(pieces[i].vertices[index]);
+        left.like.insert(left.like.end(), simplified.triangles(), groups[i].triangles.front());
+        progress("reduce", static_cast<double>(i + 1) / static_cast<double>(pieces.size()));
     }
     cancel_double_sheets(left);
     out.surface = surface_of(surface, left);
@@ -184,8 +276,8 @@ Result<ReducedSurface> reduced(const Surface& surface, const ReduceOptions& opti
 
 Result<ReducedSurface> reduce(const Surface& surface, const ReduceOptions& options, const Run& run) {
     if (!(options.share >= 0 && options.share < 1))
-        return invalid_argument(fmt::format("the share of triangles that may go is {}, but must be from 0 to below 1",
-                                            options.share));
+        return invalid_argument(
+            fmt::format("the share of triangles that may go is {}, but must be from 0 to below 1", options.share));
     if (!(options.error >= 0))
         return invalid_argument(fmt::format("the error is {}, but must be 0 or more", options.error));
     if (surface.vertex_count() > std::numeric_limits<std::uint32_t>::max())

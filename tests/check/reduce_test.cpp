@@ -50,6 +50,23 @@ TEST(Reduce, KeepsSolidsClosedAndTheirVolume) {
     EXPECT_GT(reduced.error, 0);
 }
 
+/// Each part has no more than its share: beside a flat face with many triangles the isosurface keeps its own.
+TEST(Reduce, MovesAllPartsOfASurfaceAlike) {
+    const Surface surface = holed_cube();
+    double last = 0;
+    for (const double share : {0.3, 0.5, 0.7, 0.85}) {
+        const ReducedSurface both = reduce(surface, {.share = share}).value();
+        EXPECT_GE(both.error, last);
+        last = both.error;
+        const auto left = static_cast<double>(both.surface.triangle_count());
+        EXPECT_NEAR(left / static_cast<double>(surface.triangle_count()), 1 - share, 0.05) << share;
+        // With this error as the only limit the same triangles go, about.
+        const ReducedSurface by_error = reduce(surface, {.share = 0.999, .error = 1.05 * both.error}).value();
+        EXPECT_LT(static_cast<double>(by_error.surface.triangle_count()), 1.15 * left) << share;
+        EXPECT_GT(static_cast<double>(by_error.surface.triangle_count()), 0.7 * left) << share;
+    }
+}
+
 TEST(Reduce, TakesFlatFacesWithoutAnError) {
     const Surface surface = holed_cube();
     const ReducedSurface reduced = reduce(surface, {.share = 0.99, .error = 1e-6}).value();
