@@ -58,6 +58,19 @@ struct Solid {
     ContourResult contour;        ///< of the isosurfaces; its surfaces are empty
 };
 
+/// What Solid tells of its surface, of one that reduce() or keep_parts() changed.
+///
+/// `patches`   those that the cell field "patch" has, without their names; none where it was left out
+struct SolidMeasure {
+    std::uint64_t isosurface_triangles = 0;
+    double volume = 0, isosurface_area = 0, boundary_area = 0;
+    std::vector<SolidPatch> patches;
+};
+
+/// Cost     O(F)
+/// Errors   invalid_argument: the surface has no cell field "boundary"
+ISOTET_API Result<SolidMeasure> measure_solid(const Surface& surface);
+
 /// Makes solids of one grid and field, for one isovalue after another.
 ///
 /// The isosurface is that of Contour. The boundary consists of the faces that cells with data do not share; polyhedra and

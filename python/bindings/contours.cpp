@@ -235,7 +235,8 @@ void add_sessions(nb::module_& module) {
             [](Contour* self, const Grid& grid, const PointField& field, const FieldsIn& fields,
                const FieldsIn& cell_fields, const ContourOptions& options, const CallOptions& how) {
                 ContourInput input = contour_input(grid, field, fields, cell_fields);
-                new (self) Contour(call(how, [&](const Run& run) { return Contour::create(std::move(input), options, run); }));
+                new (self)
+                    Contour(call(how, [&](const Run& run) { return Contour::create(std::move(input), options, run); }));
             },
             "grid"_a, "field"_a, "fields"_a, "cell_fields"_a, "options"_a, "call"_a)
         .def(
@@ -291,22 +292,21 @@ void add_contour_blocks(nb::module_& module) {
                 in.push_back({session, contour_input(*grid, *field, fields, cell_fields), *options});
             nb::list out;
             for (BlockOut& block : call(how, [&](const Run& run) { return contour_blocks(in, isovalues, run); }))
-                out.append(nb::make_tuple(word_of(block.update, words_of_update), extracted_out(std::move(block.extracted))));
+                out.append(
+                    nb::make_tuple(word_of(block.update, words_of_update), extracted_out(std::move(block.extracted))));
             return out;
         },
         "blocks"_a, "isovalues"_a, "call"_a);
 }
 
-nb::dict solid_out(const Solid& solid, double grid_volume) {
+/// Of a Solid and a SolidMeasure.
+template <class Told>
+nb::dict measure_out(const Told& solid) {
     nb::dict out;
     out["volume"] = solid.volume;
-    out["grid_volume"] = grid_volume;
     out["isosurface_area"] = solid.isosurface_area;
     out["boundary_area"] = solid.boundary_area;
     out["isosurface_triangles"] = solid.isosurface_triangles;
-    out["open_edges"] = solid.open_edges;
-    out["seam_edges"] = solid.seam_edges;
-    out["unfit_edges"] = solid.unfit_edges;
     nb::list patches;
     for (const SolidPatch& patch : solid.patches) {
         nb::dict told;
@@ -320,7 +320,22 @@ nb::dict solid_out(const Solid& solid, double grid_volume) {
     return out;
 }
 
+nb::dict solid_out(const Solid& solid, double grid_volume) {
+    nb::dict out = measure_out(solid);
+    out["grid_volume"] = grid_volume;
+    out["open_edges"] = solid.open_edges;
+    out["seam_edges"] = solid.seam_edges;
+    out["unfit_edges"] = solid.unfit_edges;
+    return out;
+}
+
 void add_solids(nb::module_& module) {
+    module.def(
+        "measure_solid",
+        [](const Surface& surface, const CallOptions& how) {
+            return measure_out(call(how, [&](const Run&) { return measure_solid(surface); }));
+        },
+        "surface"_a, "call"_a);
     nb::class_<Solids>(module, "Solids")
         .def(
             "__init__",

@@ -161,7 +161,21 @@ class Surface:
         numbers = [kept] if isinstance(kept, (int, np.integer)) else [int(part) for part in kept]
         if any(part < 0 for part in numbers):
             raise ValueError(f"part {min(numbers)} is asked for, but parts are counted from 0")
-        return Surface._of(_isotet.keep_parts(self._surface, numbers, call_options(threads, progress)), dict(self._how))
+        return self._changed(_isotet.keep_parts(self._surface, numbers, call_options(threads, progress)))
+
+    def _changed(self, surface: _isotet.Surface) -> Surface:
+        """This surface after some of its triangles went; of a solid, with the numbers of what is left."""
+        how = dict(self._how)
+        solid = how.get("solid")
+        if solid is not None:
+            left = _isotet.measure_solid(surface, call_options(0, None))
+            by_number = {patch["number"]: patch for patch in left["patches"]}
+            has_patches = "patch" in surface.cell_fields
+            nothing = {"triangles": 0, "area": 0.0}
+            patches = [{**patch, **{key: by_number.get(patch["number"], nothing)[key] for key in nothing}}
+                       for patch in solid["patches"]] if has_patches else []  # fmt: skip
+            how["solid"] = {**solid, **left, "patches": patches}
+        return Surface._of(surface, how)
 
     def parts_touching(
         self, field: str, value: float | tuple[float, float], *, threads: int = 0, progress: Progress | None = None
@@ -188,8 +202,7 @@ class Surface:
         boundary, edge_ends and source_cells are left out.
         """
         most = math.inf if error is None else float(error)
-        reduced = _isotet.reduce(self._surface, share, most, call_options(threads, progress))
-        return Surface._of(reduced, dict(self._how))
+        return self._changed(_isotet.reduce(self._surface, share, most, call_options(threads, progress)))
 
     def write(
         self,

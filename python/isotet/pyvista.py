@@ -390,6 +390,8 @@ class PolyDataAccessor(GridAccessor):
     def _polydata(self, surface: Surface) -> pyvista.PolyData:
         out = pyvista.wrap(to_polydata(surface))
         out.GetFieldData().PassData(self._grid.GetFieldData())
+        if "volume" in out.field_data and "boundary" in surface.cell_fields:  # a solid's
+            out.field_data["volume"] = [_isotet.measure_solid(surface._surface, call_options(0, None))["volume"]]
         return out
 
     def decimate(self, target_reduction: float = 0.5, *, error: float | None = None) -> pyvista.PolyData:

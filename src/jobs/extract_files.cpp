@@ -652,7 +652,10 @@ Result<void> ExtractRun::find_parts_of(Surface& surface, SurfaceNumbers& numbers
     if (kept.size() < found->parts.size()) {
         numbers.area = area(surface);
         caller_.note(fmt::format("{} of {} parts are kept", grouped(kept.size()), grouped(found->parts.size())));
-        if (numbers.solid) tell_kept_of_solid(*found, kept, *numbers.solid, caller_);
+        if (numbers.solid) {
+            note_cavities(*found, kept, caller_);
+            if (auto measured = measure_again(surface, *numbers.solid); !measured) return measured;
+        }
     }
     found->numbers = {};
     numbers.parts = *std::move(found);
@@ -684,6 +687,7 @@ Result<void> ExtractRun::reduce_triangles(Surface& surface, SurfaceNumbers& numb
     numbers.vertices = surface.vertex_count();
     numbers.triangles = surface.triangle_count();
     numbers.area = area(surface);
+    if (numbers.solid) return measure_again(surface, *numbers.solid);
     return {};
 }
 

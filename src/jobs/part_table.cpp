@@ -62,20 +62,27 @@ Result<std::vector<std::uint64_t>> kept_parts(const Surface& surface, const Surf
     return all;
 }
 
-void tell_kept_of_solid(const SurfaceParts& found, const std::vector<std::uint64_t>& kept, SolidNumbers& solid,
-                        Caller& caller) {
-    const auto last = std::ranges::find(found.fields.rbegin(), found.fields.rend(), "boundary");
-    const auto boundary = static_cast<std::size_t>(found.fields.rend() - last - 1);
-    solid.volume = solid.boundary_area = solid.isosurface_area = 0;
+Result<void> measure_again(const Surface& surface, SolidNumbers& solid) {
+    const Result<SolidMeasure> measured = measure_solid(surface);
+    if (!measured) return measured.error();
+    solid.volume = measured->volume;
+    solid.isosurface_area = measured->isosurface_area;
+    solid.boundary_area = measured->boundary_area;
+    const bool has_patches = std::ranges::find(surface.cell_fields, "patch", &Field::name) != surface.cell_fields.end();
+    if (!has_patches) solid.patches.clear();
+    for (SolidPatch& patch : solid.patches) {
+        const auto found = std::ranges::find(measured->patches, patch.number, &SolidPatch::number);
+        const bool is_left = found != measured->patches.end();
+        patch.triangles = is_left ? found->triangles : 0;
+        patch.area = is_left ? found->area : 0;
+    }
+    return {};
+}
+
+void note_cavities(const SurfaceParts& found, const std::vector<std::uint64_t>& kept, Caller& caller) {
     std::uint64_t cavities = 0;
     for (const SurfacePart& part : found.parts) cavities += part.closed && part.volume < 0;
-    for (const std::uint64_t number : kept) {
-        const SurfacePart& part = found.parts[number];
-        solid.volume += part.volume;
-        solid.boundary_area += part.area * part.means[boundary];
-        solid.isosurface_area += part.area * (1 - part.means[boundary]);
-        cavities -= part.closed && part.volume < 0;
-    }
+    for (const std::uint64_t number : kept) cavities -= found.parts[number].closed && found.parts[number].volume < 0;
     if (cavities > 0)
         caller.note(fmt::format("of the parts left out {}, of negative volume: the solid is filled there",
                                 cavities == 1 ? "1 is a cavity" : grouped(cavities) + " are cavities"));

@@ -19,9 +19,11 @@ Result<std::vector<std::uint64_t>> kept_parts(const Surface& surface, const Surf
                                               const std::optional<PartChoice>& choice,
                                               const std::optional<Region>& touched);
 
-/// Makes volume and areas those of the parts that are kept, and tells which cavities are left out.
-void tell_kept_of_solid(const SurfaceParts& found, const std::vector<std::uint64_t>& kept, SolidNumbers& solid,
-                        Caller& caller);
+/// The solid's numbers, of its surface after parts or triangles were left out.
+Result<void> measure_again(const Surface& surface, SolidNumbers& solid);
+
+/// Notes which of the parts that are not kept are cavities.
+void note_cavities(const SurfaceParts& found, const std::vector<std::uint64_t>& kept, Caller& caller);
 
 /// A row for each part of each surface, kept or not, with a line of names first; numbers as they read back.
 std::string parts_csv(const ExtractNumbers& numbers);

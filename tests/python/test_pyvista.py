@@ -467,6 +467,8 @@ def test_solids_are_closed():
     grid = cubes()
     ball = grid.isotet.solid("r", below=3.0)
     assert ball.is_manifold and ball.field_data["volume"][0] == pytest.approx(ball.volume, rel=1e-5)
+    for changed in (ball.isotet.decimate(0.7), grid.isotet.solid("r", above=6.0).isotet.extract_largest()):
+        assert changed.field_data["volume"][0] == pytest.approx(changed.volume, rel=1e-5)
     assert set(ball.cell_data) == {"number", "boundary"} and {"x", "v", "r"} <= set(ball.point_data)
     assert grid.isotet.solid("number", above=100.0, preference="cell").is_manifold
     with pytest.raises(ValueError, match="above, below or both"):

@@ -490,6 +490,19 @@ def test_parts_are_told_and_kept():
         surface.keep_parts(len(table))
 
 
+def test_solids_are_measured_again_where_parts_or_triangles_go():
+    solid = isotet.make("kuhn", 20, ["gyroid"]).solid("gyroid", above=0.95)
+    table = isotet.parts(solid)
+    largest = solid.keep_parts()
+    assert largest.solid["volume"] == pytest.approx(table[0]["volume"], rel=1e-12)
+    assert largest.solid["boundary_area"] == pytest.approx(table[0]["area"] * table[0]["means"]["boundary"], rel=1e-9)
+    assert largest.solid["grid_volume"] == solid.solid["grid_volume"] and largest.solid["open_edges"] == 0
+    reduced = solid.reduce(0.6)
+    assert reduced.solid["volume"] == pytest.approx(sum(part["volume"] for part in isotet.parts(reduced)), rel=1e-9)
+    assert reduced.solid["isosurface_area"] + reduced.solid["boundary_area"] == pytest.approx(reduced.area, rel=1e-9)
+    assert reduced.solid["isosurface_triangles"] == np.count_nonzero(reduced.cell_fields["boundary"] == 0)
+
+
 def test_parts_that_touch_a_region_are_told():
     solid = isotet.make("kuhn", 20, ["gyroid"]).solid("gyroid", above=0.95)
     touching = solid.parts_touching("boundary", 1)
