@@ -62,7 +62,7 @@ struct SceneLook {
     std::optional<ValueRange> isovalue_range;  ///< in which isovalues have their colours; nothing: that of those shown
     ShadeBy shade_by = ShadeBy::vertices;
     ColorMap map = ColorMap::viridis;
-    std::optional<double> opacity; ///< nothing: 1, and of several isosurfaces 0.35 for those that hide others
+    std::optional<double> opacity; ///< nothing: that of looks_of()
     double boundary_opacity = 0.1; ///< of the grid's boundary; 0: it is not looked for
     bool outline = false;          ///< the edges of the box around
     double line_width = 1;         ///< pixels
@@ -83,13 +83,20 @@ struct SurfaceLook {
     double opacity = 1;
 };
 
-/// What IsosurfaceScene gives isosurfaces that are shown together: colours in the order of their values, and of several
-/// surfaces an opacity of 0.35 to those that may hide others, because a box of another one lies in theirs.
+/// Vertices of a surface, up to 2048, spread evenly over their order.
+using SurfacePoints = std::vector<std::array<double, 3>>;
+ISOTET_API SurfacePoints some_points_of(const Surface& surface);
+
+/// By surface: which others it hides more than two thirds of, in the mean over 14 directions.
+ISOTET_API std::vector<std::vector<std::size_t>> hidden_by(std::span<const SurfacePoints> points);
+
+/// What IsosurfaceScene gives isosurfaces that are shown together: colours in the order of their values, and an opacity of
+/// 0.35 to those that hide others (hidden_by()).
 ///
-/// `boxes`    of the surfaces, one an isovalue; empty for a surface that is
+/// `points`   of the surfaces, one an isovalue
 /// `look`     its map, range of isovalues and opacity count
 /// Returns    a look an isovalue
-ISOTET_API std::vector<SurfaceLook> looks_of(std::span<const double> isovalues, std::span<const Box> boxes,
+ISOTET_API std::vector<SurfaceLook> looks_of(std::span<const double> isovalues, std::span<const SurfacePoints> points,
                                              const SceneLook& look);
 
 /// The cut through a grid along a plane, as IsosurfaceScene draws it; with `field`, if it is not null, as its first field of

@@ -46,6 +46,7 @@ struct IsosurfaceScene::Data {
     std::deque<SurfaceColors> fixed_values = {};
     std::vector<DrawnSurface> fixed = {}; ///< slices and boundary
     std::vector<Box> boxes = {};          ///< of surfaces shown; empty where they are on the device
+    std::vector<SurfacePoints> points = {}; ///< likewise
     Scene scene = {};
     std::vector<ShownSurface> shown = {};
     SceneReport report = {};
@@ -67,7 +68,7 @@ struct IsosurfaceScene::Data {
     Result<void> show_on_device(std::span<const double> isovalues, const Run& run);
     Result<void> add_surface(Surface one);
     bool draws_surface_edges() const { return look.edges && (surface || (!boundary && slices.empty())); }
-    bool hides_another(std::size_t which) const;
+    std::vector<bool> find_hiding() const;
     std::uint64_t smallest_size() const;
     void dress();
     void add_volume();

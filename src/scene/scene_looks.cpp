@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Colours and opacities of isosurfaces that are shown together.
+#include "scene/hiding.hpp"
 #include "scene/scene_data.hpp"
 
 namespace isotet {
@@ -25,25 +26,16 @@ Color color_among(std::size_t count, std::size_t which, const ValueAt& value_at,
     return color_at(look.map, 0.12 + 0.76 * static_cast<double>(below) / static_cast<double>(count - 1));
 }
 
-bool holds(const Box& box, const Box& other) {
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        if (!(box.lower[axis] <= other.lower[axis] && other.upper[axis] <= box.upper[axis])) return false;
-    return true;
-}
-
-/// Whether a surface may hide another one: one that has its box inside this one's. Of surfaces side by side, such as planes,
-/// all may.
-bool box_hides_another(std::span<const Box> boxes, std::size_t which) {
-    for (std::size_t i = 0; i < boxes.size(); ++i)
-        if (i != which && !boxes[i].empty() && !holds(boxes[i], boxes[which])) return true;
-    return false;
-}
-
 } // namespace
 
-bool IsosurfaceScene::Data::hides_another(std::size_t which) const {
-    if (boxes.size() != shown.size()) return shown[which].size() > smallest_size(); // they are on the device
-    return box_hides_another(boxes, which);
+/// By surface: whether it hides another one. Of those on a device only their sizes are known.
+std::vector<bool> IsosurfaceScene::Data::find_hiding() const {
+    const scene::Hiding hiding(points);
+    const std::uint64_t smallest = smallest_size();
+    std::vector<bool> found;
+    for (std::size_t i = 0; i < shown.size(); ++i)
+        found.push_back(points.size() == shown.size() ? hiding.hides_any(i) : shown[i].size() > smallest);
+    return found;
 }
 
 std::uint64_t IsosurfaceScene::Data::smallest_size() const {
@@ -55,11 +47,11 @@ std::uint64_t IsosurfaceScene::Data::smallest_size() const {
 
 /// Colours and opacities, and what is around the surfaces.
 void IsosurfaceScene::Data::dress() {
+    const std::vector<bool> hides = find_hiding();
     for (std::size_t i = 0; i < shown.size(); ++i) {
         const auto value_at = [&](std::size_t at) { return shown[at].isovalue; };
         scene.surfaces[i].color = color_among(shown.size(), i, value_at, look);
-        scene.surfaces[i].opacity =
-            look.opacity.value_or(shown.size() > 1 && hides_another(i) ? opacity_among_several : 1);
+        scene.surfaces[i].opacity = look.opacity.value_or(hides[i] ? opacity_among_several : 1);
     }
     scene.lines = edges;
     scene.lines.insert(scene.lines.end(), surface_edges.begin(), surface_edges.end());
@@ -85,14 +77,14 @@ void IsosurfaceScene::Data::add_volume() {
         drawn.isosurfaces.push_back({volume.isosurfaces[i], color_among(volume.isosurfaces.size(), i, value_at, look)});
 }
 
-std::vector<SurfaceLook> looks_of(std::span<const double> isovalues, std::span<const Box> boxes,
+std::vector<SurfaceLook> looks_of(std::span<const double> isovalues, std::span<const SurfacePoints> points,
                                   const SceneLook& look) {
     std::vector<SurfaceLook> looks(isovalues.size());
+    const scene::Hiding hiding(points);
     const auto value_at = [&](std::size_t at) { return std::optional(isovalues[at]); };
     for (std::size_t i = 0; i < looks.size(); ++i) {
         looks[i].color = color_among(isovalues.size(), i, value_at, look);
-        const bool hides = isovalues.size() > 1 && i < boxes.size() && box_hides_another(boxes, i);
-        looks[i].opacity = look.opacity.value_or(hides ? opacity_among_several : 1);
+        looks[i].opacity = look.opacity.value_or(i < points.size() && hiding.hides_any(i) ? opacity_among_several : 1);
     }
     return looks;
 }

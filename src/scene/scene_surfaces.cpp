@@ -221,6 +221,7 @@ Result<void> IsosurfaceScene::Data::add_surface(Surface one) {
         one.normals_kind = Normals::none;
     }
     boxes.push_back(bounds_of(one));
+    points.push_back(some_points_of(one));
     if (draws_surface_edges()) surface_edges.push_back(scene::edges_of(one));
     DrawnSurface& drawn = scene.surfaces.emplace_back();
     std::optional<SurfaceColors> colors;
@@ -251,6 +252,7 @@ void IsosurfaceScene::Data::clear() {
     extracted.clear();
     values.clear();
     boxes.clear();
+    points.clear();
     shown.clear();
 }
 

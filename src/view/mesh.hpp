@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <isotet/isosurface_scene.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
 #include <isotet/scene.hpp>
@@ -53,6 +54,9 @@ Result<Mesh> mesh_of(const Surface& surface, const SurfaceColors* colors, const 
 /// Cost         O(V + F)
 /// Method       vertex clustering (Rossignac and Borrel 1993)
 Mesh preview_of(const Mesh& mesh, std::size_t triangles);
+
+/// As those of a surface.
+SurfacePoints some_points_of(const Mesh& mesh);
 
 /// Bytes behind one another, each block at a multiple of 8.
 class Blocks {

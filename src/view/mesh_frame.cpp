@@ -252,14 +252,14 @@ Result<void> GridView::add_isosurfaces(const ShowMessage& message, const std::ve
     if (!source) return source.error();
     std::vector<Shown> shown;
     std::vector<double> values; // each once
-    std::vector<Box> boxes;
+    std::vector<SurfacePoints> points;
     for (const double isovalue : state.isovalues) {
         auto surface = surface_at(message, isovalue, *source, making, run);
         if (!surface) return surface.error();
         shown.push_back(*std::move(surface));
         if (std::ranges::find(values, isovalue) != values.end()) continue;
         values.push_back(isovalue);
-        boxes.push_back(shown.back().mesh->box);
+        points.push_back(some_points_of(*shown.back().mesh));
     }
     if (std::ranges::all_of(shown, [](const Shown& one) { return one.field_bound.has_value(); }))
         for (const Shown& one : shown)
@@ -267,7 +267,7 @@ Result<void> GridView::add_isosurfaces(const ShowMessage& message, const std::ve
     SceneLook look;
     look.map = state.map;
     look.opacity = state.opacity;
-    const std::vector<SurfaceLook> looks = looks_of(values, boxes, look);
+    const std::vector<SurfaceLook> looks = looks_of(values, points, look);
     for (std::size_t i = 0; i < shown.size(); ++i) {
         const double isovalue = state.isovalues[i];
         const auto which = static_cast<std::size_t>(std::ranges::find(values, isovalue) - values.begin());

@@ -73,6 +73,20 @@ struct Gathered {
 
 } // namespace
 
+SurfacePoints some_points_of(const Mesh& mesh) {
+    constexpr std::size_t most = 2048, places = 65535;
+    SurfacePoints points;
+    const std::size_t step = (mesh.vertices.size() + most - 1) / most;
+    for (std::size_t i = 0; i < mesh.vertices.size(); i += step) {
+        std::array<double, 3>& point = points.emplace_back();
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double part = static_cast<double>(mesh.vertices[i].place[axis]) / places;
+            point[axis] = mesh.box.lower[axis] + part * (mesh.box.upper[axis] - mesh.box.lower[axis]);
+        }
+    }
+    return points;
+}
+
 Mesh preview_of(const Mesh& mesh, std::size_t triangles) {
     if (mesh.flat || mesh.triangle_count() <= triangles || mesh.box.empty()) return mesh;
     const Lattice lattice(mesh.box, cells_along(mesh, static_cast<double>(triangles) / 2));

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include <isotet/isosurface_scene.hpp>
 #include <isotet/levels.hpp>
 #include <isotet/text.hpp>
 
@@ -48,6 +50,7 @@ private:
     Result<void> look_at_steps();
     Result<void> choose_isovalues();
     Result<void> code_step(std::size_t step);
+    void tell_hidden(std::span<const SurfacePoints> points);
     Result<void> code_boundary(std::size_t step, const ShowMessage& message, std::vector<std::string> known);
     Result<CodedSurface> coded(const FrameParts& parts, const FrameSurface& surface, std::size_t step);
     /// What of all that is in the file.
@@ -102,8 +105,7 @@ Result<void> SurfaceSaver::choose_isovalues() {
             return Error{ErrorCode::invalid_argument,
                          fmt::format("no isovalue lies inside the range of '{}', {} to {}: name some",
                                      input_.state.field, range.lower, range.upper)};
-        isovalues_ =
-            evenly_spaced_levels(range.lower, range.upper, options_.count, LevelRounding::short_decimals);
+        isovalues_ = evenly_spaced_levels(range.lower, range.upper, options_.count, LevelRounding::short_decimals);
     }
     std::ranges::sort(isovalues_);
     isovalues_.erase(std::ranges::unique(isovalues_).begin(), isovalues_.end());
@@ -140,6 +142,7 @@ Result<void> SurfaceSaver::code_step(std::size_t step) {
     message.state.boundary = 0;
     message.refined = options_.refine.has_value();
     std::vector<std::string> known;
+    std::vector<SurfacePoints> points;
     for (std::size_t i = 0; i < isovalues_.size(); ++i) {
         message.state.isovalues = {isovalues_[i]};
         const Result<FrameParts> parts = view_->frame_parts(message, {}, run_);
@@ -148,10 +151,23 @@ Result<void> SurfaceSaver::code_step(std::size_t step) {
         if (!surface) return surface.error();
         simplified_ |= parts->facts.preview;
         surfaces_.push_back(*std::move(surface));
+        points.push_back(some_points_of(*parts->surfaces.front().mesh));
         known = parts->keys;
         run_.progress("extract", static_cast<double>(i + 1) / static_cast<double>(isovalues_.size()));
     }
+    tell_hidden(points);
     return code_boundary(step, message, std::move(known));
+}
+
+/// Of the surfaces of the last step: which isovalues' surfaces each of them hides.
+void SurfaceSaver::tell_hidden(std::span<const SurfacePoints> points) {
+    const std::vector<std::vector<std::size_t>> hidden = hidden_by(points);
+    CodedSurface* const surfaces = surfaces_.data() + surfaces_.size() - points.size();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        Json isovalues = Json::array();
+        for (const std::size_t other : hidden[i]) isovalues.push_back(isovalues_[other]);
+        surfaces[i].told["hides"] = std::move(isovalues);
+    }
 }
 
 /// Of a frame that has the last surface already.
@@ -196,8 +212,8 @@ Json SurfaceSaver::saved_json(const Shown& shown) const {
     ViewerInput input;
     input.state = input_.state;
     const double wanted = input_.state.isovalues.empty() ? first_ : input_.state.isovalues.front();
-    input.state.isovalues = {*std::ranges::min_element(
-        shown.isovalues, {}, [&](double value) { return std::abs(value - wanted); })};
+    input.state.isovalues = {
+        *std::ranges::min_element(shown.isovalues, {}, [&](double value) { return std::abs(value - wanted); })};
     input.state.step.reset();
     input.notes = input_.notes;
     if (options_.steps.size() > 1) {
