@@ -60,6 +60,17 @@ void add_part(const Command& command, const std::string& name, std::optional<dou
         "OPACITY", description);
 }
 
+/// How dark folds become.
+void add_occlusion(const Command& command, RenderCommand& render) {
+    command.add_number(
+        "--occlusion",
+        [&render](double number) {
+            if (number < 0 || number > 1) refuse_value("--occlusion", shortest(number), "a number from 0 to 1");
+            render.occlusion = number;
+        },
+        "PART", "How dark folds and hollows of opaque surfaces become, 0 to 1; default: 0.8. On a device: 0");
+}
+
 void add_color(const Command& command, const std::string& name, Color& color, const std::string& description) {
     command.add_value(
         name,
@@ -197,7 +208,7 @@ void add_opacity(const Command& command, RenderCommand& render) {
             for (const std::string& text : texts) set_opacity(render, text);
         },
         "OPACITY",
-        "Opacity of the surfaces, 0 to 1; default: 1, and 0.35 for isosurfaces that may hide others. "
+        "Opacity of the surfaces, 0 to 1; default: 1, and 0.35 for isosurfaces that hide others. "
         "Of a volume: VALUE:OPACITY,... ascending, with lines between; ramp (default); peaks or peaks:N, at N values; "
         "shell, transparent near the ends of the range. May be given for both");
     command.add_flag(
@@ -265,6 +276,7 @@ Command add_render_command(const Command& program, RenderCommand& render) {
     add_part(command, "--boundary", render.boundary, "Opacity of the grid's boundary, 0 to 1; default: 0.1");
     command.add_flag("--outline", render.outline, "Draw the edges of the grid's box");
     add_opacity(command, render);
+    add_occlusion(command, render);
     add_size(command, render.picture);
     add_camera(command, render);
     add_cuts(command, render);

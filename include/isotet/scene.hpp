@@ -117,11 +117,15 @@ struct Scene {
     std::vector<DrawnVolume> volumes = {}; ///< that do not overlap; the CPU draws them
 };
 
+/// PictureOptions::occlusion of isotet's own pictures.
+inline constexpr double default_occlusion = 0.8;
+
 struct PictureOptions {
     std::uint32_t width = 1200, height = 900; ///< pixels, 1 to 32768 each
     std::uint32_t samples = 3;                ///< an axis and pixel, 1 to 8: their mean is the pixel
     Color background{1, 1, 1, 1};
     Camera camera;
+    double occlusion = 0; ///< how dark folds of opaque surfaces become, 0 to 1; devices draw 0
 };
 
 } // namespace isotet

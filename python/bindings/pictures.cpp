@@ -168,8 +168,10 @@ void add_pictures(nb::module_& module) {
            double zoom, std::pair<std::uint32_t, std::uint32_t> size, std::uint32_t samples,
            const std::string& background, const std::string& title, bool legend, bool smooth,
            const std::optional<PackedGrid>& volume, const std::string& volume_opacity,
-           std::optional<double> opacity_length, const std::vector<double>& volume_isovalues, const CallOptions& how) {
+           std::optional<double> opacity_length, const std::vector<double>& volume_isovalues, double occlusion,
+           const CallOptions& how) {
             RenderRequest request;
+            request.picture.occlusion = occlusion;
             request.volume = volume;
             if (!volume_opacity.empty())
                 request.volume_opacity = call(how, [&](const Run&) { return parse_opacity(volume_opacity); });
@@ -201,7 +203,8 @@ void add_pictures(nb::module_& module) {
         },
         "surfaces"_a, "colors"_a, "values"_a, "of_triangles"_a, "color_map"_a, "range"_a.none(), "opacity"_a,
         "camera"_a, "fitted"_a, "zoom"_a, "size"_a, "samples"_a, "background"_a, "title"_a, "legend"_a, "smooth"_a,
-        "volume"_a.none(), "volume_opacity"_a, "opacity_length"_a.none(), "volume_isovalues"_a, "call"_a);
+        "volume"_a.none(), "volume_opacity"_a, "opacity_length"_a.none(), "volume_isovalues"_a, "occlusion"_a,
+        "call"_a);
 }
 
 } // namespace isotet::python

@@ -13,6 +13,8 @@ Result<Drawer> Drawer::open(const DrawJob& job, Caller& caller) {
     if (wanted && draws_volume(job))
         caller.note("the CPU draws volumes, and extracts what is drawn with them: no device is used");
     if (!wanted || draws_volume(job)) return drawer;
+    if (job.occlusion.value_or(0) > 0)
+        return Error{ErrorCode::invalid_argument, "`occlusion` and a device, but only the CPU darkens folds"};
     Result<Device> device = open_drawing_device(job.device, caller);
     if (!device) return device.error();
     Result<Renderer> renderer = Renderer::create(*device);

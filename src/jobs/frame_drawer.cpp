@@ -61,6 +61,7 @@ Result<Picture> FrameDrawer::draw(const DrawInput& input, double azimuth) {
     }
     point_camera(input, azimuth, static_cast<double>(options.width) / options.height);
     options.camera = *camera_;
+    options.occlusion = job_.occlusion.value_or(default_occlusion);
     Result<Picture> picture = drawer_.draw(input.scene->scene(), options, caller_.run());
     if (!picture || !*room) return picture;
     if (annotation.orientation) annotation.orientation->camera = *camera_;

@@ -48,6 +48,8 @@ Result<void> check_options(const PictureOptions& options) {
     if (options.samples < 1 || options.samples > max_samples)
         return invalid_argument(
             fmt::format("{} samples an axis, but they must be from 1 to {}", options.samples, max_samples));
+    if (!(options.occlusion >= 0 && options.occlusion <= 1))
+        return invalid_argument(fmt::format("an occlusion of {}, but it must be from 0 to 1", options.occlusion));
     return check_camera(options.camera);
 }
 

@@ -138,6 +138,7 @@ Result<Frame> GridView::picture_frame(const ShowMessage& message, double wait_se
     options.width = std::max(1U, (*message.picture)[0] / part);
     options.height = std::max(1U, (*message.picture)[1] / part);
     if (message.moving) options.samples = 1;
+    else options.occlusion = default_occlusion;
     options.camera = *message.state.camera;
     const Result<Picture> picture = draw(scene_->scene(), options, run);
     if (!picture) return picture.error();

@@ -291,7 +291,7 @@ TEST_F(Render, DrawsOnTheCpuWhatADeviceDraws) {
         return more;
     };
     ASSERT_EQ(isotet(drawn("device.png", {"--device", "software"})).status, 0);
-    std::vector<std::string> words = drawn("cpu.png", {});
+    std::vector<std::string> words = drawn("cpu.png", {"--occlusion", "0"}); // which devices do not draw
     EXPECT_TRUE(json_of(words)["device"].is_null());
     const Picture cpu = read_picture(path("cpu.png")).value(), device = read_picture(path("device.png")).value();
     EXPECT_LE(difference(cpu, device, 1).value(), 0.001);
@@ -299,6 +299,9 @@ TEST_F(Render, DrawsOnTheCpuWhatADeviceDraws) {
     words.insert(words.end(), {"--threads", "1"});
     ASSERT_EQ(isotet(words).status, 0);
     EXPECT_TRUE(content(path("cpu.png")) == bytes) << "on any number of threads";
+    const RunResult run = isotet(drawn("device.png", {"--device", "software", "--occlusion", "0.5"}));
+    EXPECT_EQ(run.status, 2);
+    EXPECT_TRUE(is_one_error(run, "--occlusion and a device, but only the CPU darkens folds"));
 }
 
 TEST_F(Render, SweepsThroughIsovaluesIntoNumberedFiles) {

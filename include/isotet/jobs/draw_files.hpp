@@ -43,7 +43,8 @@ struct DrawJob {
     std::vector<double> isovalues;
     std::vector<IsovalueShare> shares; ///< more isovalues, after the others: of each time step its own
     std::uint64_t levels = 0;          ///< 0: `isovalues` and `shares` say it, or three
-    PictureOptions picture;   ///< the camera aside
+    PictureOptions picture;   ///< camera and occlusion aside
+    std::optional<double> occlusion; ///< of the picture; nothing: default_occlusion where the CPU draws
     View view = View::iso;
     std::vector<double> angles; ///< azimuth and elevation, instead of `view`; or none
     std::optional<UpAxis> up;

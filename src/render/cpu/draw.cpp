@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
+#include <optional>
 
 #include <fmt/core.h>
 
@@ -107,13 +108,19 @@ Result<Picture> draw_on_cpu(const Scene& scene, const PictureOptions& options, c
     if (!volumes) return volumes.error();
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "drawing was cancelled"};
     const render::Bins bins(*sheets, tiling, screen.sight, progress);
+    const auto is_lit = [](const Sheet& sheet) { return sheet.lit && !sheet.translucent; };
+    std::optional<render::Occlusion> occlusion;
+    if (options.occlusion > 0 && std::ranges::any_of(*sheets, is_lit))
+        occlusion.emplace(*sheets, bins, tiling, screen, progress);
     render::TileScene shared{*sheets,
                              screen,
                              tiling,
                              render::linear_light(options.background),
                              std::clamp(options.background.opacity, 0.0F, 1.0F),
                              {},
-                             volumes->get()};
+                             volumes->get(),
+                             occlusion ? &*occlusion : nullptr,
+                             static_cast<float>(options.occlusion)};
     Picture picture{options.width, options.height, {}};
     picture.pixels.resize(std::size_t{options.width} * options.height);
     std::atomic<std::size_t> done = 0;

@@ -165,6 +165,16 @@ Shade Tile::shade_of(const Facet& facet, std::int32_t x, std::int32_t y, SampleM
                  static_cast<double>(frame_.y + y * frame_.samples) + half + down, scene_.screen.sight);
 }
 
+/// Darker where little of the surroundings is seen.
+Light Tile::opaque_color(const Facet& facet, std::int32_t x, std::int32_t y, SampleMask mask) const {
+    Light color = shade_of(facet, x, y, mask).color;
+    if (!scene_.occlusion || !facet.sheet->lit) return color;
+    const float depth = std::clamp(depth_in_middle(facet.depth, x, y), facet.depth.lower, facet.depth.upper);
+    const float open = scene_.occlusion->openness(frame_.x / frame_.samples + x, frame_.y / frame_.samples + y, depth);
+    for (float& part : color) part *= 1 - scene_.occlusion_strength * (1 - open);
+    return color;
+}
+
 Tile::Blend Tile::resolve(std::int32_t x, std::int32_t y) {
     const std::size_t pixel =
         static_cast<std::size_t>(y) * static_cast<std::size_t>(frame_.width) + static_cast<std::size_t>(x);
@@ -194,7 +204,7 @@ void Tile::take_opaque(std::int32_t x, std::int32_t y) {
         for (std::uint32_t i = 0; i < count_; ++i) mask |= SampleMask{owners[i] == owner} << i;
         left &= ~mask;
         if (owner == 0) continue;
-        const Blend color{shade_of(facets_[owner - 1], x, y, mask).color, 1};
+        const Blend color{opaque_color(facets_[owner - 1], x, y, mask), 1};
         for (SampleMask rest = mask; rest; rest &= rest - 1)
             opaque_[static_cast<std::size_t>(std::countr_zero(rest))] = color;
         const float part = static_cast<float>(std::popcount(mask)) / static_cast<float>(count_);

@@ -13,6 +13,7 @@
 
 #include "render/cpu/bins.hpp"
 #include "render/cpu/encode.hpp"
+#include "render/cpu/occlusion.hpp"
 #include "render/cpu/raster.hpp"
 #include "render/cpu/shade.hpp"
 #include "render/volume/volume_tile.hpp"
@@ -28,6 +29,8 @@ struct TileScene {
     float background_opacity = 1;
     LightBytes bytes;
     const VolumeScene* volumes = nullptr; ///< or null
+    const Occlusion* occlusion = nullptr; ///< or null
+    float occlusion_strength = 0;
 };
 
 class Tile {
@@ -80,6 +83,7 @@ private:
     void cover(std::uint32_t facet, std::size_t pixel, float depth, SampleMask mask);
     SampleMask in_front(const DepthPlane& plane, std::size_t pixel, float depth, SampleMask mask) const;
     Shade shade_of(const Facet& facet, std::int32_t x, std::int32_t y, SampleMask mask) const;
+    Light opaque_color(const Facet& facet, std::int32_t x, std::int32_t y, SampleMask mask) const;
     Blend resolve(std::int32_t x, std::int32_t y);
     void follow_rays();
     void end_rays();

@@ -61,7 +61,7 @@ function draw() {
   app.scene.draw(app.camera, dressed().filter((one) => !one.hidden), {background: css('scene'), lower: app.grid.lower.map((v, i) => v - pad[i]),
     upper: app.grid.upper.map((v, i) => v + pad[i]), boxLower: app.grid.lower, boxUpper: app.grid.upper, outline: app.state.outline,
     edges: app.state.edges, mapped: !!app.state.colorBy, noData: app.frame?.scale?.no_data, line: css('soft'),
-    cuts: planesOf(app.state, 'clip')});
+    cuts: planesOf(app.state, 'clip'), occlusion: app.scene.scale < 1 ? 0 : 0.8});
   placeMark();
   drawAxes();
   app.scene.finish();

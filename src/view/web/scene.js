@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Draws surfaces with WebGL2. Coordinates come as 65535ths of a surface's box; matrices are made in double precision.
+import {Occlusion, openness} from './occlusion.js';
 
 const meshVertex = `#version 300 es
 layout(location = 0) in vec3 place;
@@ -39,9 +40,10 @@ flat in float noData;
 uniform vec4 color;
 uniform vec3 noDataColor;
 uniform sampler2D map;
-uniform bool mapped, faces, parallel;
+uniform bool mapped, faces;
 out vec4 pixel;
 ${cut}
+${openness}
 vec3 linear(vec3 c) { return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), step(0.04045, c)); }
 vec3 coded(vec3 c) { return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c)); }
 void main() {
@@ -58,6 +60,7 @@ void main() {
   vec3 base = color.rgb;
   if (mapped) base = noData > 0.5 ? noDataColor : texture(map, vec2((clamp(colorAt, 0.0, 1.0) * 63.0 + 0.5) / 64.0, 0.5)).rgb;
   float opacity = color.a < 1.0 ? 1.0 - pow(1.0 - min(color.a, 0.999), 1.0 / max(facing, 0.2)) : 1.0;
+  if (color.a >= 1.0) light *= openness();
   pixel = vec4(coded(min(vec3(1.0), linear(base) * light)), opacity);
 }`;
 
@@ -106,9 +109,12 @@ export class Scene {
 
   start() {
     const gl = this.gl;
-    this.mesh = this.program(meshVertex, meshFragment);
-    this.depth = this.program(meshVertex, depthFragment);
-    this.line = this.program(lineVertex, lineFragment);
+    const program = (vertex, fragment, names) => this.program(vertex, fragment, names);
+    this.mesh = program(meshVertex, meshFragment, ['clip', 'toEye', 'toView', 'color', 'noDataColor', 'map', 'mapped', 'faces', 'parallel', 'cuts', 'cutCount',
+      'occlusion', 'occlusionReach', 'open', 'depths', 'nearFar']);
+    this.depth = program(meshVertex, depthFragment, ['clip', 'toEye', 'toView', 'cuts', 'cutCount']);
+    this.line = program(lineVertex, lineFragment, ['clip', 'color', 'cuts', 'cutCount']);
+    this.occlusion = new Occlusion(gl, program);
     this.map = gl.createTexture();
     this.mapName = null;
     this.box = gl.createVertexArray();
@@ -131,7 +137,7 @@ export class Scene {
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   }
 
-  program(vertex, fragment) {
+  program(vertex, fragment, names) {
     const gl = this.gl, program = gl.createProgram();
     for (const [type, source] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
       const shader = gl.createShader(type);
@@ -142,7 +148,7 @@ export class Scene {
     gl.linkProgram(program);
     if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error('WebGL2: ' + gl.getProgramInfoLog(program));
     const at = {program};
-    for (const name of ['clip', 'toEye', 'toView', 'color', 'noDataColor', 'map', 'mapped', 'faces', 'parallel', 'cuts', 'cutCount']) at[name] = gl.getUniformLocation(program, name);
+    for (const name of names) at[name] = gl.getUniformLocation(program, name);
     return at;
   }
 
@@ -230,7 +236,7 @@ export class Scene {
 
   /**
    * @param surfaces  [{key, kind, color, opacity}]; keys without a mesh are passed over
-   * @param look      {background, lower, upper, outline, edges, mapped, noData, line, cuts: [{normal, offset}]}
+   * @param look      {background, lower, upper, outline, edges, mapped, noData, line, cuts: [{normal, offset}], occlusion: 0 to 1}
    */
   draw(camera, surfaces, look) {
     const gl = this.gl;
@@ -238,12 +244,19 @@ export class Scene {
     this.camera = camera;
     this.surfaces = surfaces;
     this.look = look;
+    gl.enable(gl.DEPTH_TEST);
+    const view = this.view = camera.matrix(this.aspect(), look.lower, look.upper);
+    const there = surfaces.map((one) => ({...one, mesh: this.meshes.get(one.key)}))
+      .filter(({mesh, opacity}) => mesh && mesh.lower && mesh.count > 0 && opacity > 0);
+    const opaque = there.filter(({opacity}) => opacity >= 1), size = Math.max(...look.upper.map((u, i) => u - look.lower[i]));
+    this.occlusion.find(opaque.length > 0 ? look.occlusion : 0, this.canvas, view, camera.projection === 'parallel', size, () => {
+      gl.useProgram(this.depth.program);
+      for (const one of opaque) this.drawDepth(one, view.rows, look);
+    });
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
     gl.clearColor(...rgb(look.background), 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    gl.enable(gl.DEPTH_TEST);
-    const view = this.view = camera.matrix(this.aspect(), look.lower, look.upper);
     if (look.outline) this.drawBox(view.rows, look);
     gl.useProgram(this.mesh.program);
     const right = camera.right();
@@ -252,12 +265,11 @@ export class Scene {
     this.eyeRows = [right, camera.up, camera.direction].map((axis) => [...axis, -axis.reduce((sum, v, i) => sum + v * eye[i], 0)]).concat([[0, 0, 0, 1]]);
     gl.uniform1i(this.mesh.parallel, camera.projection === 'parallel' ? 1 : 0);
     gl.uniformMatrix3fv(this.mesh.toView, false, [0, 1, 2].flatMap((i) => [right[i], camera.up[i], camera.direction[i]]));
+    this.occlusion.use(this.mesh);
     gl.uniform3fv(this.mesh.noDataColor, rgb(look.noData || '#b8b8b8'));
     gl.bindTexture(gl.TEXTURE_2D, this.map);
-    const there = surfaces.map((one) => ({...one, mesh: this.meshes.get(one.key)}))
-      .filter(({mesh, opacity}) => mesh && mesh.lower && mesh.count > 0 && opacity > 0);
     if (look.edges) { gl.enable(gl.POLYGON_OFFSET_FILL); gl.polygonOffset(1, 1); }
-    for (const one of there) if (one.opacity >= 1) this.drawMesh(one, view.rows, look);
+    for (const one of opaque) this.drawMesh(one, view.rows, look);
     gl.disable(gl.POLYGON_OFFSET_FILL);
     // As isotet render: edges of boundary and slices, or of the surfaces where neither is there.
     const fixed = there.filter(({kind}) => kind !== 'surface');
@@ -294,6 +306,15 @@ export class Scene {
     this.setCuts(this.mesh, one, look);
     gl.uniform4f(this.mesh.color, ...rgb(color), opacity);
     gl.uniform1i(this.mesh.mapped, look.mapped && mesh.colored ? 1 : 0);
+    gl.bindVertexArray(mesh.array);
+    if (mesh.indexed) gl.drawElements(gl.TRIANGLES, mesh.count, mesh.type, 0);
+    else gl.drawArrays(gl.TRIANGLES, 0, mesh.count);
+  }
+
+  drawDepth({mesh, kind}, rows, look) {
+    const gl = this.gl;
+    this.setCuts(this.depth, {mesh, kind}, look);
+    gl.uniformMatrix4fv(this.depth.clip, false, this.clip(rows, mesh.lower, mesh.upper));
     gl.bindVertexArray(mesh.array);
     if (mesh.indexed) gl.drawElements(gl.TRIANGLES, mesh.count, mesh.type, 0);
     else gl.drawArrays(gl.TRIANGLES, 0, mesh.count);
@@ -379,11 +400,7 @@ export class Scene {
     for (const {key, opacity, kind} of this.surfaces) {
       const mesh = this.meshes.get(key);
       if (!mesh || !mesh.lower || opacity <= 0 || kind === 'boundary' || (only && key !== only)) continue;
-      this.setCuts(this.depth, {mesh, kind}, this.look);
-      gl.uniformMatrix4fv(this.depth.clip, false, this.clip([zoomed[0], zoomed[1], rows[2], rows[3]], mesh.lower, mesh.upper));
-      gl.bindVertexArray(mesh.array);
-      if (mesh.indexed) gl.drawElements(gl.TRIANGLES, mesh.count, mesh.type, 0);
-      else gl.drawArrays(gl.TRIANGLES, 0, mesh.count);
+      this.drawDepth({mesh, kind}, [zoomed[0], zoomed[1], rows[2], rows[3]], this.look);
     }
     const pixel = new Uint8Array(4);
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
