@@ -227,9 +227,9 @@ def some_cells(grid, chosen: np.ndarray):
 
 
 def kept_type(values: np.ndarray, kind: np.dtype) -> np.ndarray:
-    """Interpolated integers, rounded to the type that they came in."""
+    """Interpolated values in the type that they came in: integers are rounded."""
     if kind.kind == "f" or values.dtype == kind:
-        return values
+        return values.astype(kind, copy=False)
     limits = np.iinfo(kind)
     if kind.itemsize == 8:  # the limits are no numbers of float64
         return np.clip(np.rint(values), float(limits.min), np.nextafter(float(limits.max), 0)).astype(kind)

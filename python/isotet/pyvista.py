@@ -105,6 +105,14 @@ def _ends_of(rng) -> list[float]:
     return [float(lower), float(upper)]
 
 
+def _keep_active_scalars(mesh, out) -> None:
+    """They are those of `mesh` where `out` has the array, as of PyVista's own filters: what is plotted."""
+    found = mesh.active_scalars_info
+    of_cells = found.association == pyvista.FieldAssociation.CELL
+    if found.name and found.name in (out.cell_data if of_cells else out.point_data):
+        out.set_active_scalars(found.name, preference="cell" if of_cells else "point")
+
+
 class GridAccessor:
     """``grid.isotet`` of a pyvista.UnstructuredGrid."""
 
@@ -245,8 +253,8 @@ class GridAccessor:
             append(flat.slice(direction, origin=point), out)
             self._warn_of_cells("leaves to VTK", others)
         out.GetFieldData().PassData(grid.GetFieldData())
-        if contour and grid.active_scalars_name in out.point_data:
-            out.set_active_scalars(grid.active_scalars_name, preference="point")
+        if not contour or grid.active_scalars_name in out.point_data:
+            _keep_active_scalars(grid, out)
         return out.contour() if contour else out
 
     def slice_orthogonal(self, x=None, y=None, z=None) -> pyvista.MultiBlock:
@@ -255,16 +263,19 @@ class GridAccessor:
         point = [centre[i] if place is None else float(place) for i, place in enumerate((x, y, z))]
         return pyvista.MultiBlock({name: self.slice(axis, point) for name, axis in (("YZ", "x"), ("XZ", "y"), ("XY", "z"))})
 
-    def slice_along_axis(self, n: int = 5, axis: str = "x") -> pyvista.MultiBlock:
-        """`n` slices evenly along an axis, from end to end, as of `pyvista.DataSet.slice_along_axis`: blocks "slice0" and on."""
-        along = "xyz".index(axis)
+    def slice_along_axis(self, n: int = 5, axis: str | int = "x") -> pyvista.MultiBlock:
+        """`n` slices evenly along an axis, "x" or 0 and so on, from end to end, as of `pyvista.DataSet.slice_along_axis`: blocks
+        "slice0" and on."""
+        if axis not in ("x", "y", "z", 0, 1, 2):
+            raise ValueError(f"axis is {axis!r}, but must be 'x', 'y' or 'z', or 0, 1 or 2")
+        along = "xyz".index(axis) if isinstance(axis, str) else int(axis)
         bounds, centre = self._grid.bounds, list(self._grid.center)
         ends = np.array(bounds[2 * along : 2 * along + 2], float)
         ends += np.array([1, -1]) * (ends[1] - ends[0]) * 0.01  # as PyVista's: a cut in the boundary may be empty
         out = pyvista.MultiBlock()
         for i, place in enumerate(np.linspace(*ends, n)):
             centre[along] = place
-            out.append(self.slice(axis, centre), f"slice{i}")
+            out.append(self.slice("xyz"[along], centre), f"slice{i}")
         return out
 
     def solid(self, scalars=None, *, above: float | None = None, below: float | None = None, preference: str = "point",
@@ -286,6 +297,7 @@ class GridAccessor:
         fill(out, surface, copy=False, kinds={name: values.dtype for name, values in fields})
         out.GetFieldData().PassData(grid.GetFieldData())
         out.field_data["volume"] = [surface.solid["volume"]] if surface.solid else [0.0]
+        _keep_active_scalars(grid, out)
         return out
 
     def clip_scalar(self, scalars=None, invert: bool = True, value: float = 0.0, inplace: bool = False,
@@ -318,6 +330,7 @@ class GridAccessor:
         sides = [clipper.clip(**{side: float(value)}).to_pyvista() for side in names[: 2 if both else 1]]
         for side in sides:
             side.GetFieldData().PassData(grid.GetFieldData())
+            _keep_active_scalars(grid, side)
         if inplace:
             grid.copy_from(sides[0])
             sides[0] = grid
@@ -392,6 +405,7 @@ class PolyDataAccessor(GridAccessor):
         out.GetFieldData().PassData(self._grid.GetFieldData())
         if "volume" in out.field_data and "boundary" in surface.cell_fields:  # a solid's
             out.field_data["volume"] = [_isotet.measure_solid(surface._surface, call_options(0, None))["volume"]]
+        _keep_active_scalars(self._grid, out)
         return out
 
     def decimate(self, target_reduction: float = 0.5, *, error: float | None = None) -> pyvista.PolyData:

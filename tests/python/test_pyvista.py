@@ -475,6 +475,19 @@ def test_solids_are_closed():
         grid.isotet.solid("r")
 
 
+def test_active_scalars_stay_active():
+    grid = cubes()
+    grid["other"] = grid["r"] * 2
+    for name, association in (("r", "point"), ("other", "point"), ("number", "cell")):
+        grid.set_active_scalars(name, preference=association)
+        made = [grid.isotet.slice(), *grid.isotet.slice_orthogonal(), grid.isotet.solid("r", below=3.0),
+                *grid.isotet.clip_scalar("r", value=2.0, both=True)]  # fmt: skip
+        made += [made[0].isotet.extract_largest(), *made[0].isotet.split_bodies()]
+        for mesh in made:
+            assert mesh.active_scalars_info == grid.active_scalars_info
+    assert grid.slice().active_scalars_name == "number"
+
+
 def test_several_slices():
     grid = cubes()
     three = grid.isotet.slice_orthogonal()
@@ -482,6 +495,9 @@ def test_several_slices():
     assert [block.area for block in three] == pytest.approx([64] * 3)
     some = grid.isotet.slice_along_axis(3, "y")
     theirs = grid.slice_along_axis(3, "y")
+    assert [piece.bounds for piece in grid.isotet.slice_along_axis(3, 1)] == [piece.bounds for piece in some]
+    with pytest.raises(ValueError, match="axis is 3, but must be"):
+        grid.isotet.slice_along_axis(3, 3)
     assert some.keys() == theirs.keys()
     assert [block.bounds[2] for block in some] == pytest.approx([block.bounds[2] for block in theirs])
 

@@ -115,7 +115,11 @@ def test_defaults_give_the_arrays_of_vtk():
 def test_the_precision_of_points_holds(points, precision):
     grid = cubes()
     grid.points = grid.points.astype(points) - 4  # the middle is 0
+    grid["v"] = grid["v"].astype(np.float32)
+    grid["x"] = grid["x"].astype(np.float64)
     ours, theirs = both(grid, OutputPointsPrecision=precision)
+    for name in ("r", "v", "x"):
+        assert ours[name].dtype == theirs[name].dtype == grid[name].dtype, "which has nothing to do with that of points"
     assert ours.points.dtype == theirs.points.dtype == [np.float32, np.float64, points][precision]
 
 

@@ -100,6 +100,21 @@ class Surfaces(unittest.TestCase):
             self.assertEqual(open_edges(ours), 0)
             self.assertEqual(ours.GetPoints().GetDataType(), theirs.GetPoints().GetDataType())
 
+    def test_carried_arrays_keep_their_type_whatever_that_of_points(self):
+        grid = sphere()
+        for name, dtype in (("f", np.float32), ("d", np.float64), ("i", np.int32)):
+            add(grid.GetPointData(), name, np.arange(grid.GetNumberOfPoints(), dtype=dtype))
+        for precision in (0, 1, 2):
+            outputs = []
+            for kind in (vtkIsotetContour, vtkContourFilter):
+                contour = start(grid, kind=kind)
+                contour.SetOutputPointsPrecision(precision)
+                contour.Update()
+                outputs.append(contour.GetOutput().GetPointData())
+            ours, theirs = outputs
+            for name in names(theirs):
+                self.assertEqual(ours.GetArray(name).GetDataType(), theirs.GetArray(name).GetDataType(), name)
+
     def test_is_the_same_from_32_and_64_bit_cells(self):
         for n in (1, 2):  # directly, and from packed cells
             a, b = (start(sphere(bits=bits)) for bits in (32, 64))

@@ -82,11 +82,12 @@ vtkSmartPointer<vtkDataArray> isovalues_of(const std::vector<isotet::Surface>& s
     }
 }
 
-/// A carried point field: interpolated integers are rounded to the type that `like` has.
+/// A carried point field in the type that `like` has: interpolated integers are rounded.
 vtkSmartPointer<vtkDataArray> carried(const isotet::Field& field, vtkDataArray* like) {
     const int type = like ? like->GetDataType() : VTK_DOUBLE;
-    if (type == VTK_FLOAT || type == VTK_DOUBLE || field.values.type() != isotet::ScalarType::float64)
-        return to_vtk(field.values, field.name.c_str());
+    const bool is_double = field.values.type() == isotet::ScalarType::float64;
+    if (type == VTK_FLOAT && is_double) return to_vtk(as_float32(field.values), field.name.c_str());
+    if (type == VTK_FLOAT || type == VTK_DOUBLE || !is_double) return to_vtk(field.values, field.name.c_str());
     return rounded_to(type, field.values, field.name.c_str());
 }
 
