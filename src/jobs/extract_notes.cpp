@@ -2,6 +2,7 @@
 #include "jobs/extract_notes.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -45,12 +46,24 @@ std::string why_empty(const FieldReport& field, double isovalue) {
                        value, range);
 }
 
+namespace {
+
+std::string why_solid_is_empty(const FieldReport& field, const SolidRange& range) {
+    const std::string values = std::isinf(range.upper) ? fmt::format("{} or more", shortest(range.lower))
+                               : std::isinf(range.lower)
+                                   ? fmt::format("below {}", shortest(range.upper))
+                                   : fmt::format("from {} to {}", shortest(range.lower), shortest(range.upper));
+    const std::string has = field.lower <= field.upper
+                                ? fmt::format("{} to {}", shortest(field.lower), shortest(field.upper))
+                                : std::string("no finite value");
+    return fmt::format("the solid is empty: it has values of '{}' {}, but the field has {}", field.name, values, has);
+}
+
+} // namespace
+
 void note_what_a_solid_is(const ExtractNumbers& numbers, const SurfaceNumbers& surface, Caller& caller) {
     const SolidRange& range = surface.solid->range;
-    if (surface.triangles == 0)
-        caller.note(fmt::format("no cell has values of '{}' from {} to {}: the solid is empty", numbers.field.name,
-                                shortest(std::max(range.lower, numbers.field.lower)),
-                                shortest(std::min(range.upper, numbers.field.upper))));
+    if (surface.triangles == 0) caller.note(why_solid_is_empty(numbers.field, range));
     if (surface.solid->seam_edges > 0)
         caller.note(fmt::format("the grid's boundary is open to itself: points are doubled, so the isosurface has {} open edges "
                                 "inside the grid, and walls close the solid there; `merge_points` 0 makes it one body",

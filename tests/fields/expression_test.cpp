@@ -162,7 +162,7 @@ TEST(Expression, TellsWhatIsWrongAndWhere) {
         {"p/U", "'U' is no number, and only by numbers can be divided"},
         {"p + U", "'p + U' takes values of as many components, but they have 1 and 3"},
         {"cross(p, U)", "'p' has 1 component, but cross() takes vectors of 3"},
-        {"vorticity(p)", "'vorticity(p)' has 3 components, but its vector must have 3"},
+        {"vorticity(p)", "'vorticity(p)' takes a vector of 3 components, but what it was given has 1"},
         {"mises(U)", "'U' has 3 components, but mises() takes a tensor of 6 or 9"},
         {"vec(p, U, p)", "'U' has 3 components, but a number is needed"},
         {"if(U, p, p)", "'U' is no number, but the first value of if() is"},

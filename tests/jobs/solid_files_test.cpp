@@ -169,6 +169,18 @@ TEST(SolidFiles, OfPiecesAreTogetherThatOfTheWhole) {
     EXPECT_TRUE(check(join(parts, {}), {.closed = true, .weld = true}).value().sound);
 }
 
+TEST(SolidFiles, ThatAreEmptySayWhichValuesTheFieldHas) {
+    Listener listener;
+    ExtractJob job = solid_job("make:kuhn:2:sphere", "", SolidChoice::Kind::above);
+    job.field.name = "x";
+    job.isovalues = {7};
+    ASSERT_TRUE(extract_files(job, listener));
+    EXPECT_EQ(std::ranges::count(listener.noted,
+                                 "the solid is empty: it has values of 'x' 7 or more, but the field has -1 to 1"),
+              1)
+        << testing::PrintToString(listener.noted);
+}
+
 TEST(SolidFiles, RefuseWhatDoesNotGoTogether) {
     Listener listener;
     ExtractJob piece = solid_job("make:tet10:2:sphere", "", SolidChoice::Kind::above);

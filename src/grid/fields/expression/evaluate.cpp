@@ -176,8 +176,12 @@ private:
         case ExpressionOp::cross: return either(need({3}, "cross() takes vectors of 3"), 3);
         case ExpressionOp::trace:
         case ExpressionOp::q_criterion:
-        case ExpressionOp::lambda2: return either(need({9}, "its vector must have 3"), 1);
-        case ExpressionOp::curl: return either(need({9}, "its vector must have 3"), 3);
+        case ExpressionOp::lambda2:
+        case ExpressionOp::curl:
+            if (of(0) != 9) // which is the gradient
+                return wrong(node,
+                             fmt::format("takes a vector of 3 components, but what it was given has {}", of(0) / 3));
+            return std::size_t{node.op == ExpressionOp::curl ? 3U : 1U};
         case ExpressionOp::mises: return either(need({6, 9}, "mises() takes a tensor of 6 or 9"), 1);
         }
         return std::size_t{1};
