@@ -30,6 +30,26 @@ std::string rewritten(std::string_view text, const Append& append_character) {
     return result;
 }
 
+bool is_letter_or_digit(char c) noexcept {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
+/// Of what stands in quotes from `begin` on, with these; 0: nothing does. Apostrophes are no quotes.
+std::size_t quoted_length(std::string_view sentence, std::size_t begin) noexcept {
+    constexpr std::string_view before = " (,:;/\n";
+    if (sentence[begin] != '\'' || (begin > 0 && before.find(sentence[begin - 1]) == before.npos)) return 0;
+    for (std::size_t end = sentence.find('\'', begin + 1); end != sentence.npos; end = sentence.find('\'', end + 1))
+        if (end + 1 == sentence.size() || !is_letter_or_digit(sentence[end + 1])) return end + 1 - begin;
+    return 0;
+}
+
+/// Of an option's name in backquotes at the beginning, with these; 0: there is none.
+std::size_t option_length(std::string_view text) noexcept {
+    if (!text.starts_with('`')) return 0;
+    const std::size_t end = text.find_first_not_of("abcdefghijklmnopqrstuvwxyz_", 1);
+    return end != text.npos && end > 1 && text[end] == '`' ? end + 1 : 0;
+}
+
 } // namespace
 
 std::string printable(std::string_view text) {
@@ -48,22 +68,16 @@ std::string valid_utf8(std::string_view text) {
 
 std::string with_options(std::string_view sentence) {
     std::string result;
-    while (!sentence.empty()) {
-        const std::size_t name = sentence.find('`') + 1; // 0: none
-        const std::size_t end = name == 0 ? name : sentence.find_first_not_of("abcdefghijklmnopqrstuvwxyz_", name);
-        const bool is_option = name > 0 && end != std::string_view::npos && end > name && sentence[end] == '`';
-        if (!is_option) {
-            const std::size_t copied = name == 0 ? sentence.size() : name;
-            result += sentence.substr(0, copied);
-            sentence.remove_prefix(copied);
-            continue;
-        }
-        std::string option(sentence.substr(name, end - name));
-        std::ranges::replace(option, '_', '-');
-        result += sentence.substr(0, name - 1);
-        result += "--";
-        result += option;
-        sentence.remove_prefix(end + 1);
+    for (std::size_t at = 0; at < sentence.size();) {
+        if (const std::size_t quoted = quoted_length(sentence, at); quoted > 0) {
+            result += sentence.substr(at, quoted);
+            at += quoted;
+        } else if (const std::size_t named = option_length(sentence.substr(at)); named > 0) {
+            std::string option(sentence.substr(at + 1, named - 2));
+            std::ranges::replace(option, '_', '-');
+            result += "--" + option;
+            at += named;
+        } else result += sentence[at++];
     }
     return result;
 }

@@ -16,7 +16,7 @@ std::string printable(std::string_view text);
 std::string valid_utf8(std::string_view text);
 
 /// Options as the command line has them: "`merge_points` 0" becomes "--merge-points 0". Backquotes around anything but
-/// small letters and underscores stay.
+/// small letters and underscores stay, and so does what stands in quotes, as names of fields: "no field 'a + `b`'".
 std::string with_options(std::string_view sentence);
 
 /// Characters of printable text, for aligning columns.

@@ -40,6 +40,10 @@ TEST(WithOptions, WritesNamesInBackquotesAsOptions) {
     for (const char* same : {"", "`", "``", "`merge_points", "`run 1.vtu`", "`A`", "a ` b ` c"})
         EXPECT_EQ(with_options(same), same);
     EXPECT_EQ(with_options("`x y`snap`"), "`x y--snap") << "the first backquote that can begins";
+    EXPECT_EQ(with_options("'`foo`+1' ('`q`'): `snap` takes 'it`s's`'"), "'`foo`+1' ('`q`'): --snap takes 'it`s's`'");
+    EXPECT_EQ(with_options("the grid's `snap`, points' `keep`, 'open `keep`"),
+              "the grid's --snap, points' --keep, 'open --keep")
+        << "apostrophes are no quotes";
 }
 
 } // namespace
