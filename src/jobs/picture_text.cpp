@@ -41,6 +41,15 @@ std::string volume_text(const DrawInput& input) {
     return fmt::format("{} = {}", input.field, fmt::join(told_apart(isovalues), ", "));
 }
 
+std::string why_not_there(double isovalue, const std::string& name, const FieldReport& field) {
+    const std::string values =
+        !(field.lower <= field.upper) ? fmt::format("'{}' has no finite value", name)
+        : field.lower == field.upper
+            ? fmt::format("all values of '{}' are {}", name, shortest(field.lower))
+            : fmt::format("the values of '{}' go from {} to {}", name, shortest(field.lower), shortest(field.upper));
+    return fmt::format("there is no surface at {}: {}", shortest(isovalue), values);
+}
+
 } // namespace
 
 std::string percent_text(double share) { return rounded(100 * share) + " %"; }
@@ -60,14 +69,11 @@ void note_what_is_empty(const DrawJob& job, const DrawInput& input, Caller& call
         // Of tets it is not known before they are drawn; values on both sides of the isovalue make a surface mostly.
         const bool shown =
             store ? field.lower < *surface.isovalue && *surface.isovalue <= field.upper : surface.triangles > 0;
-        if (shown) continue;
-        const std::string values = !(field.lower <= field.upper) ? fmt::format("'{}' has no finite value", input.field)
-                                   : field.lower == field.upper
-                                       ? fmt::format("all values of '{}' are {}", input.field, shortest(field.lower))
-                                       : fmt::format("the values of '{}' go from {} to {}", input.field,
-                                                     shortest(field.lower), shortest(field.upper));
-        caller.note(fmt::format("there is no surface at {}: {}", shortest(*surface.isovalue), values));
+        if (!shown) caller.note(why_not_there(*surface.isovalue, input.field, field));
     }
+    for (const double isovalue : input.volume ? input.volume->isosurfaces : std::vector<double>())
+        if (!(field.lower < isovalue && isovalue <= field.upper))
+            caller.note(why_not_there(isovalue, input.field, field));
 }
 
 Annotation annotation_of(const DrawJob& job, const DrawInput& input) {

@@ -187,6 +187,11 @@ TEST(DrawFiles, NotesIsovaluesWithoutASurface) {
     ASSERT_EQ(listener.noted.size(), 1u);
     EXPECT_TRUE(listener.noted[0].starts_with("there is no surface at 9: the values of 'sphere' go from 0 to"))
         << listener.noted[0];
+    Listener of_rays;
+    job.isovalues.clear();
+    job.dirac = {0.5, 9};
+    ASSERT_TRUE(draw_files(job, of_rays));
+    EXPECT_EQ(of_rays.noted, listener.noted);
 }
 
 TEST(DrawFiles, NotesSlicesThatMissTheGrid) {
