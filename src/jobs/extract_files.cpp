@@ -247,20 +247,6 @@ Result<FieldReport> ExtractRun::range_of_field() {
     return solids_ ? solids_->field(caller_.run()) : contour_->field(caller_.run());
 }
 
-/// Whether the grid has the arrays of the field that is contoured.
-bool has_arrays_of(const FoundField& field, const Grid& grid) {
-    const auto is_in = [](const std::string& name, const std::vector<Field>& fields) {
-        return std::ranges::find(fields, name, &Field::name) != fields.end();
-    };
-    const auto is_read = [&](const std::string& name) {
-        return is_in(name, grid.point_fields) || is_in(name, grid.cell_fields);
-    };
-    if (field.is_expression) return std::ranges::all_of(field.point, is_read) && std::ranges::all_of(field.cell, is_read);
-    const bool coordinate = field.point.empty() && field.cell.empty();
-    return coordinate || (!field.point.empty() && is_in(field.point.front(), grid.point_fields)) ||
-           (!field.cell.empty() && is_in(field.cell.front(), grid.cell_fields));
-}
-
 /// Reads one step. A field may be of points in one step and of cells in another, or be missing in it. Where it was left out
 /// among others, reading it by name tells why.
 Result<std::optional<std::uint64_t>> ExtractRun::read_field_of(std::size_t step, bool& found) {
@@ -370,7 +356,7 @@ Result<void> ExtractRun::open_packed() {
         return std::ranges::any_of(info.fields, [&](const auto& field) { return field.report.name == component.name; });
     };
     const bool has_all = std::ranges::any_of(info.fields, has_field) && (!job_.source_cells || info.source_cells) &&
-                         (!plan_.carried || std::ranges::all_of(plan_.carried->components, is_packed));
+                         (!plan_.carried || std::ranges::all_of(plan_.carried->components, is_packed)) && !plan_.color;
     if (reworks_cells || !has_all) {
         caller_.note(
             "all of the packed file is read and unpacked: what was asked for needs its cells, or is not packed");

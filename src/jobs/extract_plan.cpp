@@ -60,14 +60,27 @@ Result<std::optional<CarriedFields>> plan_carried(const ExtractJob& job, const G
     return std::optional<CarriedFields>{*std::move(carried)};
 }
 
+/// What colours are computed from; nothing where a field has the name, which surfaces carry or not.
+std::optional<FoundField> plan_color(const ExtractJob& job, const GridSource& source) {
+    if (job.colors.by.empty()) return std::nullopt;
+    Result<FoundField> found = choose_field(source, {job.colors.by, false});
+    if (!found || !found->is_expression) return std::nullopt; // what the surface does not have is told when it is there
+    return *std::move(found);
+}
+
 FieldsToRead fields_to_read(const ExtractPlan& plan) {
     FieldsToRead read;
     read.cell = plan.field.cell;
+    if (plan.color) add_names(*read.cell, plan.color->cell);
     if (!plan.carried) return read; // all point fields
     read.point = plan.field.point;
+    if (plan.color) add_names(*read.point, plan.color->point);
     add_names(*read.point, plan.carried->point);
     add_names(*read.cell, plan.carried->cell);
-    for (const FoundField& component : plan.carried->components) add_names(*read.point, component.point);
+    for (const FoundField& component : plan.carried->components) {
+        add_names(*read.point, component.point);
+        add_names(*read.cell, component.cell);
+    }
     return read;
 }
 
@@ -75,7 +88,7 @@ FieldsToRead fields_to_read(const ExtractPlan& plan) {
 constexpr std::size_t most_isovalues_of_active_cells = 8;
 
 std::optional<ReadActiveCells> plan_active_cells(const ExtractJob& job, const ExtractPlan& plan) {
-    const bool has_components = plan.carried && !plan.carried->components.empty();
+    const bool has_components = plan.color || (plan.carried && !plan.carried->components.empty());
     const bool needs_all = plan.field.neighbours || job.piece || job.solid || job.volumes || job.grid.merge_points;
     if (needs_all || has_components || !plan.read.cell || !plan.read.cell->empty() ||
         plan.contour.expected_isovalues.size() > most_isovalues_of_active_cells ||
@@ -207,6 +220,7 @@ Result<void> choose_fields(const ExtractJob& job, const GridSource& source, Extr
     if (!carried) return carried.error();
     plan.field = *std::move(field);
     plan.carried = *std::move(carried);
+    plan.color = plan_color(job, source);
     Result<std::optional<Region>> touched = find_touched(job, source);
     if (!touched) return touched.error();
     plan.touched = *std::move(touched);
@@ -297,39 +311,63 @@ bool is_carried(const ExtractPlan& plan, const std::string& cell_field) {
     return std::ranges::find(plan.carried->cell, cell_field) != plan.carried->cell.end();
 }
 
+namespace {
+
+bool is_among(const std::vector<Field>& fields, const std::string& name) {
+    return std::ranges::find(fields, name, &Field::name) != fields.end();
+}
+
+} // namespace
+
+bool has_arrays_of(const FoundField& field, const Grid& grid) {
+    const auto is_read = [&](const std::string& name) {
+        return is_among(grid.point_fields, name) || is_among(grid.cell_fields, name);
+    };
+    if (field.is_expression)
+        return std::ranges::all_of(field.point, is_read) && std::ranges::all_of(field.cell, is_read);
+    const bool coordinate = field.point.empty() && field.cell.empty();
+    return coordinate || (!field.point.empty() && is_among(grid.point_fields, field.point.front())) ||
+           (!field.cell.empty() && is_among(grid.cell_fields, field.cell.front()));
+}
+
+namespace {
+
+/// Adds a component of a point field, or an expression, where the step has what it is made of.
+Result<void> add_component(const FoundField& component, const Grid& grid, const Run& run, std::vector<Field>& fields) {
+    const auto is_there = [&](const std::string& name) { return is_among(grid.point_fields, name); };
+    if (component.is_expression ? !has_arrays_of(component, grid) : !std::ranges::all_of(component.point, is_there))
+        return {};
+    if (component.point.size() > 1 && !component.is_expression && !component.name.ends_with(":mag")) {
+        Result<Field> whole = gather_components(grid.point_fields, component.name, component.point);
+        if (!whole) return whole.error();
+        fields.push_back(*std::move(whole));
+        return {};
+    }
+    const Result<PointField> found = find_field(grid, component.name, {}, run);
+    if (!found) return found.error();
+    fields.push_back({component.name, found->values});
+    return {};
+}
+
+} // namespace
+
 Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid, const Run& run) {
     StepFields fields;
-    const auto is_touched = [&](const Field& field) { return plan.touched && field.name == plan.touched->field; };
-    if (!plan.carried) {
-        fields.point = grid.point_fields;
-        for (const Field& field : grid.cell_fields)
-            if (!plan.read.cell || is_touched(field)) fields.cell.push_back(field);
-        return fields;
-    }
     const auto has = [](const std::vector<std::string>& names, const Field& field) {
-        return std::find(names.begin(), names.end(), field.name) != names.end();
+        return std::ranges::find(names, field.name) != names.end();
     };
-    for (const Field& field : grid.point_fields) {
-        if (has(plan.carried->point, field)) fields.point.push_back(field);
-    }
+    for (const Field& field : grid.point_fields)
+        if (!plan.carried || has(plan.carried->point, field)) fields.point.push_back(field);
     for (const Field& field : grid.cell_fields) {
-        if (has(plan.carried->cell, field) || is_touched(field)) fields.cell.push_back(field);
+        const bool is_touched = plan.touched && field.name == plan.touched->field;
+        const bool is_wanted = plan.carried ? has(plan.carried->cell, field) : !plan.read.cell;
+        if (is_wanted || is_touched) fields.cell.push_back(field);
     }
-    const auto is_read = [&](const std::string& name) {
-        return std::ranges::find(grid.point_fields, name, &Field::name) != grid.point_fields.end();
-    };
-    for (const FoundField& component : plan.carried->components) {
-        if (!std::ranges::all_of(component.point, is_read)) continue; // not in this step
-        if (component.point.size() > 1 && !component.is_expression && !component.name.ends_with(":mag")) {
-            Result<Field> whole = gather_components(grid.point_fields, component.name, component.point);
-            if (!whole) return whole.error();
-            fields.point.push_back(*std::move(whole));
-            continue;
-        }
-        const Result<PointField> found = find_field(grid, component.name, {}, run);
-        if (!found) return found.error();
-        fields.point.push_back({component.name, found->values});
-    }
+    std::vector<FoundField> computed = plan.carried ? plan.carried->components : std::vector<FoundField>();
+    if (plan.color && std::ranges::find(computed, plan.color->name, &FoundField::name) == computed.end())
+        computed.push_back(*plan.color);
+    for (const FoundField& component : computed)
+        if (auto added = add_component(component, grid, run, fields.point); !added) return added.error();
     return fields;
 }
 

@@ -22,6 +22,7 @@ struct ExtractPlan {
     std::vector<std::size_t> steps;
     FoundField field;
     std::optional<CarriedFields> carried; ///< nothing: all point fields, and all cell fields where all are read
+    std::optional<FoundField> color; ///< an expression that colours surfaces, where no field is called so
     FieldsToRead read;
     bool out_holds_fields = true, out_holds_cell_fields = true;
     std::optional<Region> touched;               ///< by the parts that are kept (find_touched())
@@ -60,6 +61,9 @@ Result<std::vector<double>> choose_isovalues(const ExtractJob& job, const std::v
 
 /// Whether surfaces that are written carry a cell field of the grid: one that parts touch need not be.
 bool is_carried(const ExtractPlan& plan, const std::string& cell_field);
+
+/// Whether the grid has the arrays of a field that is contoured.
+bool has_arrays_of(const FoundField& field, const Grid& grid);
 
 /// The fields of the plan, taken from the grid of one step, and the one that parts touch.
 struct StepFields {

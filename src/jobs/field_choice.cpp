@@ -69,7 +69,7 @@ Result<void> add_carried(const GridSource& source, const std::string& name, Carr
     else if (is_coordinate(name)) carried.components.push_back({name, {}, {}});
     else if (match_field_name(name, cell))
         return refusal("`with` got '{}', a component of a cell field, but cell fields are carried whole", name);
-    else if (looks_like_expression(name) && needs_of_expression(name, point))
+    else if (looks_like_expression(name) && needs_of_expression(name, all_names(source)))
         carried.components.push_back(*find_expression(source, name));
     else if (const std::size_t comma = comma_between(name); comma != std::string::npos) {
         if (auto first = add_carried(source, name.substr(0, comma), carried); !first) return first;

@@ -88,6 +88,69 @@ TEST(ExtractFiles, ContoursAndCarriesExpressions) {
     EXPECT_NE(unknown.error().message.find("there is no field 'q': there is '"), std::string::npos) << unknown.error().message;
 }
 
+/// Of a field T of cells alone; f is one of points.
+class CellExpressions : public testing::Test {
+protected:
+    void SetUp() override {
+        Grid grid = make_grid({.shape = "hex", .side = 4, .fields = {"sphere"}}).value();
+        std::vector<double> cells(grid.cells.count());
+        for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = static_cast<double>(i);
+        grid.point_fields[0].name = "f";
+        grid.cell_fields = {{"T", Array::own(std::move(cells))}};
+        path = folder.file("cells.vtu");
+        write_grid(grid, path).value();
+    }
+    ExtractJob job(const std::string& out) const {
+        ExtractJob job = job_of(path, folder.file(out));
+        job.field.name = "f";
+        job.isovalues = {0.5};
+        return job;
+    }
+    test::TemporaryFolder folder;
+    Listener listener;
+    std::string path;
+};
+
+TEST_F(CellExpressions, AreCarriedAsTheyAreContoured) {
+    ExtractJob carrying = job("carried.vtp");
+    for (const char* with : {"T*2", "T + f", "mag(grad(T))"}) {
+        carrying.with = {{with}};
+        const auto done = extract_files(carrying, listener);
+        ASSERT_TRUE(done) << done.error().message;
+        const Surface surface = read_surface(carrying.out).value().surface;
+        ASSERT_EQ(surface.point_fields.size(), 1u);
+        EXPECT_EQ(surface.point_fields[0].name, with);
+        EXPECT_TRUE(surface.cell_fields.empty());
+    }
+    carrying.field.name = "T*2";
+    carrying.isovalues = {30};
+    carrying.with = {{"T*2"}};
+    ASSERT_TRUE(extract_files(carrying, listener));
+    const Surface surface = read_surface(carrying.out).value().surface;
+    ASSERT_GT(surface.vertex_count(), 0u);
+    for (std::size_t i = 0; i < surface.vertex_count(); ++i)
+        EXPECT_NEAR(surface.point_fields[0].values.at(i), 30, 1e-9);
+}
+
+TEST_F(CellExpressions, ColourVertices) {
+    ExtractJob coloring = job("colored.vtp"), carrying = job("carried.vtp");
+    coloring.colors.by = carrying.colors.by = "T*2 + f";
+    coloring.with = {std::vector<std::string>()};
+    carrying.with = {{"T*2 + f"}};
+    for (const ExtractJob& each : {coloring, carrying}) {
+        const auto done = extract_files(each, listener);
+        ASSERT_TRUE(done) << done.error().message;
+    }
+    EXPECT_TRUE(test::content_of(coloring.out) == test::content_of(carrying.out));
+    coloring.with.reset(); // all fields
+    ASSERT_TRUE(extract_files(coloring, listener));
+    std::vector<std::string> names;
+    for (const Field& field : read_surface(coloring.out).value().surface.point_fields) names.push_back(field.name);
+    EXPECT_EQ(names, (std::vector<std::string>{"f", "T*2 + f", "rgb"}));
+    coloring.colors.by = "T*2 + g";
+    EXPECT_FALSE(extract_files(coloring, listener));
+}
+
 TEST(ExtractFiles, WritesNoFileOfTheCallerAndNoInput) {
     const test::TemporaryFolder folder;
     Listener listener;

@@ -50,7 +50,7 @@ struct CarriedFields {
 };
 
 /// What --with names; each a point field, else a cell field, else a component of a point field, else a list of these
-/// separated by commas, else an expression of point fields. Empty names are no field.
+/// separated by commas, else an expression. Empty names are no field.
 Result<CarriedFields> choose_carried(const GridSource& source, const std::vector<std::string>& names);
 
 /// The fields of one read: without repetition.
