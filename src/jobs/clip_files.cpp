@@ -29,7 +29,7 @@ public:
 private:
     Result<void> open();
     Result<void> plan();
-    Result<ContourInput> load(std::size_t step);
+    Result<std::optional<ContourInput>> load(std::size_t step);
     Result<void> clip_step(std::size_t step);
     Result<void> check_that_some_are_kept(const ClippedGrid& clipped) const;
     Result<void> write(const ClippedGrid& clipped, std::size_t step, ClipStepNumbers& numbers);
@@ -42,6 +42,7 @@ private:
     ExtractPlan plan_;
     bool refines_ = true;
     std::vector<CollectionEntry> series_;
+    std::vector<std::size_t> skipped_; ///< steps without the field
     ClipNumbers numbers_;
 };
 
@@ -74,6 +75,8 @@ Result<void> ClipRun::plan() {
     if (!collection) return collection.error();
     plan_.collection = *std::move(collection);
     if (auto chosen = choose_first_of(chosen_, *source_, plan_, caller_); !chosen) return chosen;
+    if (plan_.steps.size() > 1)
+        if (auto looked = source_->look_at_steps(plan_.steps, caller_); !looked) return looked;
     if (auto chosen = choose_fields_of_steps(chosen_, *source_, plan_, caller_); !chosen) return chosen;
     if (!plan_.carried) plan_.read.cell.reset();
     numbers_.grid = job_.grid.file;
@@ -94,11 +97,13 @@ ContourOptions ClipRun::options() const {
     return out;
 }
 
-Result<ContourInput> ClipRun::load(std::size_t step) {
+/// Nothing: of several steps, this one does not have the field.
+Result<std::optional<ContourInput>> ClipRun::load(std::size_t step) {
     const core::Stopwatch reading;
     caller_.detail(fmt::format("reading step {}", step));
     Result<Grid> grid = source_->read(plan_.read, step, caller_);
     if (!grid) return grid.error();
+    if (plan_.steps.size() > 1 && !has_arrays_of(plan_.field, *grid)) return std::optional<ContourInput>();
     Result<PointField> field = find_chosen(*grid, plan_.field.name, chosen_.field, caller_);
     if (!field) return field.error();
     Result<StepFields> fields = carried_fields(plan_, *grid, caller_.run());
@@ -110,7 +115,8 @@ Result<ContourInput> ClipRun::load(std::size_t step) {
     if (const std::string note = cells_left_out_note(*grid); !note.empty()) caller_.note(note);
     grid->point_fields = grid->cell_fields = {};
     std::erase_if(fields->cell, [](const Field& carried) { return carried.name == "source_cell"; });
-    return ContourInput{*std::move(grid), *std::move(field), std::move(fields->point), std::move(fields->cell)};
+    return std::optional(
+        ContourInput{*std::move(grid), *std::move(field), std::move(fields->point), std::move(fields->cell)});
 }
 
 Result<void> ClipRun::check_that_some_are_kept(const ClippedGrid& clipped) const {
@@ -153,14 +159,19 @@ Result<void> ClipRun::write(const ClippedGrid& clipped, std::size_t step, ClipSt
 }
 
 Result<void> ClipRun::clip_step(std::size_t step) {
-    Result<ContourInput> input = load(step);
-    if (!input) return input.error();
+    Result<std::optional<ContourInput>> loaded = load(step);
+    if (!loaded) return loaded.error();
+    if (!*loaded) {
+        skipped_.push_back(step);
+        return {};
+    }
+    ContourInput input = **std::move(loaded);
     const core::Stopwatch clipping;
-    const Result<SolidRange> range = with_shares(*job_.range, job_.shares, input->grid, input->field, caller_.run());
+    const Result<SolidRange> range = with_shares(*job_.range, job_.shares, input.grid, input.field, caller_.run());
     if (!range) return range.error();
     numbers_.range = *range;
     caller_.detail("clipping");
-    Result<Clipper> clipper = Clipper::create(*std::move(input), options(), caller_.run());
+    Result<Clipper> clipper = Clipper::create(std::move(input), options(), caller_.run());
     if (!clipper) return clipper.error();
     Result<ClippedGrid> clipped = clipper->clip(*range, job_.clip, caller_.run());
     if (!clipped) return clipped.error();
@@ -197,6 +208,8 @@ Result<void> ClipRun::run() {
         if (caller_.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
         if (auto clipped = clip_step(step); !clipped) return clipped;
     }
+    if (skipped_.size() == plan_.steps.size()) return source_->no_such_field(plan_.field.name);
+    if (!skipped_.empty()) caller_.note(skipped_note(plan_.field.name, skipped_, plan_.steps.size()));
     if (plan_.collection.empty()) return {};
     numbers_.collection = plan_.collection;
     return write_collection(series_, plan_.collection, caller_.run());

@@ -743,10 +743,7 @@ Result<void> ExtractRun::extract_step(std::size_t step) {
 
 /// Of steps that do not have all fields.
 void ExtractRun::note_what_steps_miss() {
-    if (!skipped_.empty())
-        caller_.note(fmt::format("'{}' is not in {} of the {} time steps, which {} skipped: {}", plan_.field.name,
-                                 skipped_.size(), plan_.steps.size(), skipped_.size() == 1 ? "is" : "are",
-                                 fmt::join(skipped_, ", ")));
+    if (!skipped_.empty()) caller_.note(skipped_note(plan_.field.name, skipped_, plan_.steps.size()));
     if (!not_carried_.empty())
         caller_.note(fmt::format("not every time step has {}: the surfaces of the others lack {}",
                                  quoted_list({not_carried_.begin(), not_carried_.end()}),

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <isotet/expression.hpp>
 #include <isotet/first_view.hpp>
@@ -134,6 +135,29 @@ Result<std::vector<std::string>> choose_field_names(const GridSource& source, co
         }
     }
     return names;
+}
+
+std::string skipped_note(const std::string& field, const std::vector<std::size_t>& skipped, std::size_t steps) {
+    return fmt::format("'{}' is not in {} of the {} time steps, which {} skipped: {}", field, skipped.size(), steps,
+                       skipped.size() == 1 ? "is" : "are", fmt::join(skipped, ", "));
+}
+
+Result<std::vector<std::size_t>> steps_with_fields(GridSource& source, std::vector<std::size_t> steps,
+                                                   const std::vector<std::string>& names, Caller& caller) {
+    if (steps.size() < 2 || names.empty()) return steps;
+    if (auto looked = source.look_at_steps(steps, caller); !looked) return looked.error();
+    for (const std::string& name : names) {
+        if (const auto found = choose_field(source, {name, false}); !found) return found.error();
+        std::vector<std::size_t> skipped;
+        for (const std::size_t step : steps)
+            if (!source.has_field(step, name)) skipped.push_back(step);
+        if (skipped.empty()) continue;
+        if (skipped.size() == steps.size())
+            return refusal("'{}' is in other time steps than the fields before it", name);
+        caller.note(skipped_note(name, skipped, steps.size()));
+        std::erase_if(steps, [&](std::size_t step) { return std::ranges::find(skipped, step) != skipped.end(); });
+    }
+    return steps;
 }
 
 Result<CarriedFields> choose_carried(const GridSource& source, const std::vector<std::string>& names) {

@@ -41,6 +41,9 @@ private:
     Result<void> open();
     Result<void> look_at_file();
     Result<void> choose_names();
+    Result<void> keep_steps_with_fields();
+    std::optional<std::size_t> step_without(const std::string& field) const;
+    std::string why_left_out(const FieldInfo& field) const;
     Result<void> take_all_fields();
     Result<void> choose_cell_fields();
     Result<void> write_cell_fields(const Grid& grid);
@@ -114,7 +117,6 @@ Result<void> PackRun::open() {
     steps_ = *std::move(steps);
     numbers_.grid = job_.grid.file;
     numbers_.format = source_->info().format;
-    numbers_.steps = steps_.size();
     if (job_.append)
         if (auto looked = look_at_file(); !looked) return looked;
     return choose_names();
@@ -145,13 +147,27 @@ std::vector<std::string> PackRun::packed_names(const std::string& name) const {
     return is_vector ? packed_names_of_vector(name) : std::vector<std::string>{name};
 }
 
-/// Takes all point fields that can be packed, or else the one that is shown first; the others are named.
+/// The first of the steps that lacks a field.
+std::optional<std::size_t> PackRun::step_without(const std::string& field) const {
+    const auto found = std::ranges::find_if(steps_, [&](std::size_t step) { return !source_->has_field(step, field); });
+    return found == steps_.end() ? std::nullopt : std::optional(*found);
+}
+
+std::string PackRun::why_left_out(const FieldInfo& field) const {
+    if (field.association != Association::point) return "of cells";
+    if (const auto step = step_without(field.name))
+        return fmt::format("not in step {}: `fields` takes it, without such steps", *step);
+    return fmt::format("{} components", field.components);
+}
+
+/// Takes all point fields that can be packed and that all steps have, or else the one that is shown first; the others are
+/// named.
 Result<void> PackRun::take_all_fields() {
-    if (auto looked = source_->look_at_steps({steps_.front()}, caller_); !looked) return looked;
     std::vector<FieldInfo> others;
     for (const FieldInfo& field : source_->info().fields) {
         const bool of_points = field.association == Association::point;
-        if (of_points && (field.components == 1 || (field.components == 3 && !job_.scalars_only)))
+        if (of_points && !step_without(field.name) &&
+            (field.components == 1 || (field.components == 3 && !job_.scalars_only)))
             add_names(names_, packed_names(field.name));
         else if (std::ranges::find(job_.cell_fields, field.name) == job_.cell_fields.end() || of_points)
             others.push_back(field);
@@ -166,11 +182,7 @@ Result<void> PackRun::take_all_fields() {
         std::erase_if(others, [&](const FieldInfo& field) { return field.name == names_.front(); });
     }
     std::vector<std::string> left_out;
-    for (const FieldInfo& field : others)
-        left_out.push_back(fmt::format("'{}' ({})", field.name,
-                                       field.association == Association::point
-                                           ? fmt::format("{} components", field.components)
-                                           : std::string("of cells")));
+    for (const FieldInfo& field : others) left_out.push_back(fmt::format("'{}' ({})", field.name, why_left_out(field)));
     if (!left_out.empty() && !job_.scalars_only)
         caller_.note(fmt::format("not packed: {}; `fields` takes components, `cell_fields` fields of cells",
                                  fmt::join(left_out, ", ")));
@@ -180,7 +192,6 @@ Result<void> PackRun::take_all_fields() {
 /// Names in lists separated by commas, or names with commas.
 Result<void> PackRun::choose_cell_fields() {
     if (job_.cell_fields.empty()) return {};
-    if (auto looked = source_->look_at_steps({steps_.front()}, caller_); !looked) return looked;
     auto named = choose_field_names(*source_, std::exchange(job_.cell_fields, {}), {{}, true, false, {}});
     if (!named) return named.error();
     const std::vector<std::string> known = source_->names(Association::cell);
@@ -193,12 +204,24 @@ Result<void> PackRun::choose_cell_fields() {
     return {};
 }
 
+Result<void> PackRun::keep_steps_with_fields() {
+    auto kept = steps_with_fields(*source_, std::move(steps_), names_, caller_);
+    if (!kept) return kept.error();
+    steps_ = *std::move(kept);
+    return {};
+}
+
 Result<void> PackRun::choose_names() {
+    if (auto looked = source_->look_at_steps(steps_, caller_); !looked) return looked;
     if (auto chosen = choose_cell_fields(); !chosen) return chosen;
     auto named = choose_field_names(*source_, job_.fields, choice({}));
     if (!named) return named.error();
     for (const std::string& name : *named) add_names(names_, packed_names(name));
-    return names_.empty() ? take_all_fields() : Result<void>();
+    if (names_.empty())
+        if (auto taken = take_all_fields(); !taken) return taken;
+    if (auto kept = keep_steps_with_fields(); !kept) return kept;
+    numbers_.steps = steps_.size();
+    return {};
 }
 
 /// The step as the session has it: packed once, with another field where only that is new.
@@ -283,6 +306,9 @@ Result<void> PackRun::pack_step(std::size_t step) {
         const core::Stopwatch packing;
         caller_.detail("packing " + name);
         Result<PointField> field = find_chosen(*grid, name, choice(name), caller_);
+        if (!field && steps_.size() > 1)
+            return Error{field.error().code, fmt::format("step {} lacks '{}', `fields` names those to pack: {}", step,
+                                                         name, field.error().message)};
         if (!field) return field.error();
         const Result<PackedGrid> packed = packed_with(*grid, *std::move(field), step);
         if (!packed) return packed.error();

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <isotet/boundary.hpp>
 #include <isotet/color_field.hpp>
@@ -154,20 +153,9 @@ Result<void> PictureSource::keep_steps_with_fields(Caller& caller) {
     std::vector<std::string> names;
     for (const std::string* name : {&job_.field.name, &job_.color_by, &job_.boundary_color_by})
         if (!name->empty()) add_names(names, {*name});
-    if (steps_.size() < 2 || names.empty()) return {};
-    if (auto looked = source_->look_at_steps(steps_, caller); !looked) return looked;
-    for (const std::string& name : names) {
-        if (const auto found = choose_field(*source_, {name, false}); !found) return found.error();
-        std::vector<std::size_t> skipped;
-        for (const std::size_t step : steps_)
-            if (!source_->has_field(step, name)) skipped.push_back(step);
-        if (skipped.empty()) continue;
-        if (skipped.size() == steps_.size())
-            return refusal("'{}' is in other time steps than the fields before it", name);
-        caller.note(fmt::format("'{}' is not in {} of the {} time steps, which {} skipped: {}", name, skipped.size(),
-                                steps_.size(), skipped.size() == 1 ? "is" : "are", fmt::join(skipped, ", ")));
-        std::erase_if(steps_, [&](std::size_t step) { return std::ranges::find(skipped, step) != skipped.end(); });
-    }
+    auto kept = steps_with_fields(*source_, std::move(steps_), names, caller);
+    if (!kept) return kept.error();
+    steps_ = *std::move(kept);
     return {};
 }
 

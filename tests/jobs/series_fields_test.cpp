@@ -8,10 +8,13 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <isotet/jobs/clip_files.hpp>
 #include <isotet/jobs/draw_files.hpp>
 #include <isotet/jobs/extract_files.hpp>
 #include <isotet/jobs/grid_source.hpp>
 #include <isotet/jobs/look_into.hpp>
+#include <isotet/jobs/pack_file.hpp>
+#include <isotet/packed_file.hpp>
 
 #include "jobs/listener.hpp"
 #include "support/temporary_folder.hpp"
@@ -166,6 +169,48 @@ TEST_F(SeriesFields, PicturesOfStepsWithoutTheFieldAreSkipped) {
     EXPECT_EQ(drawn->pictures.pictures, 2u);
     EXPECT_NE(std::ranges::find(listener.noted, "'q' is not in 1 of the 3 time steps, which is skipped: 0"),
               listener.noted.end());
+}
+
+TEST_F(SeriesFields, ClipsOfStepsWithoutTheFieldAreSkipped) {
+    for (const std::string& file : files()) {
+        Listener told;
+        ClipJob job;
+        job.grid.file = file;
+        job.field.name = "q + 0";
+        job.range = SolidRange::above(1.5);
+        job.all_steps = true;
+        job.out = folder.file("k_{step}.vtu");
+        const auto clipped = clip_files(job, told);
+        ASSERT_TRUE(clipped) << clipped.error().message;
+        EXPECT_EQ(clipped->steps.size(), 2u);
+        EXPECT_EQ(std::ranges::count(told.noted, "'q + 0' is not in 1 of the 3 time steps, which is skipped: 0"), 1);
+        job.field.name = "s";
+        EXPECT_EQ(clip_files(job, told).error().message, "there is no field 's': the grid has 'T', 'q', 'r'");
+    }
+}
+
+/// A packed file has the same cells in all steps: those of the first two differ.
+TEST_F(SeriesFields, ArePackedWhereAllStepsHaveThemOrWithoutStepsThatLackThose) {
+    folder.write("b.vtu", vtu({"q", "T"}, 1));
+    for (const auto& [fields, steps, packed, note] :
+         {std::tuple{
+              Names{}, 3u, 1u,
+              "not packed: 'q' (not in step 0: `fields` takes it, without such steps), 'r' (not in step 0: "
+              "`fields` takes it, without such steps); `fields` takes components, `cell_fields` fields of cells"},
+          {Names{"T", "q"}, 2u, 2u, "'q' is not in 1 of the 3 time steps, which is skipped: 0"}}) {
+        Listener told;
+        PackJob job;
+        job.grid.file = pvd;
+        job.fields = fields;
+        job.all_steps = true;
+        job.out = folder.file("all.isotet");
+        const auto numbers = pack_file(job, told);
+        ASSERT_TRUE(numbers) << numbers.error().message;
+        EXPECT_EQ(numbers->steps, steps);
+        EXPECT_EQ(numbers->fields.size(), packed);
+        EXPECT_EQ(std::ranges::count(told.noted, note), 1) << testing::PrintToString(told.noted);
+        EXPECT_EQ(PackedFile::open(job.out).value().info().steps, steps);
+    }
 }
 
 TEST_F(SeriesFields, InfoTellsThoseOfTheStep) {

@@ -42,6 +42,15 @@ Result<FoundField> choose_field(const GridSource& source, const FieldChoice& cho
 Result<std::vector<std::string>> choose_field_names(const GridSource& source, const std::vector<std::string>& texts,
                                                     FieldChoice choice);
 
+/// "'p' is not in 2 of the 5 time steps, which are skipped: 0, 3".
+std::string skipped_note(const std::string& field, const std::vector<std::size_t>& skipped, std::size_t steps);
+
+/// Those of several time steps that have all these fields, each a name or an expression; the others are noted. A single
+/// step is not looked at.
+/// Errors   as choose_field(), where no step has one of them; invalid_argument: no step has all of them
+Result<std::vector<std::size_t>> steps_with_fields(GridSource& source, std::vector<std::size_t> steps,
+                                                   const std::vector<std::string>& names, Caller& caller);
+
 /// The fields to carry onto a surface.
 struct CarriedFields {
     std::vector<std::string> point;     ///< whole point fields
