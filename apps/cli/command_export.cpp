@@ -2,12 +2,15 @@
 // `isotet export`: isosurfaces in a page of one file.
 #include <filesystem>
 #include <numeric>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
 #include <isotet/jobs/number_text.hpp>
 #include <isotet/jobs/output_names.hpp>
+#include <isotet/jobs/range_shares.hpp>
 #include <isotet/version.hpp>
 #include <isotet/write_file.hpp>
 
@@ -31,28 +34,54 @@ std::string name_without_folder(const std::string& file) {
 }
 
 Result<void> check_export(const ExportCommand& command, const GridSource& source) {
-    if (ending_of(command.out) != ".html")
-        return usage_error("OUT is '{}', but a page ends in .html", command.out);
-    if (!command.range.empty() && (command.range.size() != 2 || !(command.range[0] < command.range[1])))
-        return usage_error("--between takes two numbers, the smaller one first, as in 0.1,0.5");
+    if (ending_of(command.out) != ".html") return usage_error("OUT is '{}', but a page ends in .html", command.out);
+    const bool has_shares = command.range_shares.lower || command.range_shares.upper; // which are known later
+    if (!command.range.empty() &&
+        (command.range.size() != 2 || (!has_shares && !(command.range[0] < command.range[1]))))
+        return usage_error("--between takes two isovalues, the smaller one first, as in 0.1,0.5 or 5%v,95%v");
     if (Result<void> paths = check_output_paths(source.info().files, {command.out, command.common.json}); !paths)
         return paths;
     return check_view_fields(source, command.field, command.color_by);
 }
 
-view::SavedSurfacesOptions options_of(const ExportCommand& command, const view::ViewerInput& input) {
+/// The steps that are shown: where all are asked for, those that have the fields.
+Result<std::vector<std::size_t>> steps_of(const ExportCommand& command, GridSource& source, Console& console) {
+    const std::size_t count = source.info().times.size();
+    if (!command.all_steps || count < 2) return std::vector<std::size_t>();
+    std::vector<std::size_t> all(count);
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    std::vector<std::string> names;
+    for (const std::string* name : {&command.field.name, &command.color_by})
+        if (!name->empty()) add_names(names, {*name});
+    return steps_with_fields(source, std::move(all), names, console);
+}
+
+/// Nothing: that of the field.
+Result<std::optional<ValueRange>> range_of(const ExportCommand& command, const view::ViewerInput& input,
+                                           const Run& run) {
+    if (command.range.empty()) return std::optional<ValueRange>();
+    const SolidRange named{command.range[0], command.range[1]};
+    if (!command.range_shares.lower && !command.range_shares.upper)
+        return std::optional(ValueRange{named.lower, named.upper});
+    const Result<PointField> field = find_field(input.grid, input.state.field, {}, run);
+    if (!field) return field.error();
+    const Result<SolidRange> range = with_shares(named, command.range_shares, input.grid, *field, run);
+    if (!range) return range.error();
+    return std::optional(ValueRange{range->lower, range->upper});
+}
+
+view::SavedSurfacesOptions options_of(const ExportCommand& command, const view::ViewerInput& input,
+                                      const std::vector<std::size_t>& steps, std::optional<ValueRange> range) {
     view::SavedSurfacesOptions options;
     options.file = name_without_folder(command.grid.file);
     options.version = ISOTET_VERSION;
     options.isovalues = input.state.isovalues; // those that were named
     options.count = command.count;
-    if (!command.range.empty()) options.range = ValueRange{command.range[0], command.range[1]};
+    options.range = range;
     options.refine = command.refine;
     if (command.max_size) options.max_bytes = *command.max_size;
-    options.steps = {input.state.step.value_or(0)};
-    if (!command.all_steps || input.times.size() < 2) return options;
-    options.steps.resize(input.times.size());
-    std::iota(options.steps.begin(), options.steps.end(), std::size_t{0});
+    options.steps = steps;
+    if (steps.empty()) options.steps = {input.state.step.value_or(0)};
     return options;
 }
 
@@ -96,9 +125,12 @@ Result<ExitCode> run_export(const ExportCommand& command) {
     if (command.grid_inside) return run_export_grid(command);
     Console console(command.common);
     GridOptions grid = command.grid;
-    if (command.all_steps) grid.step = 0; // is read first
+    if (command.all_steps) grid.step = 0;
     Result<GridSource> source = GridSource::open(grid, console);
     if (!source) return source.error();
+    Result<std::vector<std::size_t>> steps = steps_of(command, *source, console);
+    if (!steps) return steps.error();
+    if (!steps->empty()) grid.step = steps->front(); // is read first
     if (Result<void> checked = check_export(command, *source); !checked) return checked.error();
 
     ExportTimes seconds;
@@ -107,14 +139,19 @@ Result<ExitCode> run_export(const ExportCommand& command) {
         {grid, command.field, command.isovalues, command.shares, command.color_by}, *source, console, console.run());
     if (!input) return input.error();
     seconds.read = reading.seconds();
+    if (command.field.name.empty()) { // the one that was chosen may be missing in others
+        steps = steps_with_fields(*source, *std::move(steps), {input->state.field}, console);
+        if (!steps) return steps.error();
+    }
 
     const Stopwatch extracting;
-    const view::SavedSurfacesOptions options = options_of(command, *input);
+    const Result<std::optional<ValueRange>> range = range_of(command, *input, console.run());
+    if (!range) return range.error();
+    const view::SavedSurfacesOptions options = options_of(command, *input, *steps, *range);
     const view::ReadStep read_step = [&](std::size_t step, const Run& run) {
         return source->read({}, step, console, run);
     };
-    const Result<view::SavedSurfaces> saved =
-        view::save_surfaces(*std::move(input), read_step, options, console.run());
+    const Result<view::SavedSurfaces> saved = view::save_surfaces(*std::move(input), read_step, options, console.run());
     if (!saved) return saved.error();
     console.notes(saved->notes);
     console.note(fmt::format("{} will have {}", command.out, format_bytes(saved->html.size())));

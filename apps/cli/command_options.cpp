@@ -365,6 +365,21 @@ void add_view(const Command& program, ViewCommand& view) {
     command.set_details(view_details);
 }
 
+Option add_range_of_surfaces(const Command& command, ExportCommand& exported) {
+    return command.add_numbers("--between", exported.range, "A,B",
+                               "The range of --surfaces: numbers, or shares such as 5%v or p95 (of the first step); "
+                               "default: that of the field",
+                               {[&exported](std::string_view word) {
+                                    const std::optional<IsovalueShare> share = parse_share(word);
+                                    if (!share || exported.range.size() > 1) return false;
+                                    (exported.range.empty() ? exported.range_shares.lower
+                                                            : exported.range_shares.upper) = share;
+                                    exported.range.push_back(0); // until the grid is read
+                                    return true;
+                                },
+                                "two finite numbers or shares such as 90%v or p95"});
+}
+
 void add_export(const Command& program, ExportCommand& exported) {
     const Command command = program.add_command("export", "Make a page of one file with isosurfaces and a slider");
     command.add_file("FILE", exported.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]").required();
@@ -381,8 +396,7 @@ void add_export(const Command& program, ExportCommand& exported) {
             "--surfaces", {1, 10'000}, [&](std::uint64_t n) { exported.count = n; }, "N",
             "N isosurfaces evenly inside the range, at short decimals; default: 63")
         .excludes(isovalues);
-    command.add_numbers("--between", exported.range, "A,B", "The range of --surfaces; default: that of the field")
-        .excludes(isovalues);
+    add_range_of_surfaces(command, exported).excludes(isovalues);
     command.add_text("--color-by", exported.color_by, "FIELD", "Colour by this point or cell field");
     add_bytes(command, "--max-size", exported.max_size, "Largest size of the file; default: 20MB");
     add_refinement(command, exported.refine);

@@ -81,6 +81,7 @@ struct ExportCommand {
     std::vector<IsovalueShare> shares; ///< more, of the first step; not with `grid_inside`
     std::uint64_t count = 63;
     std::vector<double> range; ///< none, or two: where they lie evenly
+    RangeShares range_shares;  ///< of the first step that is shown: in place of both ends
     std::string color_by;
     bool all_steps = false;
     std::optional<std::uint64_t> max_size;

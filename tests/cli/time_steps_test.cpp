@@ -79,6 +79,24 @@ TEST_F(ProgramWithTimes, AllStepsMakeOneFileEachAndEqualThoseOfSingleSteps) {
     }
 }
 
+TEST_F(Program, ExportSkipsStepsWithoutTheFieldAndTakesARangeByShares) {
+    ASSERT_EQ(isotet({"make", "kuhn", "--side", "2", "--fields", "sphere", "-o", path("0.vtu")}).status, 0);
+    ASSERT_EQ(isotet({"make", "kuhn", "--side", "2", "--fields", "sphere,gyroid", "-o", path("1.vtu")}).status, 0);
+    put_content(path("run.pvd"), "<VTKFile type='Collection'><Collection><DataSet timestep='0' file='0.vtu'/>"
+                                 "<DataSet timestep='1' file='1.vtu'/></Collection></VTKFile>");
+    const std::vector<std::string> all{"export", path("run.pvd"), path("a.html"), "--all-steps", "--surfaces", "2"};
+    const auto with = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), all.begin(), all.end());
+        return more;
+    };
+    EXPECT_EQ(json_of(with({"-f", "gyroid"}))["steps"], 1);
+    EXPECT_EQ(json_of(with({"-f", "sphere"}))["steps"], 2);
+    EXPECT_EQ(json_of(with({"-f", "sphere", "--color-by", "gyroid"}))["steps"], 1);
+    EXPECT_EQ(json_of(with({"-f", "sphere", "--between", "0%v,100%v"}))["isovalues"],
+              json_of(with({"-f", "sphere"}))["isovalues"]);
+    EXPECT_EQ(isotet(with({"-f", "sphere", "--between", "90%v,10%v"})).status, 3);
+}
+
 TEST_F(ProgramWithTimes, TheRangeOfASeriesIsThatOfTheLastStep) {
     const RunResult run = isotet({"extract", grid, "-f", "p", "-i", "1", "--all-steps"});
     EXPECT_NE(run.out.find("p, 0 to 8 in the last time step"), std::string::npos) << run.out;
