@@ -143,7 +143,12 @@ private:
             Counts middle = counts_at(std::sqrt(std::max(below.limit, 1e-6 * above.limit) * above.limit));
             (middle.sum >= wanted_ ? below : above) = std::move(middle);
         }
-        const std::size_t between = below.sum - above.sum;
+        if (below.sum < wanted_) { // what goes without any error is more than may go
+            above = std::exchange(below, {});
+            for (const Piece& piece : pieces_) below.left.push_back(piece.indices.size() / 3);
+            below.sum = triangles_;
+        }
+        const std::size_t between = below.sum - std::min(above.sum, below.sum);
         for (std::size_t i = 0; i < pieces_.size(); ++i) {
             // Of what goes between both errors as large a part of each as makes the sum.
             const std::size_t goes = below.left[i] - std::min(above.left[i], below.left[i]);

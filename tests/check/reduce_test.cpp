@@ -50,7 +50,20 @@ TEST(Reduce, KeepsSolidsClosedAndTheirVolume) {
     EXPECT_GT(reduced.error, 0);
 }
 
-/// Each part has no more than its share: beside a flat face with many triangles the isosurface keeps its own.
+/// Where flat faces could lose more than that without an error.
+TEST(Reduce, LeavesOutNoMoreThanTheShare) {
+    ContourInput input;
+    input.grid = made_grid("kuhn", 12, {"sphere"});
+    input.field = {"sphere", input.grid.point_fields.at(0).values, false, {}};
+    Solids solids = Solids::create(std::move(input)).value();
+    const Surface surface = solids.extract(SolidRange::above(0.3)).value().surface;
+    for (const double share : {0.1, 0.3, 0.5}) {
+        const auto left = static_cast<double>(reduce(surface, {.share = share}).value().surface.triangle_count());
+        EXPECT_NEAR(left / static_cast<double>(surface.triangle_count()), 1 - share, 0.03) << share;
+    }
+}
+
+/// Parts are reduced to one error: beside a flat face with many triangles the isosurface keeps its own.
 TEST(Reduce, MovesAllPartsOfASurfaceAlike) {
     const Surface surface = holed_cube();
     double last = 0;
