@@ -441,7 +441,8 @@ void add_check(const Command& program, CheckCommand& check) {
     add_isovalues(command, check.isovalues, check.shares).needs(grid);
     add_refinement(command, check.refine, &check.refine_averaged);
     for (const char* name : {"--tolerance", "--distance", "--geometry-tolerance"}) command.option(name).needs(grid);
-    command.add_flag("--strict", check.strict, "Fail also for flat triangles, touching vertices and the like (--help-all)");
+    command.add_flag("--strict", check.strict,
+                     "Fail also for flat triangles, touching vertices and the like (--help-all)");
     command.add_text("--format", check.format, "FORMAT", "Format of the surface; default: the name decides");
     add_reading(command, check.grid, "--grid-format");
     for (const char* name :
@@ -483,7 +484,8 @@ void add_pack(const Command& program, PackCommand& pack) {
                                   {{"float", Precision::float32}, {"double", Precision::float64}},
                                   "Precision of the packed grid");
     add_bytes(command, "--memory", pack.memory,
-              "Aim for less memory than this, such as 2GB: what needs more lies in files meanwhile; default: no limit");
+              "Aim for less memory than this, such as 2GB: what needs more lies in files meanwhile; default: half of "
+              "what is free with --scratch, else no limit");
     command.add_file("--scratch", pack.scratch, "FOLDER", "The folder of these files; default: that of OUT");
     add_reading(command, pack.grid, "--format");
     add_common(command, pack.common);

@@ -32,7 +32,8 @@ struct ScratchReport {
 /// The files have no names: nothing of them stays when the process ends, however it does. Their room is asked of the
 /// file system before they are written to. An array that lies in a file does so until it is destroyed, also after the
 /// ScratchMemory is. What is not an array of isotet's, such as the caller's, is not moved; when that alone takes more
-/// than `memory`, the process does.
+/// than `memory`, the process does. The replies of isotet-reader are not moved either. A process that fork() makes shares
+/// the files: it may only exec(). On file systems that do not keep room for files (ZFS) a full disk ends the process.
 ///
 /// Threads   safe from many threads; one at a time in a process
 class ISOTET_API ScratchMemory {

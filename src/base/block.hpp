@@ -16,7 +16,7 @@ struct Block {
     std::size_t bytes = 0;
 };
 
-/// Guarantees   not cleared; aligned for every type; to a huge page when it holds one and
+/// Guarantees   not cleared; aligned for every type; in memory to a huge page when it holds one and
 ///              where the address space has room
 /// Errors       throws std::bad_alloc
 /// Threads      safe from many threads

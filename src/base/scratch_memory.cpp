@@ -6,11 +6,14 @@
 #include <cerrno>
 #include <charconv>
 #include <chrono>
-#include <cstring>
+#include <cstdlib>
+#include <exception>
 #include <iterator>
 #include <map>
 #include <mutex>
 #include <new>
+#include <optional>
+#include <string>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -99,10 +102,14 @@ public:
         const std::uint64_t limit = limit_;
         if (!limit || belongs_in_memory(bytes, in_memory, limit)) return {};
         static const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+        std::map<void*, std::size_t> place{{nullptr, 0}}; // before there is anything that could be lost
         const Block block = map_file((bytes + page - 1) / page * page);
         if (!block.data) throw std::bad_alloc();
+        auto node = place.extract(place.begin());
+        node.key() = block.data;
+        node.mapped() = block.bytes;
         const std::lock_guard lock(mutex_);
-        blocks_.emplace(block.data, block.bytes);
+        blocks_.insert(std::move(node));
         bytes_ += block.bytes;
         peak_ = std::max<std::uint64_t>(peak_, bytes_);
         return block;
@@ -127,7 +134,7 @@ public:
         const auto excess = [&](std::uint64_t share) {
             const Resident now = Resident::now(statm);
             const std::uint64_t others = now.all - now.of_files;
-            return now.of_files > (most > others ? (most - others) / share : 0);
+            return now.of_files > std::max(others_of_files_, most > others ? (most - others) / share : 0);
         };
         if (!excess(1)) return;
         std::size_t slices = 0;
@@ -135,7 +142,9 @@ public:
             const std::lock_guard lock(mutex_);
             slices = bytes_ / slice + blocks_.size();
         }
-        while (slices-- > 0 && excess(2)) drop_slice();
+        for (; slices > 0 && excess(2); --slices) drop_slice();
+        // What is still there is not of these files: the program, replies of isotet-reader. Looking again would not help.
+        others_of_files_ = slices == 0 ? Resident::now(statm).of_files + slice : 0;
     }
 
     ScratchReport report() {
@@ -173,7 +182,7 @@ private:
         const int file = open_unnamed(folder);
         int number = file < 0 ? errno : 0;
         // All of its room at once: when the disk were found full later, at a page, that would end the process.
-        if (!number) number = posix_fallocate(file, 0, static_cast<off_t>(bytes));
+        while (!number && (number = posix_fallocate(file, 0, static_cast<off_t>(bytes))) == EINTR) number = 0;
         void* data = MAP_FAILED;
         if (!number) {
             data = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
@@ -181,6 +190,7 @@ private:
         }
         if (file >= 0) ::close(file);
         if (data != MAP_FAILED) return {data, bytes};
+        if (number == ENOMEM) return {}; // that is no fault of the folder
         const std::lock_guard lock(mutex_);
         failure_ = number == ENOSPC || number == EDQUOT || number == EFBIG
                        ? no_room("an array", bytes, folder)
@@ -214,7 +224,8 @@ private:
     std::map<void*, std::size_t> blocks_; ///< and their bytes
     std::atomic<std::uint64_t> bytes_{0}; ///< of them
     std::uint64_t peak_ = 0;
-    std::byte* next_ = nullptr; ///< where the next slice begins
+    std::byte* next_ = nullptr;         ///< where the next slice begins
+    std::uint64_t others_of_files_ = 0; ///< in memory, of files, that no slice gives back; of who watches the limit
     std::optional<Error> failure_;
 };
 

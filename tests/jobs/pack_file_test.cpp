@@ -218,7 +218,7 @@ TEST(PackFile, GivesTheSameFileWithItsArraysInScratchFiles) {
     }
 }
 
-TEST(PackFile, StaysBelowTheMemoryThatIsWanted) {
+TEST(PackFile, PutsIntoFilesWhatIsMoreThanTheMemoryThatIsWanted) {
     const test::TemporaryFolder folder;
     Listener listener;
     PackJob job;
