@@ -66,7 +66,8 @@ std::string unquoted(std::string_view name) {
     return std::string(name);
 }
 
-std::optional<EnsightCase::Variable> variable_of(std::string_view key, std::string_view rest) {
+/// By what stands before the colon; nothing where it is no kind that is known.
+std::optional<EnsightCase::Variable> variable_of(std::string_view key) {
     struct Kind {
         std::string_view name;
         std::size_t components;
@@ -87,23 +88,27 @@ std::optional<EnsightCase::Variable> variable_of(std::string_view key, std::stri
     variable.is_measured = place == "measured node";
     variable.of_nodes = place == "node" || variable.is_measured;
     if (!variable.of_nodes && place != "element") return std::nullopt;
+    return variable;
+}
+
+/// Takes its name and files; false where they are not there.
+bool take_files(EnsightCase::Variable& variable, std::string_view rest) {
     EnsightCase::File file;
     take_sets(rest, file);
     if (variable.is_complex) { // the files of both parts, then a frequency
         const Words words = words_of(rest);
-        if (words.size() < 3) return std::nullopt;
+        if (words.size() < 3) return false;
         for (const std::size_t i : {1, 2}) {
             file.name = words[i];
             variable.files.push_back(file);
         }
         variable.description = words[0];
-        return variable;
+        return true;
     }
     file.name = take_last_name(rest);
     variable.files.push_back(file);
     variable.description = unquoted(rest);
-    if (variable.description.empty() || file.name.empty()) return std::nullopt;
-    return variable;
+    return !variable.description.empty() && !file.name.empty();
 }
 
 /// The words before the colon with a space between them.
@@ -219,8 +224,10 @@ private:
             return;
         case Section::variable:
             if (line.starts_with("constant")) return;
-            if (auto variable = variable_of(key, rest)) found_.variables.push_back(*std::move(variable));
-            else if (key.empty()) refuse(line, "a variable");
+            if (auto variable = variable_of(key)) {
+                if (!take_files(*variable, rest)) return refuse(line, "a variable with a name and a file");
+                found_.variables.push_back(*std::move(variable));
+            } else if (key.empty()) refuse(line, "a variable");
             else found_.left_out.push_back({"variable", std::string(line), "no kind of variable that is known"});
             return;
         case Section::file: return take_file_set(key, words);
