@@ -83,7 +83,7 @@ struct SurfaceLook {
     double opacity = 1;
 };
 
-/// Vertices of a surface, up to 2048, spread evenly over their order.
+/// Vertices of a surface, up to 2048 finite ones, spread evenly over their order.
 using SurfacePoints = std::vector<std::array<double, 3>>;
 ISOTET_API SurfacePoints some_points_of(const Surface& surface);
 

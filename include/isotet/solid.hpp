@@ -68,7 +68,8 @@ struct SolidMeasure {
 };
 
 /// Cost     O(F)
-/// Errors   invalid_argument: the surface has no cell field "boundary"
+/// Errors   invalid_argument: the surface has no cell field "boundary", or triangles that are not uint32; invalid_data: a
+///          triangle has a vertex that is not there
 ISOTET_API Result<SolidMeasure> measure_solid(const Surface& surface);
 
 /// Makes solids of one grid and field, for one isovalue after another.

@@ -69,7 +69,8 @@ void Hiding::look_along(std::span<const SurfacePoints> surfaces, const std::arra
         std::array<double, 3> place{};
         for (std::size_t axis = 0; axis < 3; ++axis) place[axis] = (point[axis] - centre_[axis]) * scale_;
         const auto cell = [](double at) {
-            return static_cast<std::size_t>(std::clamp((at + 1) / 2 * side, 0.0, side - 1.0));
+            const double place_in_view = (at + 1) / 2 * side;
+            return place_in_view > 0 ? static_cast<std::size_t>(std::min(place_in_view, side - 1.0)) : 0;
         };
         return Seen{cell(along(place, down)) * side + cell(along(place, across)), along(place, view)};
     };

@@ -47,7 +47,7 @@ std::uint64_t IsosurfaceScene::Data::smallest_size() const {
 
 /// Colours and opacities, and what is around the surfaces.
 void IsosurfaceScene::Data::dress() {
-    const std::vector<bool> hides = find_hiding();
+    const std::vector<bool> hides = look.opacity ? std::vector<bool>(shown.size()) : find_hiding();
     for (std::size_t i = 0; i < shown.size(); ++i) {
         const auto value_at = [&](std::size_t at) { return shown[at].isovalue; };
         scene.surfaces[i].color = color_among(shown.size(), i, value_at, look);
@@ -80,7 +80,7 @@ void IsosurfaceScene::Data::add_volume() {
 std::vector<SurfaceLook> looks_of(std::span<const double> isovalues, std::span<const SurfacePoints> points,
                                   const SceneLook& look) {
     std::vector<SurfaceLook> looks(isovalues.size());
-    const scene::Hiding hiding(points);
+    const scene::Hiding hiding(look.opacity ? std::span<const SurfacePoints>() : points);
     const auto value_at = [&](std::size_t at) { return std::optional(isovalues[at]); };
     for (std::size_t i = 0; i < looks.size(); ++i) {
         looks[i].color = color_among(isovalues.size(), i, value_at, look);

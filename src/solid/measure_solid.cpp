@@ -6,6 +6,8 @@
 #include <map>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "base/errors.hpp"
 #include "base/guard.hpp"
 #include "solid/assemble.hpp"
@@ -23,6 +25,13 @@ Result<SolidMeasure> measured(const Surface& surface) {
     const Field *const boundary = cell_field(surface, "boundary"), *const patch = cell_field(surface, "patch");
     if (!boundary || boundary->values.tuples() != surface.triangle_count())
         return invalid_argument("a surface without the cell field 'boundary' is no solid's");
+    if (surface.positions.tuples() > 0 && surface.triangles.type() != ScalarType::uint32)
+        return invalid_argument("the triangles of a solid are of uint32");
+    for (const std::uint32_t corner : surface.triangles.as<std::uint32_t>())
+        if (corner >= surface.vertex_count())
+            return invalid_data(
+                fmt::format("a triangle has vertex {}, but there are {}", corner, surface.vertex_count()));
+    const bool has_patches = patch && patch->values.tuples() == surface.triangle_count();
     SolidMeasure measure;
     measure.volume = solid::enclosed_volume(surface);
     const std::vector<double> areas = solid::areas_of(surface, 0, surface.triangle_count());
@@ -31,8 +40,9 @@ Result<SolidMeasure> measured(const Surface& surface) {
         const bool on_isosurface = boundary->values.at(i) == static_cast<double>(SolidPart::isosurface);
         measure.isosurface_triangles += on_isosurface;
         (on_isosurface ? measure.isosurface_area : measure.boundary_area) += areas[i];
-        const auto number = patch ? static_cast<std::int64_t>(patch->values.at(i)) : -1;
-        if (number < 0) continue;
+        const double value = has_patches ? patch->values.at(i) : -1;
+        if (!(value >= 0 && value < 0x1p53)) continue;
+        const auto number = static_cast<std::int64_t>(value);
         SolidPatch& one = patches[number];
         one.number = number;
         one.area += areas[i];

@@ -5,7 +5,7 @@ const reach = 0.35; // of half the longest side of the grid's box
 
 /** Distances along the view from depths, in shaders. */
 export const distances = `
-uniform sampler2D depths;
+uniform highp sampler2D depths;
 uniform vec2 nearFar;
 uniform bool parallel;
 float distanceOf(float depth) {
