@@ -48,7 +48,7 @@ TEST(PackingInScratchFiles, GivesTheSameFileForAnyLimitAndThreads) {
         return content_of(saved(pack(grid, point_field(grid), {}, {.threads = threads}).value(), folder));
     };
     const std::string expected = file(2);
-    for (const std::uint64_t memory : {std::uint64_t{1}, std::uint64_t{16'000'000}, std::uint64_t{1} << 40})
+    for (const std::uint64_t memory : {std::uint64_t{1}, std::uint64_t{6'000'000}, std::uint64_t{1} << 40})
         for (const int threads : {1, 4}) {
             const ScratchMemory scratch = ScratchMemory::begin({folder.file(""), memory}).value();
             EXPECT_TRUE(file(threads) == expected) << memory << ' ' << threads;

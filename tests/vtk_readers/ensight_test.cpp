@@ -121,8 +121,11 @@ TEST_P(EnsightFiles, MayHaveEmptyPartsAndSectionsThatAreNotRead) {
                   "SCRIPTS\nmetadata: x.xml\n");
     ReadOptions last;
     last.step = 1;
-    const auto result = whole(read(path, last));
+    const auto result = read(path, last);
     ASSERT_TRUE(result) << result.error().message;
+    ASSERT_FALSE(result->info.left_out.empty()) << "which is told";
+    EXPECT_EQ(result->info.left_out.front().name, "MATERIAL");
+    EXPECT_EQ(result->info.left_out.back().name, "SCRIPTS");
     EXPECT_EQ(result->info.times, (std::vector<double>{0, 0.15}));
     EXPECT_EQ(result->grid.cells.count(), 1u);
     ASSERT_EQ(result->grid.point_fields.size(), 1u);

@@ -225,8 +225,8 @@ private:
         case Section::variable:
             if (line.starts_with("constant")) return;
             if (auto variable = variable_of(key)) {
-                if (!take_files(*variable, rest)) return refuse(line, "a variable with a name and a file");
-                found_.variables.push_back(*std::move(variable));
+                if (take_files(*variable, rest)) found_.variables.push_back(*std::move(variable));
+                else found_.left_out.push_back({"variable", std::string(line), "a name and a file are not there"});
             } else if (key.empty()) refuse(line, "a variable");
             else found_.left_out.push_back({"variable", std::string(line), "no kind of variable that is known"});
             return;
