@@ -134,8 +134,12 @@ public:
         const auto excess = [&](std::uint64_t share) {
             const Resident now = Resident::now(statm);
             const std::uint64_t others = now.all - now.of_files;
-            return now.of_files > std::max(others_of_files_, most > others ? (most - others) / share : 0);
+            return now.of_files > (most > others ? (most - others) / share : 0);
         };
+        if (looks_to_skip_ > 0) {
+            --looks_to_skip_;
+            return;
+        }
         if (!excess(1)) return;
         std::size_t slices = 0;
         {
@@ -143,8 +147,11 @@ public:
             slices = bytes_ / slice + blocks_.size();
         }
         for (; slices > 0 && excess(2); --slices) drop_slice();
-        // What is still there is not of these files: the program, replies of isotet-reader. Looking again would not help.
-        others_of_files_ = slices == 0 ? Resident::now(statm).of_files + slice : 0;
+        // What is still there may not be of these files, but the program, or replies of isotet-reader: then each next look
+        // comes later, up to a second.
+        const bool helped = slices > 0 || !excess(1);
+        rest_ = helped ? 0 : std::min(2 * rest_ + 1, 511U);
+        looks_to_skip_ = rest_;
     }
 
     ScratchReport report() {
@@ -224,8 +231,8 @@ private:
     std::map<void*, std::size_t> blocks_; ///< and their bytes
     std::atomic<std::uint64_t> bytes_{0}; ///< of them
     std::uint64_t peak_ = 0;
-    std::byte* next_ = nullptr;         ///< where the next slice begins
-    std::uint64_t others_of_files_ = 0; ///< in memory, of files, that no slice gives back; of who watches the limit
+    std::byte* next_ = nullptr;             ///< where the next slice begins
+    unsigned rest_ = 0, looks_to_skip_ = 0; ///< of who watches the limit
     std::optional<Error> failure_;
 };
 
