@@ -7,8 +7,8 @@ source "$(dirname "${BASH_SOURCE[0]}")/../../scripts/lib/common.sh"
 source "$root/scripts/lib/packages.sh"
 source "$root/scripts/lib/software_vulkan.sh"
 
-readonly folder=$root/build/vendors
-readonly debian=$folder/root built=$folder/root/root/built ready=$folder/ready results=$folder/results
+readonly vendors=$root/build/vendors
+readonly debian=$vendors/root built=$vendors/root/root/built ready=$vendors/ready results=$vendors/results
 readonly libraries=$debian/usr/lib/x86_64-linux-gnu
 readonly devices=(skl dg2 bmg a660 a740 ampere g610 navi31 vega10)
 readonly release=trixie not_there=77
@@ -49,7 +49,7 @@ unpack_debian() {
     printf 'deb %s %s main\ndeb-src %s %s main\n' "$mirror" "$release" "$mirror" "$release" >"$debian/etc/apt/sources.list"
     chroot "$debian" apt-get update || return
     DEBIAN_FRONTEND=noninteractive chroot "$debian" apt-get install -y --no-install-recommends "${packages[@]}" || return
-    touch "$folder/unpacked"
+    touch "$vendors/unpacked"
 }
 
 build_mesa() {
@@ -61,13 +61,13 @@ build_mesa() {
 prepare() {
     if [[ -e $ready ]]; then return; fi
     install_packages debootstrap "${packages_to_build[@]}" || return
-    mkdir -p "$folder"
-    if [[ ! -e $folder/unpacked ]]; then
+    mkdir -p "$vendors"
+    if [[ ! -e $vendors/unpacked ]]; then
         say "vendors: unpacks Debian 13 with what Mesa is built with"
-        in_log "vendors: Debian 13" "$folder/debian.log" unpack_debian || return
+        in_log "vendors: Debian 13" "$vendors/debian.log" unpack_debian || return
     fi
     say "vendors: builds Mesa's fake devices, and the drivers that Debian does not build for this machine"
-    in_log "vendors: Mesa" "$folder/mesa.log" build_mesa || return
+    in_log "vendors: Mesa" "$vendors/mesa.log" build_mesa || return
     touch "$ready"
 }
 
@@ -75,7 +75,7 @@ prepare() {
 run() {
     local driver shim settings=(MESA_SHADER_CACHE_DISABLE=true)
     if [[ ! -e $ready ]]; then
-        fail "no fake devices in $folder: $0 builds them"
+        fail "no fake devices in $vendors: $0 builds them"
         return "$not_there"
     fi
     case $1 in
@@ -106,7 +106,7 @@ run() {
 
 # Every pipeline for one device; nothing that the driver writes is lost, since one of them tells spills only there.
 compile_for() {
-    run "$1" "$folder/tree/bench/isotet_device_kernels" >"$results/$1.txt" 2>&1 && return
+    run "$1" "$vendors/tree/bench/isotet_device_kernels" >"$results/$1.txt" 2>&1 && return
     fail "$1 does not take all pipelines:"
     grep -A1 -E '^(pipeline|unusable)' "$results/$1.txt" | grep -B1 -E '^(unusable|refused)' >&2 || tail "$results/$1.txt" >&2
     return 1
@@ -116,7 +116,7 @@ tables() {
     local device status=0
     prepare || return
     use_ccache
-    build_target=isotet_device_kernels build vendors "$folder/tree" -DCMAKE_BUILD_TYPE=Release -DISOTET_BENCH=ON \
+    build_target=isotet_device_kernels build vendors "$vendors/tree" -DCMAKE_BUILD_TYPE=Release -DISOTET_BENCH=ON \
         -DISOTET_TESTS=OFF -DISOTET_IO=OFF -DISOTET_VTK=OFF || return
     mkdir -p "$results"
     for device in "${devices[@]}"; do
