@@ -69,6 +69,22 @@ TEST(ReadGocad, NotesWhatItChanged) {
     EXPECT_EQ(result.notes[3], "tvolume: 0 'lower', 1 'upper'");
 }
 
+TEST(ReadGocad, NotesLinesThatItDoesNotRead) {
+    const ReadResult result = read_text(replaced(gocad_sample, "TETRA 5 9", "TETRAS 1 2 3 4\nTETRA 5 9"));
+    std::string said;
+    for (const LeftOut& item : result.info.left_out) said += item.what + " " + item.name + ": " + item.reason + "\n";
+    EXPECT_EQ(said, "line TETRAS: the keyword is not known\n"
+                    "line MODEL: surfaces between volumes are not read\n"
+                    "line SURFACE: surfaces between volumes are not read\n"
+                    "line TFACE: surfaces between volumes are not read\n"
+                    "line TRGL: surfaces between volumes are not read\n");
+    std::string many;
+    for (int i = 0; i < 30; ++i) many += "WORD" + std::to_string(i) + "\n";
+    const ReadResult others = read_text(replaced(gocad_sample, "MODEL\n", many.c_str()));
+    EXPECT_EQ(others.info.left_out.size(), 17u);
+    EXPECT_EQ(others.info.left_out.back().reason, "17 lines have more unknown keywords");
+}
+
 TEST(ReadGocad, AnnouncesWhatItReads) {
     const FileInfo info = io::inspect_gocad(gocad_sample, {}).value();
     ASSERT_EQ(info.fields.size(), 4U);

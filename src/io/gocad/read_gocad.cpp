@@ -16,6 +16,7 @@
 #include "base/parallel.hpp"
 #include "io/files/pace.hpp"
 #include "io/files/text_scanner.hpp"
+#include "io/pieces/loaded.hpp"
 #include "io/pieces/number_map.hpp"
 #include "io/reader.hpp"
 
@@ -95,7 +96,8 @@ public:
             else if (keyword == "ATOM") read = read_atom(false);
             else if (keyword == "PATOM") read = read_atom(true);
             else if (keyword == "TVOLUME") volumes_.emplace_back(scanner_.word_of_line());
-            else ended = keyword == "END";
+            else if (keyword == "END") ended = true;
+            else if (!keyword.empty()) note_unread(keyword);
             if (!read) return read;
             if (!pace_.goes_on(scanner_.position())) return Pace::cancelled();
         }
@@ -119,6 +121,7 @@ public:
         if (wants_volumes_)
             grid.cell_fields.push_back({std::string(volume_name), Array::own(std::move(volume_of_tet_))});
         add_notes(result.notes);
+        tell_unread(result.info);
         return {};
     }
 
@@ -318,6 +321,26 @@ private:
         }
     }
 
+    /// Lines among points and tets with a keyword that is not read; of many keywords the first.
+    void note_unread(std::string_view keyword) {
+        constexpr std::size_t most = 16;
+        if (std::ranges::find(unread_, keyword) != unread_.end()) return;
+        if (unread_.size() < most) unread_.push_back(keyword);
+        else ++unread_others_;
+    }
+
+    void tell_unread(FileInfo& info) const {
+        constexpr std::string_view of_surfaces[] = {"MODEL",        "SURFACE",     "TFACE",  "TRGL",
+                                                    "MODEL_REGION", "KEYVERTICES", "BSTONE", "BORDER"};
+        for (const std::string_view keyword : unread_) {
+            const bool known = std::ranges::find(of_surfaces, keyword) != std::end(of_surfaces);
+            leave_out(info, {"line", std::string(keyword.substr(0, 40)),
+                             known ? "surfaces between volumes are not read" : "the keyword is not known"});
+        }
+        if (unread_others_ > 0)
+            leave_out(info, {"line", "others", fmt::format("{} lines have more unknown keywords", unread_others_)});
+    }
+
     void add_notes(std::vector<std::string>& notes) const {
         if (depth_)
             notes.emplace_back("z is depth in the file (ZPOSITIVE Depth): its sign is changed, so that up is positive");
@@ -355,6 +378,8 @@ private:
     std::vector<Atom> atoms_;
     std::vector<double> atom_values_;
     std::size_t dropped_ = 0;
+    std::vector<std::string_view> unread_; ///< keywords
+    std::size_t unread_others_ = 0;
     std::vector<double> points_;
     std::vector<std::uint32_t> corners_; ///< the file's numbers, then point numbers
     std::vector<std::int32_t> volume_of_tet_;
