@@ -212,6 +212,32 @@ TEST(ReadFrd, IsAnErrorOrSaysWhatIsMissingWhereverItIsCut) {
     }
 }
 
+TEST(ReadFrd, SaysWhatStandsBehindABrokenLine) {
+    const std::string whole = steps(FrdForm::long_text);
+    const auto sound = io::parse_frd(whole, {}, {});
+    ASSERT_TRUE(sound) << sound.error().message;
+    EXPECT_TRUE(sound->info.left_out.empty());
+    std::string without_end = whole; // of the first field: the blocks behind are still read
+    without_end.erase(whole.find(" -3\n", whole.find("  100CL")), 4);
+    const auto ended = io::parse_frd(without_end, {}, {});
+    ASSERT_TRUE(ended) << ended.error().message;
+    EXPECT_EQ(ended->info.times, sound->info.times);
+    EXPECT_EQ(ended->info.fields.size(), sound->info.fields.size());
+    std::string broken_head = whole;
+    broken_head.replace(whole.find("  100CL"), 7, "  x00CL");
+    const auto headless = io::parse_frd(broken_head, {}, {});
+    ASSERT_TRUE(headless) << headless.error().message;
+    ASSERT_EQ(headless->info.left_out.size(), 1u);
+    EXPECT_NE(headless->info.left_out[0].reason.find(fmt::format("the first at byte {}", whole.find("  100CL"))),
+              std::string::npos)
+        << headless->info.left_out[0].reason;
+    std::string long_block = steps(FrdForm::binary_float);
+    long_block.replace(long_block.find("  100CL") + 24, 12, fmt::format("{:12}", 99999999));
+    const auto cut = io::parse_frd(long_block, {}, {});
+    ASSERT_TRUE(cut) << cut.error().message;
+    EXPECT_NE(cut->info.left_out.back().reason.find("announces more values than are left"), std::string::npos);
+}
+
 TEST(ReadFrd, BrokenMeshesAreErrorsAndBrokenFieldsAreLeftOut) {
     const std::string whole = steps(FrdForm::long_text);
     const auto changed = [&](const std::string& from, const std::string& to) {

@@ -147,6 +147,13 @@ FileInfo FrdReader::info() const {
                                  values.problem});
     if (index_.more_meshes > 0)
         leave_out(info, {"block", "nodes and elements", "the file has a mesh before it, which is read"});
+    if (index_.unknown_lines > 0)
+        leave_out(info, {"line", "between blocks",
+                         fmt::format("{} begin no block that is known, the first at byte {}", index_.unknown_lines,
+                                     index_.first_unknown)});
+    if (index_.cut_at)
+        leave_out(info, {"rest of the file", "values",
+                         fmt::format("the block at byte {} announces more values than are left", *index_.cut_at)});
     return info;
 }
 

@@ -38,11 +38,21 @@ Form form_of(std::string_view line) {
     return digit == 0 ? Form::short_text : digit == 2 ? Form::binary_float : digit == 3 ? Form::binary_double : Form::long_text;
 }
 
-/// Behind the records of a text block; begins at the first of them. False: the file ends before.
+bool begins_block(std::string_view key) {
+    return key == "1C" || key == "1U" || key == "1P" || key == "2C" || key == "3C" || key == "100C" || key == "9999";
+}
+
+/// Behind the records of a text block; begins at the first of them. False: the file ends before. A block without its
+/// last line ends where another one begins.
 bool skip_text(std::string_view file, std::size_t& at, std::size_t& end) {
     while (at < file.size()) {
         end = at;
-        if (key_of(take_line(file, at)) == "-3") return true;
+        const std::string_view key = key_of(take_line(file, at));
+        if (key == "-3") return true;
+        if (begins_block(key)) {
+            at = end;
+            return true;
+        }
     }
     end = file.size();
     return false;
@@ -81,6 +91,7 @@ public:
 
     Result<Index> run() {
         while (at_ < file_.size()) {
+            const std::size_t begin = at_;
             const std::string_view line = take_line(file_, at_);
             const std::string_view key = key_of(line);
             if (key == "9999") break;
@@ -88,6 +99,8 @@ public:
                 if (auto taken = take_mesh(line, key == "2C"); !taken) return taken.error();
             } else if (key == "100C") {
                 take_values(line);
+            } else if (!begins_block(key) && !without_spaces(line).empty()) {
+                if (index_.unknown_lines++ == 0) index_.first_unknown = begin;
             }
         }
         return std::move(index_);
@@ -126,6 +139,7 @@ private:
 
     /// "100C", "-4", some "-5", then the records.
     void take_values(std::string_view line) {
+        const std::size_t begin = at_ - line.size();
         Values values;
         values.block = block_of(line);
         double value = 0;
@@ -153,7 +167,10 @@ private:
         } else {
             ends = skip_bytes(file_, at_, values.block.count,
                               4 + values.components * real_bytes(values.block.form));
-            if (!ends) at_ = file_.size();
+            if (!ends) {
+                index_.cut_at = begin;
+                at_ = file_.size();
+            }
             values.block.end = at_;
         }
         if (!ends) values.problem = "its values are cut short";

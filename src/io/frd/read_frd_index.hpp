@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -44,6 +45,8 @@ struct Index {
     Block nodes, elements;
     bool has_nodes = false, has_elements = false;
     std::size_t more_meshes = 0; ///< further blocks of nodes or elements
+    std::size_t unknown_lines = 0, first_unknown = 0; ///< between blocks; the byte of the first
+    std::optional<std::size_t> cut_at;                ///< where a binary block begins that is longer than the file
     std::vector<Step> steps;
 };
 
