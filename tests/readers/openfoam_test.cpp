@@ -393,7 +393,9 @@ protected:
     std::string message_of(const FoamFiles& files) {
         const TemporaryFolder folder;
         write_case(folder, files);
-        const auto result = read(folder.file(""), last_step());
+        ReadOptions options = last_step();
+        options.cell_fields = {"T"};
+        const auto result = read(folder.file(""), options);
         return result ? "read" : result.error().message;
     }
 };
@@ -460,9 +462,10 @@ TEST_F(CollatedFoam, BrokenBlocksAreErrorsThatNameTheFile) {
 
 class BrokenOpenfoam : public ReadOpenfoamCase {
 protected:
-    std::string message_of(const std::string& name, const std::string& content,
-                           const ReadOptions& options = last_step()) {
+    /// Of a field file: where that field is asked for.
+    std::string message_of(const std::string& name, const std::string& content, ReadOptions options = last_step()) {
         folder_.write(name, content);
+        if (name.starts_with("0.5/")) options.cell_fields = {name.substr(4)};
         const auto result = read(folder_.file(""), options);
         if (result) return "read";
         EXPECT_TRUE(result.error().code == ErrorCode::invalid_data || result.error().code == ErrorCode::file);
@@ -488,6 +491,51 @@ TEST_F(BrokenOpenfoam, EveryTruncationIsAnErrorThatNamesTheFile) {
         }
         EXPECT_TRUE(read(folder_.file(""), last_step()));
     }
+}
+
+TEST_F(BrokenOpenfoam, AFieldThatCannotBeReadLeavesTheOthers) {
+    for (const int processors : {0, 2}) {
+        const TemporaryFolder folder;
+        const FoamFiles files = foam_case(box_, wave, {}, processors);
+        write_case(folder, files);
+        std::filesystem::remove_all(folder.file(processors ? "constant" : "none"));
+        const std::string name = processors ? "processor1/0.5/T" : "0.5/T";
+        const std::string& content = files.at(name);
+        const std::size_t header = content.find("class"), end = content.find_last_not_of(" \n");
+        for (const std::size_t length : {std::size_t{0}, header, content.find("internalField") + 5, end - 1}) {
+            folder.write(name, content.substr(0, length));
+            const auto result = read(folder.file(""), last_step());
+            ASSERT_TRUE(result) << result.error().message;
+            EXPECT_EQ(field_of(result->grid.cell_fields, "U").tuples(), box_.centres.size());
+            ASSERT_EQ(result->info.left_out.size(), 1u) << length;
+            EXPECT_EQ(result->info.left_out[0].name, "T");
+            EXPECT_NE(result->info.left_out[0].reason.find(name), std::string::npos) << result->info.left_out[0].reason;
+            ReadOptions options = last_step();
+            options.point_fields = {"U"};
+            EXPECT_TRUE(read(folder.file(""), options));
+            options.point_fields = {"T"};
+            const auto refused = read(folder.file(""), options);
+            ASSERT_FALSE(refused);
+            EXPECT_NE(refused.error().message.find(name), std::string::npos) << refused.error().message;
+        }
+    }
+}
+
+TEST_F(BrokenOpenfoam, AFieldOfAnotherTimeIsNotTold) {
+    const FoamFiles files = foam_case(box_, wave, {});
+    write_case(folder_, files);
+    folder_.write("0.25/T", files.at("0.5/T").substr(0, 30));
+    ReadOptions options;
+    options.step = 2;
+    const auto sound = read(folder_.file(""), options);
+    ASSERT_TRUE(sound) << sound.error().message;
+    EXPECT_TRUE(sound->info.left_out.empty());
+    EXPECT_EQ(field_of(sound->grid.cell_fields, "T").tuples(), box_.centres.size());
+    options.step = 1;
+    const auto other = read(folder_.file(""), options);
+    ASSERT_TRUE(other) << other.error().message;
+    ASSERT_EQ(other->info.left_out.size(), 1u);
+    EXPECT_NE(other->info.left_out[0].reason.find("0.25/T"), std::string::npos);
 }
 
 TEST_F(BrokenOpenfoam, ChangedBytesAreErrorsOrAGridThatIsConsistent) {

@@ -125,7 +125,7 @@ TEST_F(ReadOpenfoamZones, MayHaveNoCells) {
     expect_cells(read_zones(foam_case(box_, number_of, {}), {"none"}), [](const auto&) { return false; });
 }
 
-TEST_F(ReadOpenfoamZones, ThatAreBrokenAreErrorsThatNameTheFile) {
+TEST_F(ReadOpenfoamZones, ThatAreBrokenAreErrorsOnlyWhereTheyAreAskedFor) {
     const std::string name = "constant/polyMesh/cellZones";
     for (const bool binary : {false, true}) {
         FoamFiles files = foam_case(box_, number_of, {binary, 32, 64});
@@ -133,9 +133,21 @@ TEST_F(ReadOpenfoamZones, ThatAreBrokenAreErrorsThatNameTheFile) {
         const std::size_t end = whole.rfind(')');
         for (std::size_t length = 0; length <= end; length += 7) {
             files[name] = whole.substr(0, length);
-            for (const std::vector<std::string>& zones : {std::vector<std::string>{"porous"}, {}})
-                EXPECT_NE(message_of(files, zones).find("cellZones"), std::string::npos)
-                    << "cut to " << length << ": " << message_of(files, zones);
+            const TemporaryFolder folder;
+            for (const auto& [file, content] : files) folder.write(file, content);
+            const auto rest = read(folder.file(""));
+            ASSERT_TRUE(rest) << "cut to " << length << ": " << rest.error().message;
+            EXPECT_EQ(rest->grid.cells.count(), box_.centres.size());
+            ASSERT_EQ(rest->info.left_out.size(), 1u);
+            EXPECT_NE(rest->notes.back().find("cellZones"), std::string::npos) << rest->notes.back();
+            ReadOptions options;
+            options.blocks = {box_.zones.back().name};
+            if (std::ranges::find(rest->info.blocks, options.blocks[0], &BlockInfo::name) != rest->info.blocks.end()) {
+                EXPECT_TRUE(read(folder.file(""), options)) << "zones before the fault are sound";
+            } else if (!box_.zones.back().cells.empty()) {
+                EXPECT_NE(message_of(files, options.blocks).find("cellZones"), std::string::npos)
+                    << "cut to " << length << ": " << message_of(files, options.blocks);
+            }
         }
     }
     for (const std::int64_t cell : {std::int64_t{-1}, std::int64_t(box_.centres.size())}) {

@@ -43,28 +43,38 @@ Result<CellZone> read_zone(Scanner& scanner, std::span<const std::string> wanted
     return zone;
 }
 
-} // namespace
-
-Result<std::vector<CellZone>> read_cell_zones(const CaseFiles& files, const std::string& folder,
-                                              std::span<const std::string> wanted) {
-    std::vector<CellZone> zones;
-    const std::string name = folder + "/cellZones";
-    if (!files.has(name)) return zones;
+Result<void> read_zones(const CaseFiles& files, const std::string& name, std::span<const std::string> wanted,
+                        std::vector<CellZone>& zones) {
     auto text = files.open(name);
     if (!text) return text.error();
     Scanner scanner(std::move(*text));
     if (auto header = scanner.header(); !header) return header.error();
     const auto count = scanner.count("the zones of cells");
     if (!count) return count.error();
-    if (*count == 0 && scanner.peek() != '(') return zones;
-    if (auto begins = scanner.expect('(', "the zones of cells"); !begins) return begins.error();
+    if (*count == 0 && scanner.peek() != '(') return {};
+    if (auto begins = scanner.expect('(', "the zones of cells"); !begins) return begins;
     for (std::uint64_t i = 0; i < *count; ++i) {
         auto zone = read_zone(scanner, wanted);
         if (!zone) return zone.error();
         zones.push_back(std::move(*zone));
     }
-    if (auto ends = scanner.expect(')', "the zones of cells"); !ends) return ends.error();
-    return zones;
+    return scanner.expect(')', "the zones of cells");
+}
+
+bool has_all(const std::vector<CellZone>& zones, std::span<const std::string> wanted) {
+    return std::ranges::all_of(wanted, [&](const std::string& name) {
+        return std::ranges::find(zones, name, &CellZone::name) != zones.end();
+    });
+}
+
+} // namespace
+
+CellZones read_cell_zones(const CaseFiles& files, const std::string& folder, std::span<const std::string> wanted) {
+    CellZones out;
+    const std::string name = folder + "/cellZones";
+    if (!files.has(name)) return out;
+    if (auto read = read_zones(files, name, wanted, out.zones); !read) out.fault = read.error();
+    return out;
 }
 
 Result<std::vector<std::uint8_t>> cells_outside(std::span<const std::string> zones, const CaseFiles& files,
@@ -73,8 +83,8 @@ Result<std::vector<std::uint8_t>> cells_outside(std::span<const std::string> zon
     for (std::size_t p = 0; p < places.size(); ++p) {
         const Part& part = whole.parts[p];
         const auto found = read_cell_zones(files, places[p].faces, zones);
-        if (!found) return found.error();
-        for (const CellZone& zone : *found)
+        if (found.fault && !has_all(found.zones, zones)) return *found.fault;
+        for (const CellZone& zone : found.zones)
             for (const std::int32_t cell : zone.cells) {
                 const auto own = static_cast<std::size_t>(cell);
                 if (own >= part.cells)

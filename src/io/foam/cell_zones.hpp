@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,17 +22,22 @@ struct CellZone {
     std::vector<std::int32_t> cells; ///< none is below 0; empty where they were not asked for
 };
 
+/// Zones up to the first broken one.
+struct CellZones {
+    std::vector<CellZone> zones;
+    std::optional<Error> fault; ///< why the rest was not read
+};
+
 /// What the file cellZones in the folder of a polyMesh has; nothing where there is no such file.
 ///
 /// `wanted` zones whose cells are read
-/// Errors   invalid_data: broken or cut short, which says file, what and where
-Result<std::vector<CellZone>> read_cell_zones(const CaseFiles& files, const std::string& folder,
-                                              std::span<const std::string> wanted);
+/// Faults   invalid_data: broken or cut short, which says file, what and where; as CaseFiles::open()
+CellZones read_cell_zones(const CaseFiles& files, const std::string& folder, std::span<const std::string> wanted);
 
 /// A mark for each cell of the whole mesh: 0 in one of the zones, 1 elsewhere.
 ///
 /// `places`  of the parts
-/// Errors   as read_cell_zones(); invalid_data: a zone has a cell that the mesh has not
+/// Errors   the fault of a file in which not all zones were found; invalid_data: a zone has a cell that the mesh has not
 Result<std::vector<std::uint8_t>> cells_outside(std::span<const std::string> zones, const CaseFiles& files,
                                                 const std::vector<MeshPlace>& places, const WholeMesh& whole);
 

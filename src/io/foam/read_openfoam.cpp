@@ -41,9 +41,15 @@ bool is_field_class(std::string_view type) {
     return (type.starts_with("vol") || type.starts_with("point")) && foam::components_of(type) > 0;
 }
 
+/// Of one file beside others that are sound.
+bool may_be_left_out(const Error& error) {
+    return error.code == ErrorCode::invalid_data || error.code == ErrorCode::file;
+}
+
 /// Why a file without a header may be meant as a field; empty where it is something else.
 std::string fault_without_header(const foam::CaseText& text, const std::string& name) {
-    for (const char* word : {"FoamFile", "internalField"})
+    if (text.text.empty()) return fmt::format("{} is empty", escaped(name));
+    for (const char* word : {"FoamFile", "internalField", "OpenFOAM"}) // the last stands in the banner
         if (text.text.find(word) != std::string_view::npos)
             return fmt::format("{} does not begin with FoamFile {{ }}", escaped(name));
     return {};
@@ -58,6 +64,7 @@ Result<std::vector<AnnouncedField>> fields_in(const CaseFiles& files, const std:
         if (!seen.insert(name).second || name.starts_with(".")) continue;
         auto text = files.open(folder + name, head_bytes);
         if (!text) {
+            seen.erase(name); // may be sound at another time
             leave_out(info, {"field", name, text.error().message});
             continue;
         }
@@ -68,7 +75,12 @@ Result<std::vector<AnnouncedField>> fields_in(const CaseFiles& files, const std:
             continue;
         }
         auto header = scanner.header();
-        if (!header) return header.error();
+        if (!header) {
+            if (!may_be_left_out(header.error())) return header.error();
+            seen.erase(name);
+            leave_out(info, {"field", name, header.error().message});
+            continue;
+        }
         if (is_field_class(header->type)) fields.push_back({name, std::move(*header)});
     }
     return fields;
@@ -131,6 +143,7 @@ struct CaseBlocks {
     };
     std::vector<Block> blocks;
     std::vector<BlockInfo> infos; ///< one each
+    std::vector<Error> faults;    ///< of files of zones, the rest of which was not read
 
     void add(Block block, const std::string& name, const char* kind, std::uint64_t cells) {
         blocks.push_back(std::move(block));
@@ -153,7 +166,7 @@ struct CaseBlocks {
         }
         if (others.blocks.empty()) return choices;
         const auto flags = chosen_blocks(infos, others);
-        if (!flags) return flags.error();
+        if (!flags) return faults.empty() ? flags.error() : faults.front();
         for (std::size_t i = 0; i < blocks.size(); ++i) {
             if (!(*flags)[i]) continue;
             RegionChoice& choice = choices[blocks[i].region];
@@ -166,14 +179,17 @@ struct CaseBlocks {
 
 /// The zones of a region, of all parts together.
 Result<std::vector<foam::CellZone>> zones_of(const CaseFiles& files, const CaseLayout& layout,
-                                             const std::string& region, std::size_t step) {
+                                             const std::string& region, std::size_t step, std::vector<Error>& faults) {
     const auto places = places_of(files, layout, region, step);
     if (!places) return places.error();
     std::vector<foam::CellZone> zones;
     for (const foam::MeshPlace& place : *places) {
         const auto of_part = foam::read_cell_zones(files, place.faces, {});
-        if (!of_part) return of_part.error();
-        for (const foam::CellZone& zone : *of_part) {
+        if (of_part.fault) {
+            if (!may_be_left_out(*of_part.fault)) return *of_part.fault;
+            faults.push_back(*of_part.fault);
+        }
+        for (const foam::CellZone& zone : of_part.zones) {
             const auto known = std::ranges::find(zones, zone.name, &foam::CellZone::name);
             if (known == zones.end()) zones.push_back(zone);
             else known->count += zone.count;
@@ -188,27 +204,26 @@ Result<CaseBlocks> find_blocks(const CaseFiles& files, const CaseLayout& layout,
     for (std::size_t region = 0; region < layout.regions.size() && several; ++region)
         found.add({region, {}}, layout.name_of(region), "region", 0);
     for (std::size_t region = 0; region < layout.regions.size(); ++region) {
-        const auto zones = zones_of(files, layout, layout.regions[region], step);
+        const auto zones = zones_of(files, layout, layout.regions[region], step, found.faults);
         if (!zones) return zones.error();
         for (const foam::CellZone& zone : *zones)
             (zone.count ? found : empty)
                 .add({region, zone.name}, (several ? layout.name_of(region) + "/" : "") + zone.name, "zone",
                      zone.count);
     }
+    for (const Error& fault : found.faults) leave_out(info, {"rest of the file", "cellZones", fault.message});
     info.blocks = found.infos;
     for (std::size_t i = 0; i < empty.blocks.size(); ++i) found.add(empty.blocks[i], empty.infos[i].name, "zone", 0);
     return found;
 }
 
 Result<void> read_fields(const CaseFiles& files, const CaseLayout& layout, const std::string& region, std::size_t step,
-                         const ReadOptions& options, const foam::WholeMesh& whole, Piece& piece,
-                         std::vector<std::string>& notes) {
+                         const ReadOptions& options, const foam::WholeMesh& whole, Piece& piece, Loaded& loaded) {
     if (layout.times.empty()) return {};
     const std::string folder = field_folder(layout, region, step);
     std::set<std::string> seen;
     std::map<std::string, std::vector<std::string>> fields_including; // by the file that was not read
-    FileInfo told; // what is left out has been said of all times
-    auto fields = fields_in(files, layout.prefixes.front() + folder, seen, told);
+    auto fields = fields_in(files, layout.prefixes.front() + folder, seen, loaded.info);
     if (!fields) return fields.error();
     for (const AnnouncedField& field : *fields) {
         const bool points = wanted(options, Association::point, field.name);
@@ -216,17 +231,22 @@ Result<void> read_fields(const CaseFiles& files, const CaseLayout& layout, const
         if (!points && !cells) continue;
         auto read = foam::read_case_field(files, whole, piece.grid.cells,
                                           {folder, field.name, cells, points, options.allow_outside});
-        if (!read) return read.error();
+        if (!read) {
+            const bool asked = (points && options.point_fields) || (cells && options.cell_fields);
+            if (asked || !may_be_left_out(read.error())) return read.error();
+            leave_out(loaded.info, {"field", field.name, read.error().message});
+            continue;
+        }
         if (points) piece.grid.point_fields.push_back({field.name, std::move(read->points)});
         if (cells) piece.grid.cell_fields.push_back({field.name, std::move(read->cells)});
-        for (const std::string& wrong : read->misfits) notes.push_back(wrong + ": it is not used");
+        for (const std::string& wrong : read->misfits) loaded.notes.push_back(wrong + ": it is not used");
         for (const std::string& file : read->unread) fields_including[file].push_back(escaped(field.name));
     }
     for (const auto& [file, names] : fields_including)
-        notes.push_back(fmt::format("{} of an OpenFOAM installation, which {} {}, was not read: a point on a patch "
-                                    "without values has the mean of the cells around it",
-                                    in_quotes(file), fmt::join(names, ", "),
-                                    names.size() > 1 ? "include" : "includes"));
+        loaded.notes.push_back(
+            fmt::format("{} of an OpenFOAM installation, which {} {}, was not read: a point on a patch "
+                        "without values has the mean of the cells around it",
+                        in_quotes(file), fmt::join(names, ", "), names.size() > 1 ? "include" : "includes"));
     return {};
 }
 
@@ -258,7 +278,8 @@ void add_patches(const foam::WholeMesh& whole, const std::string& prefix, core::
 
 Result<Piece> read_region(const CaseFiles& files, const CaseLayout& layout, const std::string& region, std::size_t step,
                           const RegionChoice& choice, const ReadOptions& options, core::PatchList& patch_numbers,
-                          std::vector<std::string>& notes) {
+                          Loaded& loaded) {
+    std::vector<std::string>& notes = loaded.notes;
     const auto places = places_of(files, layout, region, step);
     if (!places) return places.error();
     std::vector<foam::Mesh> meshes;
@@ -274,7 +295,8 @@ Result<Piece> read_region(const CaseFiles& files, const CaseLayout& layout, cons
     Piece piece;
     piece.name = region;
     piece.grid.cells = foam::cells_of(whole->mesh);
-    if (auto read = read_fields(files, layout, region, step, options, *whole, piece, notes); !read) return read.error();
+    if (auto read = read_fields(files, layout, region, step, options, *whole, piece, loaded); !read)
+        return read.error();
     if (options.patches)
         add_patches(*whole, layout.has_several_regions() && !region.empty() ? region + "/" : "", patch_numbers,
                     piece.grid);
@@ -350,17 +372,20 @@ Result<Loaded> load_openfoam_case(const CaseFiles& case_files, const ReadOptions
                                 fmt::format("{} of the case {} in its place; --block polyMesh (or 1) reads it",
                                             layout->regions.size() == 2 ? "a region" : "regions",
                                             layout->regions.size() == 2 ? "is read" : "are read")});
-    if (auto announced = announce_chosen_fields(files, *layout, *chosen,
-                                         depth == Depth::description ? options.step : std::nullopt, loaded.info);
+    FileInfo all_steps; // of which one is read: faults of others are not told
+    const bool described = depth == Depth::description;
+    if (auto announced = announce_chosen_fields(files, *layout, *chosen, described ? options.step : std::nullopt,
+                                                described ? loaded.info : all_steps);
         !announced)
         return announced.error();
-    if (depth == Depth::description) return loaded;
+    if (described) return loaded;
+    loaded.info.fields = std::move(all_steps.fields);
     loaded.notes = layout->notes;
     core::PatchList patch_numbers;
     for (std::size_t i = 0; i < chosen->size(); ++i) {
         if ((*chosen)[i].empty()) continue;
-        auto piece = read_region(files, *layout, layout->regions[i], loaded.step, (*chosen)[i], options, patch_numbers,
-                                 loaded.notes);
+        auto piece =
+            read_region(files, *layout, layout->regions[i], loaded.step, (*chosen)[i], options, patch_numbers, loaded);
         if (!piece) return piece.error();
         if (chosen->size() > 1 && (*chosen)[i].whole) loaded.info.blocks[i].cells = piece->grid.cells.count();
         loaded.pieces.push_back(std::move(*piece));
