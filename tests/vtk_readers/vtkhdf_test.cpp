@@ -428,6 +428,52 @@ TEST(ReadVtkhdf, RefusesWhatDoesNotFit) {
         "read");
 }
 
+TEST(ReadVtkhdf, LeavesOutArraysThatHdf5CannotOpen) {
+    const Strip strip(7);
+    const TemporaryFolder folder;
+    {
+        Hdf5Writer file(folder.file("a.vtkhdf"));
+        write_groups(file, 1);
+        write_counts(file, {10}, {7});
+        file.data("/VTKHDF/Points", strip.points, {10, 3});
+        file.data("/VTKHDF/Connectivity", strip.connectivity, {28});
+        file.data("/VTKHDF/Offsets", strip.offsets, {8});
+        file.data("/VTKHDF/Types", strip.types, {7});
+        file.data("/VTKHDF/PointData/p", strip.values, {10});
+        file.data("/VTKHDF/PointData/q", strip.values, {10});
+        file.data("/VTKHDF/CellData/vtkGhostType", std::vector<std::uint8_t>(7), {7});
+    }
+    const std::string content = content_of(folder.file("a.vtkhdf"));
+    const auto without = [&](const char* name) {
+        const hid_t file = H5Fopen(folder.file("a.vtkhdf").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+        H5O_info_t info;
+        EXPECT_GE(H5Oget_info_by_name2(file, name, &info, H5O_INFO_BASIC, H5P_DEFAULT), 0);
+        H5Fclose(file);
+        std::string broken = content;
+        broken.replace(static_cast<std::size_t>(info.addr), 8, 8, '\xff');
+        return folder.write("b.vtkhdf", broken);
+    };
+    const std::string path = without("/VTKHDF/PointData/p");
+    const auto rest = read(path);
+    ASSERT_TRUE(rest) << rest.error().message;
+    ASSERT_EQ(rest->grid.point_fields.size(), 1u);
+    EXPECT_EQ(rest->grid.point_fields[0].name, "q");
+    ASSERT_EQ(rest->info.left_out.size(), 1u);
+    EXPECT_EQ(rest->info.left_out[0].what, "point field");
+    EXPECT_EQ(rest->info.left_out[0].name, "p");
+    ReadOptions asked;
+    asked.point_fields = {"p"};
+    const auto refused = read(path, asked);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("HDF5 cannot open \"/VTKHDF/PointData/p\""), std::string::npos)
+        << refused.error().message;
+    for (const char* needed : {"/VTKHDF/Points", "/VTKHDF/CellData", "/VTKHDF/CellData/vtkGhostType"}) {
+        const auto result = read(without(needed));
+        ASSERT_FALSE(result) << needed;
+        EXPECT_NE(result.error().message.find("cannot be opened"), std::string::npos) << result.error().message;
+    }
+}
+
 /// Bytes of chunks are changed: the values are right, or there is an error.
 TEST(ReadVtkhdf, RefusesChunksThatAreBroken) {
     const Strip strip(997);

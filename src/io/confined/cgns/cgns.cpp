@@ -204,10 +204,14 @@ Result<Loaded> CgnsFile::load(const ReadOptions& options, Depth depth) {
 Result<Loaded> load_cgns(const std::string& path, const ReadOptions& options, Depth depth) {
     if (auto complete = check_hdf5_length(path); !complete) return complete.error();
     if (auto complete = check_adf_length(path); !complete) return complete.error();
-    if (auto names = check_hdf5_names(path, options.allow_outside); !names) return names.error();
+    const auto names = check_hdf5_names(path, options.allow_outside);
+    if (!names) return names.error();
     const auto tree = CgnsTree::open(path);
     if (!tree) return tree.error();
-    return CgnsFile(path, *tree).load(options, depth);
+    auto loaded = CgnsFile(path, *tree).load(options, depth);
+    for (const LeftOut& item : *names)
+        if (loaded) leave_out(loaded->info, item);
+    return loaded;
 }
 
 } // namespace isotet::io::confined

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <optional>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -30,13 +32,61 @@ struct Closing {
     Closing& operator=(const Closing&) = delete;
 };
 
+std::vector<std::string> parts_of(std::string_view path) {
+    std::vector<std::string> parts;
+    for (std::size_t at = 1; at <= path.size();) {
+        const std::size_t end = std::min(path.find('/', at), path.size());
+        parts.emplace_back(path.substr(at, end - at));
+        at = end + 1;
+    }
+    return parts;
+}
+
+/// What a grid lacks without an object that cannot be opened; nothing where it would be another grid: without its
+/// ghost cells, or with values elsewhere.
+std::optional<LeftOut> field_at(const std::string& path, bool in_solution) {
+    const std::vector<std::string> parts = parts_of(path);
+    const std::string reason = fmt::format("HDF5 cannot open \"{}\"", escaped(path));
+    if (parts.front() == "CHA")
+        return LeftOut{parts.size() > 1 ? "field" : "section", parts[parts.size() > 1 ? 1 : 0], reason};
+    if (in_solution) {
+        for (const char* name : {"GridLocation", "Rind", "PointList", "PointRange", "DataConversion", "DataClass"})
+            if (std::ranges::find(parts, name) != parts.end()) return std::nullopt;
+        const bool of_array = parts.back() == " data" && parts.size() > 1;
+        return LeftOut{"field", of_array ? parts[parts.size() - 2] : parts.back(), reason};
+    }
+    if (parts.size() < 2 || parts.back().starts_with("vtkGhost")) return std::nullopt;
+    const std::string& group = parts[parts.size() - 2];
+    if (group == "PointData") return LeftOut{"point field", parts.back(), reason};
+    if (group == "CellData") return LeftOut{"cell field", parts.back(), reason};
+    if (group == "FieldData" || parts.back() == "FieldData") return LeftOut{"array", parts.back(), reason};
+    return std::nullopt;
+}
+
+/// The kind of a CGNS node.
+std::string label_of(hid_t group) {
+    constexpr std::size_t length = 33;
+    if (H5Aexists(group, "label") <= 0) return {};
+    const Closing attribute(H5Aopen(group, "label", H5P_DEFAULT), H5Aclose);
+    const Closing type(H5Tcopy(H5T_C_S1), H5Tclose),
+        stored(attribute.id < 0 ? -1 : H5Aget_type(attribute.id), H5Tclose);
+    const Closing space(attribute.id < 0 ? -1 : H5Aget_space(attribute.id), H5Sclose);
+    char text[length + 1] = {};
+    if (stored.id < 0 || space.id < 0 || H5Tis_variable_str(stored.id) != 0 || H5Tget_class(stored.id) != H5T_STRING ||
+        H5Sget_simple_extent_npoints(space.id) != 1 || H5Tset_size(type.id, length) < 0 ||
+        H5Aread(attribute.id, type.id, text) < 0)
+        return {};
+    return text;
+}
+
 class Walk {
 public:
     Walk(const std::string& path, bool allow_outside) : allow_outside_(allow_outside), files_{path} {}
 
-    Result<void> all_files() {
+    Result<std::vector<LeftOut>> all_files() {
         for (std::size_t i = 0; i < files_.size() && !failed_; ++i) one_file(std::string(files_[i]));
-        return failed_ ? Result<void>(*failed_) : Result<void>();
+        if (failed_) return *failed_;
+        return std::move(broken_);
     }
 
 private:
@@ -60,6 +110,8 @@ private:
         if (std::ranges::find(seen_, info.addr) != seen_.end() && info.rc > 1) return;
         if (info.rc > 1) seen_.push_back(info.addr);
         ancestors_.push_back(info.addr);
+        const bool around = in_solution_;
+        in_solution_ = around || label_of(id) == "FlowSolution_t";
         Here here{this, id, name};
         hsize_t at = 0;
         const auto visit = [](hid_t, const char* link, const H5L_info_t* about, void* data) -> herr_t {
@@ -68,6 +120,7 @@ private:
             return place->walk->failed_ ? 1 : 0;
         };
         if (H5Literate(id, H5_INDEX_NAME, H5_ITER_NATIVE, &at, visit, &here) < 0) fail(in(name, "cannot be read"));
+        in_solution_ = around;
         ancestors_.pop_back();
     }
     struct Here {
@@ -83,7 +136,12 @@ private:
         if (about.type == H5L_TYPE_EXTERNAL) return external(group_id, path, name, about);
         if (about.type != H5L_TYPE_HARD) return fail(in(path, "is a link of a kind of its own"));
         const Closing object(H5Oopen(group_id, name, H5P_DEFAULT), H5Oclose);
-        if (object.id < 0) return fail(in(path, "cannot be opened"));
+        if (object.id < 0) {
+            auto dispensable = field_at(path, in_solution_);
+            if (!dispensable) return fail(in(path, "cannot be opened"));
+            broken_.push_back(*std::move(dispensable));
+            return;
+        }
         const H5I_type_t kind = H5Iget_type(object.id);
         if (kind == H5I_GROUP) group(object.id, path);
         else if (kind == H5I_DATASET) data_set(object.id, path);
@@ -134,14 +192,16 @@ private:
     std::string file_;
     std::vector<haddr_t> ancestors_, seen_; ///< groups: around this one; with several names
     std::size_t objects_ = 0;
+    bool in_solution_ = false; ///< of CGNS
+    std::vector<LeftOut> broken_;
     std::optional<Error> failed_;
 };
 
 } // namespace
 
-Result<void> check_hdf5_names(const std::string& path, bool allow_outside) {
+Result<std::vector<LeftOut>> check_hdf5_names(const std::string& path, bool allow_outside) {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); // messages are ours
-    if (H5Fis_hdf5(path.c_str()) <= 0) return {};
+    if (H5Fis_hdf5(path.c_str()) <= 0) return std::vector<LeftOut>();
     return Walk(path, allow_outside).all_files();
 }
 

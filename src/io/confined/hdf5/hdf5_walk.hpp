@@ -2,7 +2,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include <isotet/read.hpp>
 #include <isotet/result.hpp>
 
 namespace isotet::io::confined {
@@ -11,8 +13,10 @@ namespace isotet::io::confined {
 /// be files that the index rules allow (check_name(), named_file()), which are gone over, too; no group may contain
 /// itself; no data set may be put together of others, elsewhere. Files of other kinds pass.
 ///
+/// Returns  objects that HDF5 cannot open and that a grid can lack: arrays of VTKHDF, fields of MED, solutions of CGNS
+///
 /// Cost     O(objects), at most a million
-/// Errors   invalid_data: the name that breaks a rule; it cannot be opened
-Result<void> check_hdf5_names(const std::string& path, bool allow_outside);
+/// Errors   invalid_data: the name that breaks a rule; the file, a group or another object cannot be opened
+Result<std::vector<LeftOut>> check_hdf5_names(const std::string& path, bool allow_outside);
 
 } // namespace isotet::io::confined

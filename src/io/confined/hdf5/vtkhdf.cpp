@@ -113,11 +113,7 @@ Result<Loaded> load_collection(const std::string& path, const ReadOptions& optio
     return loaded;
 }
 
-} // namespace
-
-Result<Loaded> load_vtkhdf(const std::string& path, const ReadOptions& options, Depth depth) {
-    if (auto complete = check_hdf5_length(path); !complete) return complete.error();
-    if (auto names = check_hdf5_names(path, options.allow_outside); !names) return names.error();
+Result<Loaded> load_any(const std::string& path, const ReadOptions& options, Depth depth) {
     const std::string type = text_attribute(path, "/VTKHDF", "Type");
     if (type == "PartitionedDataSetCollection" || type == "MultiBlockDataSet")
         return load_collection(path, options, depth);
@@ -127,6 +123,18 @@ Result<Loaded> load_vtkhdf(const std::string& path, const ReadOptions& options, 
     return broken(path, fmt::format("it is a VTKHDF file of type \"{}\": UnstructuredGrid, ImageData, "
                                     "OverlappingAMR, PartitionedDataSetCollection and MultiBlockDataSet are read",
                                     escaped(type)));
+}
+
+} // namespace
+
+Result<Loaded> load_vtkhdf(const std::string& path, const ReadOptions& options, Depth depth) {
+    if (auto complete = check_hdf5_length(path); !complete) return complete.error();
+    const auto names = check_hdf5_names(path, options.allow_outside);
+    if (!names) return names.error();
+    auto loaded = load_any(path, options, depth);
+    for (const LeftOut& item : *names)
+        if (loaded) leave_out(loaded->info, item);
+    return loaded;
 }
 
 } // namespace isotet::io::confined

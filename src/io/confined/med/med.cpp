@@ -208,10 +208,14 @@ Result<Loaded> MedLoader::load(Depth depth) {
 
 Result<Loaded> load_med(const std::string& path, const ReadOptions& options, Depth depth) {
     if (auto complete = check_hdf5_length(path); !complete) return complete.error();
-    if (auto names = check_hdf5_names(path, options.allow_outside); !names) return names.error();
+    const auto names = check_hdf5_names(path, options.allow_outside);
+    if (!names) return names.error();
     const auto file = MedFile::open(path);
     if (!file) return file.error();
-    return MedLoader(*file, options).load(depth);
+    auto loaded = MedLoader(*file, options).load(depth);
+    for (const LeftOut& item : *names)
+        if (loaded) leave_out(loaded->info, item);
+    return loaded;
 }
 
 } // namespace isotet::io::confined
