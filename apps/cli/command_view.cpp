@@ -130,8 +130,8 @@ Result<ExitCode> run_view(const ViewCommand& command) {
     options.program = "/proc/self/exe";
     options.listen = command.listen;
     options.read = [&](const Run& run) {
-        const ViewStart start{command.grid,   command.field,    command.isovalues,
-                              command.shares, command.color_by, FirstCells::some};
+        const ViewStart start{command.grid,     command.field, command.isovalues, command.shares, command.color_by,
+                              FirstCells::some, false};
         return read_view_input(start, *source, console, run);
     };
     std::mutex reading; // steps are read by several threads

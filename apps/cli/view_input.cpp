@@ -7,10 +7,16 @@ namespace isotet::cli {
 
 namespace {
 
-/// What the page shows first where no field is named: an opaque boundary hides what says nothing.
-void take_first_view(const FirstView& first, bool isovalues_are_given, view::ViewState& state, Console& console) {
+/// What the page shows first where no field is named.
+void take_first_view(const FirstView& first, const ViewStart& start, view::ViewState& state, Console& console) {
     state.field = first.field.empty() ? std::string("x") : first.field;
-    if (first.draw != FirstDraw::isosurfaces && !isovalues_are_given) state.boundary = 1;
+    const bool isovalues_are_given = !start.isovalues.empty() || !start.shares.empty();
+    if (first.draw != FirstDraw::isosurfaces && !isovalues_are_given) {
+        state.boundary = 1;
+        state.isosurfaces = start.isosurfaces_always;
+        if (!state.isosurfaces && start.color_by.empty()) state.color_by = first.field;
+        state.colored_boundary = !state.isosurfaces && !first.field.empty();
+    }
     console.note(first.field.empty() ? std::string("no field varies: this is the grid") : note_of(first));
 }
 
@@ -68,12 +74,11 @@ Result<view::ViewerInput> read_view_input(const ViewStart& start, GridSource& so
         input.cells = *read->cells_in_file;
     }
     input.state.field = start.field.name;
-    if (input.state.field.empty())
-        take_first_view(first_view(grid, fields), !start.isovalues.empty() || !start.shares.empty(), input.state,
-                        console);
+    if (input.state.field.empty()) take_first_view(first_view(grid, fields), start, input.state, console);
     input.state.isovalues = start.isovalues;
     if (Result<void> added = add_shares(start, *read, source, console, run, input.state); !added) return added.error();
-    input.state.color_by = start.color_by;
+    if (!start.color_by.empty()) input.state.color_by = start.color_by;
+    input.regions = read->info.regions.empty() ? source.info().regions : read->info.regions;
     input.times = source.info().times;
     if (input.times.size() > 1) input.state.step = step;
     input.notes = console.noted();

@@ -31,6 +31,7 @@ struct ViewStart {
     const std::vector<IsovalueShare>& shares; ///< more, of the first step
     const std::string& color_by;
     FirstCells cells = FirstCells::all;
+    bool isosurfaces_always = true; ///< else the boundary may stand alone
 };
 
 /// Names that are no field's, before anything is read. Errors   as choose_field()

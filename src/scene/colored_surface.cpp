@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <unordered_map>
 #include <vector>
 
@@ -26,8 +27,30 @@ struct FaceHash {
     }
 };
 
-/// Of each face of a boundary the lowest cell that has it.
-Result<std::vector<std::uint64_t>> cells_of(const Surface& boundary, const Grid& grid, const Run& run) {
+/// The values of some tuples.
+template <class Number>
+Array gathered(const Array& values, std::size_t count, const Number& number) {
+    return values.visit([&]<class Scalar>(std::span<const Scalar> scalars) {
+        std::vector<Scalar> out(count);
+        for (std::size_t i = 0; i < count; ++i) out[i] = scalars[number(i)];
+        return Array::own(std::move(out));
+    });
+}
+
+/// A value for each triangle; NaN where no cell was found.
+Array gathered_of_cells(const Array& values, const std::vector<std::uint64_t>& cells) {
+    const auto cell = [&](std::size_t i) { return cells[i]; };
+    if (std::ranges::all_of(cells, [&](std::uint64_t one) { return one < values.size(); }))
+        return gathered(values, cells.size(), cell);
+    std::vector<double> out(cells.size(), NAN);
+    for (std::size_t i = 0; i < cells.size(); ++i)
+        if (cells[i] < values.size()) out[i] = values.at(cells[i]);
+    return Array::own(std::move(out));
+}
+
+} // namespace
+
+Result<std::vector<std::uint64_t>> boundary_cells(const Surface& boundary, const Grid& grid, const Run& run) {
     const auto ends = boundary.edge_ends.as<std::int64_t>();
     std::unordered_map<Face, std::size_t, FaceHash> faces(boundary.triangle_count());
     boundary.triangles.visit([&](auto corners) {
@@ -61,17 +84,16 @@ Result<std::vector<std::uint64_t>> cells_of(const Surface& boundary, const Grid&
     return cells;
 }
 
-/// The values of some tuples.
-template <class Number>
-Array gathered(const Array& values, std::size_t count, const Number& number) {
-    return values.visit([&]<class Scalar>(std::span<const Scalar> scalars) {
-        std::vector<Scalar> out(count);
-        for (std::size_t i = 0; i < count; ++i) out[i] = scalars[number(i)];
-        return Array::own(std::move(out));
-    });
+void color_by_points(Surface& boundary, const ColorField& field) {
+    const auto ends = boundary.edge_ends.as<std::int64_t>();
+    boundary.point_fields = {{field.name, gathered(field.values, boundary.vertex_count(), [&](std::size_t i) {
+                                  return static_cast<std::size_t>(ends[2 * i]);
+                              })}};
 }
 
-} // namespace
+void color_by_cells(Surface& boundary, const std::vector<std::uint64_t>& cells, const ColorField& field) {
+    boundary.cell_fields = {{field.name, gathered_of_cells(field.values, cells)}};
+}
 
 Result<void> color_boundary(Surface& boundary, const Grid& grid, const ColorField& field, const Run& run) {
     const bool of_points = field.association == Association::point;
@@ -80,16 +102,12 @@ Result<void> color_boundary(Surface& boundary, const Grid& grid, const ColorFiel
         return invalid_argument(fmt::format("{} values shall colour a grid of {} {}", field.values.size(), needed,
                                             of_points ? "points" : "cells"));
     if (of_points) {
-        const auto ends = boundary.edge_ends.as<std::int64_t>();
-        boundary.point_fields = {{field.name, gathered(field.values, boundary.vertex_count(), [&](std::size_t i) {
-                                      return static_cast<std::size_t>(ends[2 * i]);
-                                  })}};
+        color_by_points(boundary, field);
         return {};
     }
-    const Result<std::vector<std::uint64_t>> cells = cells_of(boundary, grid, run);
+    const Result<std::vector<std::uint64_t>> cells = boundary_cells(boundary, grid, run);
     if (!cells) return cells.error();
-    boundary.cell_fields = {
-        {field.name, gathered(field.values, cells->size(), [&](std::size_t i) { return (*cells)[i]; })}};
+    color_by_cells(boundary, *cells, field);
     return {};
 }
 

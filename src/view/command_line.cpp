@@ -190,6 +190,11 @@ constexpr PageOption more_page_options[] = {
          if (opacity) state.boundary = *opacity;
          return opacity && *opacity >= 0 && *opacity <= 1;
      }},
+    {"--boundary-color-by", "", "a name of at most 4096 bytes",
+     [](ViewState& state, const std::string& value) {
+         state.colored_boundary = true;
+         return set_name(state.color_by, value);
+     }},
     {"--clip", "", plane_rule,
      [](ViewState& state, const std::string& value) { return add_plane(state.clips, value); }},
     {"--slice", "", plane_rule,
@@ -319,16 +324,19 @@ std::vector<std::string> render_words(const ViewState& state, const std::string&
                                       const std::vector<std::string>& reading) {
     std::vector<std::string> words = first_words("render", file, reading, state.step);
     if (state.volume) add_volume(words, *state.volume);
-    add_field(words, state);
-    if (!state.volume || state.volume->surfaces) add_isovalues(words, state);
-    if (!state.color_by.empty()) add_option(words, "--color-by", state.color_by);
+    const bool colors_boundary = !state.volume && state.colored_boundary && !state.color_by.empty();
+    if (state.isosurfaces || state.volume || (!colors_boundary && !state.slices.empty())) add_field(words, state);
+    if (state.volume ? state.volume->surfaces : state.isosurfaces) add_isovalues(words, state);
+    if (colors_boundary) add_option(words, "--boundary-color-by", state.color_by);
+    if (!state.color_by.empty() && (!colors_boundary || state.isosurfaces || !state.slices.empty()))
+        add_option(words, "--color-by", state.color_by);
     if (state.map != ColorMap::viridis) add_option(words, "--colormap", std::string(name_of(state.map)));
     if (state.range) add_option(words, "--range", fmt::format("{},{}", state.range->lower, state.range->upper));
     if (state.logarithmic) words.emplace_back("--log");
     if (state.opacity) add_option(words, "--opacity", fmt::format("{}", *state.opacity));
     if (state.outline) words.emplace_back("--outline");
     if (state.edges) words.emplace_back("--edges");
-    if (state.boundary != boundary_by_itself(state))
+    if (state.boundary != (colors_boundary ? 1 : boundary_by_itself(state)))
         add_option(words, "--boundary", fmt::format("{}", state.boundary));
     for (const Plane& plane : state.clips) add_option(words, "--clip", plane_text(plane));
     for (const Plane& plane : state.slices) add_option(words, "--slice", plane_text(plane));
@@ -414,7 +422,11 @@ Result<PastedCommand> state_of_command(std::string_view text, const std::vector<
     }
     ViewState& state = pasted.state;
     if (state.volume) state.volume->surfaces = !state.isovalues.empty();
-    if (state.boundary == not_given) state.boundary = boundary_by_itself(state);
+    if (state.colored_boundary && state.field.empty()) {
+        state.isosurfaces = false;
+        state.field = state.color_by;
+    }
+    if (state.boundary == not_given) state.boundary = state.colored_boundary ? 1 : boundary_by_itself(state);
     return pasted;
 }
 

@@ -9,6 +9,7 @@
 
 #include <isotet/grid.hpp>
 #include <isotet/packed_file.hpp>
+#include <isotet/read.hpp>
 
 #include "view/grid_view.hpp"
 #include "view/json.hpp"
@@ -24,6 +25,7 @@ struct ViewerInput {
     std::vector<double> times; ///< of the file's steps; fewer than two: it has one
     std::optional<PackedFile> packed = {}; ///< where the grid lies, packed; then `grid` has some of its `cells`
     std::uint64_t cells = 0;
+    std::vector<RegionName> regions = {}; ///< of numbers that colour
 };
 
 /// {"say": "welcome", ...}: 64 colours of each map among it.

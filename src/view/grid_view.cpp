@@ -139,6 +139,41 @@ Result<ContourInput> GridView::input_of(const std::string& field, const std::str
     return input;
 }
 
+/// The field that colours as classes; null: it has none, or others are asked for.
+Result<const ColorField*> GridView::classes_of(const ViewState& state, const Run& run) {
+    const Field* cells = state.volume || state.color_by.empty() ? nullptr : cell_colors(grid_, state.color_by);
+    if (!cells || state.range || state.logarithmic) return nullptr;
+    const std::string key = fmt::format("{}|{}", step_, state.color_by);
+    if (!classes_ || classes_->key != key) {
+        ColorOptions options;
+        for (const RegionName& region : options_.regions)
+            if (region.field == state.color_by) options.names[static_cast<double>(region.number)] = region.name;
+        Result<FoundColors> found = find_colors(grid_, state.color_by, options, run);
+        if (!found) return found.error();
+        classes_ = Classes{key, {}, std::move(found->field)};
+        if (!classes_->field.scale.classes.empty()) {
+            const auto places = classes_->field.values.as<float>();
+            cells->values.visit([&](auto numbers) {
+                for (std::size_t i = 0; i < places.size(); ++i)
+                    if (!std::isnan(places[i])) classes_->places.emplace(static_cast<double>(numbers[i]), places[i]);
+            });
+        }
+    }
+    return classes_->field.scale.classes.empty() ? nullptr : &classes_->field;
+}
+
+/// What colours a surface that carries numbers of the field.
+Array GridView::places_in_classes(const Array& numbers) const {
+    std::vector<float> places(numbers.size(), NAN);
+    numbers.visit([&](auto values) {
+        for (std::size_t i = 0; i < places.size(); ++i)
+            if (const auto place = classes_->places.find(static_cast<double>(values[i]));
+                place != classes_->places.end())
+                places[i] = place->second;
+    });
+    return Array::own(std::move(places));
+}
+
 Result<std::optional<ColorScale>> GridView::scale_of(const ViewState& state, const Run& run) {
     const std::string& name = state.volume ? state.field : state.color_by;
     if (name.empty()) return std::optional<ColorScale>();
@@ -148,6 +183,9 @@ Result<std::optional<ColorScale>> GridView::scale_of(const ViewState& state, con
                                  "scale",
                                  state.color_by, name)};
     Array values;
+    const Result<const ColorField*> classes = classes_of(state, run);
+    if (!classes) return classes.error();
+    if (*classes) return std::optional((*classes)->scale);
     if (const Field* cells = state.volume ? nullptr : cell_colors(grid_, name)) values = cells->values;
     else {
         const Result<PointField> field = field_of(name, run);
@@ -256,6 +294,7 @@ Result<void> GridView::find_boundary(const Run& run) {
     if (number != grid_number_) return {}; // another step came meanwhile, and finds its own
     const std::lock_guard boundary_lock(boundary_mutex_);
     boundary_ = std::make_shared<const Mesh>(*std::move(mesh));
+    boundary_surface_ = std::make_shared<const Surface>(*std::move(boundary));
     ++boundary_number_;
     return {};
 }

@@ -14,6 +14,7 @@
 #include <isotet/contour.hpp>
 #include <isotet/contour_spectrum.hpp>
 #include <isotet/isosurface_scene.hpp>
+#include <isotet/read.hpp>
 #include <isotet/refine.hpp>
 #include <isotet/solid.hpp>
 
@@ -44,6 +45,7 @@ struct GridViewOptions {
     std::optional<PackedFile> packed; ///< where the grid lies, packed: then read_step need not give all cells
     std::uint64_t cells = 0;          ///< of it, of which the grid has some
     ReadStep read_cells;              ///< with `packed`: of any step with all cells
+    std::vector<RegionName> regions;  ///< names of numbers of regions
 };
 
 /// A frame in bytes. `known` of GridView::frame() are then the surfaces that the page has.
@@ -151,7 +153,16 @@ private:
         std::size_t step = 0;
         std::vector<double> isovalues = {}; ///< that `contour` is for, where it has only polyhedra that these meet
     };
+    /// A cell field of few whole numbers, each of which has a colour.
+    struct Classes {
+        std::string key;                ///< of the field and its step
+        std::map<double, float> places; ///< of numbers among the classes
+        ColorField field;               ///< without classes: the field has none
+    };
     GridView() = default;
+    Result<const ColorField*> classes_of(const ViewState& state, const Run& run);
+    Array places_in_classes(const Array& numbers) const;
+    Result<Surface> colored_boundary(Surface boundary, std::uint64_t number, const ColorField& colors, const Run& run);
     void open_packed();
     Result<void> need_cells(const Run& run);
     bool may_release_cells(const Grid& grid) const;
@@ -197,7 +208,8 @@ private:
                                  const Run& run);
     Result<void> add_slices(const ViewState& state, const std::vector<std::string>& known, FrameParts& making,
                             const Run& run);
-    void add_boundary(const ViewState& state, const std::vector<std::string>& known, FrameParts& making);
+    Result<void> add_boundary(const ViewState& state, const std::vector<std::string>& known, FrameParts& making,
+                              const Run& run);
     static void add(FrameSurface surface, const std::shared_ptr<const Mesh>& mesh,
                     const std::vector<std::string>& known, FrameParts& making);
 
@@ -233,7 +245,11 @@ private:
     std::string volume_field_;                ///< which was shown first, so that steps can be compared
     std::mutex boundary_mutex_;
     std::shared_ptr<const Mesh> boundary_; ///< of the cells and points of grid_; null: not there yet
+    std::shared_ptr<const Surface> boundary_surface_; ///< the same
     std::uint64_t boundary_number_ = 0;    ///< another one for each boundary, in its key
+    std::vector<std::uint64_t> boundary_cells_; ///< of the triangles of the boundary with boundary_cells_of_
+    std::uint64_t boundary_cells_of_ = 0;
+    std::optional<Classes> classes_;
 };
 
 } // namespace isotet::view

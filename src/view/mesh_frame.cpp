@@ -6,6 +6,9 @@
 
 #include <fmt/format.h>
 
+#include <isotet/boundary.hpp>
+
+#include "scene/colored_surface.hpp"
 #include "view/grid_view.hpp"
 
 namespace isotet::view {
@@ -122,7 +125,9 @@ Result<std::shared_ptr<const Mesh>> GridView::keep(const std::string& key, const
     if (scale && !surface.point_fields.empty())
         colors = SurfaceColors{surface.point_fields.front().values, Association::point, *scale};
     else if (scale && !surface.cell_fields.empty())
-        colors = SurfaceColors{surface.cell_fields.front().values, Association::cell, *scale};
+        colors = SurfaceColors{scale->classes.empty() ? surface.cell_fields.front().values
+                                                      : places_in_classes(surface.cell_fields.front().values),
+                               Association::cell, *scale};
     Result<Mesh> mesh = mesh_of(surface, colors ? &*colors : nullptr, run);
     if (!mesh) return mesh.error();
     facts.mesh_seconds += seconds_of(coding);
@@ -245,7 +250,11 @@ void GridView::add(FrameSurface surface, const std::shared_ptr<const Mesh>& mesh
 Result<void> GridView::add_isosurfaces(const ShowMessage& message, const std::vector<std::string>& known,
                                        FrameParts& making, const Run& run) {
     const ViewState& state = message.state;
-    const bool lean = is_packed_.load(std::memory_order_acquire) && lean_;
+    const bool packed = is_packed_.load(std::memory_order_acquire), lean = packed && lean_;
+    if (!state.isosurfaces) {
+        making.facts.method = name_of(packed ? Method::clusters : Method::direct);
+        return {};
+    }
     if (lean) direct_.contour.reset();
     if (!state.solid) solids_.reset();
     Result<Source*> source = lean || state.solid ? Result<Source*>(nullptr) : source_for(state, run);
@@ -299,19 +308,59 @@ Result<void> GridView::add_slices(const ViewState& state, const std::vector<std:
     return {};
 }
 
-void GridView::add_boundary(const ViewState& state, const std::vector<std::string>& known, FrameParts& making) {
-    if (state.boundary <= 0) return;
+/// With the field that colours it.
+Result<Surface> GridView::colored_boundary(Surface boundary, std::uint64_t number, const ColorField& colors,
+                                           const Run& run) {
+    if (colors.association == Association::point) {
+        scene::color_by_points(boundary, colors);
+        return boundary;
+    }
+    if (Result<void> here = need_cells(run); !here) return here.error();
+    if (is_of_file()) { // its faces are cut in another way
+        Result<Surface> found = boundary_of(grid_, run);
+        if (!found) return found;
+        boundary = *std::move(found);
+    }
+    if (boundary_cells_of_ != number) {
+        Result<std::vector<std::uint64_t>> cells = scene::boundary_cells(boundary, grid_, run);
+        if (!cells) return cells.error();
+        boundary_cells_ = *std::move(cells);
+        boundary_cells_of_ = number;
+    }
+    scene::color_by_cells(boundary, boundary_cells_, colors);
+    return boundary;
+}
+
+Result<void> GridView::add_boundary(const ViewState& state, const std::vector<std::string>& known, FrameParts& making,
+                                    const Run& run) {
+    if (state.boundary <= 0) return {};
     std::unique_lock lock(boundary_mutex_);
-    const std::shared_ptr<const Mesh> boundary = boundary_;
+    std::shared_ptr<const Mesh> boundary = boundary_;
+    const std::shared_ptr<const Surface> found = boundary_surface_;
     const std::uint64_t number = boundary_number_;
     lock.unlock();
-    if (!boundary) return;
+    if (!boundary) return {};
     FrameSurface surface;
     surface.key = fmt::format("boundary|{}", number);
+    const auto& scale = making.facts.scale;
+    const auto colors =
+        state.colored_boundary && !state.color_by.empty() && scale ? color_field(state, *scale, run) : std::nullopt;
+    if (colors) {
+        surface.key += fmt::format("|{}{}", step_, color_key(state));
+        boundary = kept_mesh(surface.key);
+        if (!boundary) {
+            const Result<Surface> colored = colored_boundary(*found, number, *colors, run);
+            if (!colored) return colored.error();
+            Result<std::shared_ptr<const Mesh>> made = keep(surface.key, *colored, scale, making.facts, run);
+            if (!made) return made.error();
+            boundary = *std::move(made);
+        }
+    }
     surface.kind = "boundary";
     surface.color = {0.62F, 0.66F, 0.70F, 1};
     surface.opacity = state.boundary;
     add(std::move(surface), boundary, known, making);
+    return {};
 }
 
 Result<FrameParts> GridView::frame_parts(const ShowMessage& message, const std::vector<std::string>& known,
@@ -326,10 +375,11 @@ Result<FrameParts> GridView::frame_parts(const ShowMessage& message, const std::
     making.most = limit_of(message, options_);
     making.facts.number = message.number;
     making.facts.scale = *scale;
+    if (*scale && !(*scale)->classes.empty()) making.facts.classes = classes_->field.classes;
     if (Result<void> told = tell_field(state.field, making.facts, run); !told) return told.error();
     if (Result<void> added = add_isosurfaces(message, known, making, run); !added) return added.error();
     if (Result<void> added = add_slices(state, known, making, run); !added) return added.error();
-    add_boundary(state, known, making);
+    if (Result<void> added = add_boundary(state, known, making, run); !added) return added.error();
     std::erase_if(kept_, [](const Kept& kept) { return !kept.used; });
     return making;
 }

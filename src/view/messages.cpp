@@ -239,6 +239,17 @@ std::string color_text(const Color& color) {
     return fmt::format("#{:02x}{:02x}{:02x}", part(color.red), part(color.green), part(color.blue));
 }
 
+Json scale_json(const ColorScale& scale, const std::vector<std::string>& classes) {
+    Json json = {{"lower", scale.lower},
+                 {"upper", scale.upper},
+                 {"logarithmic", scale.logarithmic},
+                 {"no_data", color_text(scale.no_data)}};
+    for (std::size_t i = 0; i < scale.classes.size(); ++i)
+        json["classes"].push_back(
+            {{"name", i < classes.size() ? classes[i] : std::to_string(i)}, {"color", color_text(scale.classes[i])}});
+    return json;
+}
+
 std::string frame_bytes(const FrameFacts& facts, const std::vector<FrameSurface>& surfaces) {
     Blocks blocks;
     Json head = {{"number", facts.number},
@@ -252,11 +263,7 @@ std::string frame_bytes(const FrameFacts& facts, const std::vector<FrameSurface>
                  {"notes", facts.notes}};
     if (facts.range) head["range"] = {facts.range->lower, facts.range->upper};
     if (facts.field_bound) head["field_bound"] = *facts.field_bound;
-    if (facts.scale)
-        head["scale"] = {{"lower", facts.scale->lower},
-                         {"upper", facts.scale->upper},
-                         {"logarithmic", facts.scale->logarithmic},
-                         {"no_data", color_text(facts.scale->no_data)}};
+    if (facts.scale) head["scale"] = scale_json(*facts.scale, facts.classes);
     if (facts.opacity_length > 0) {
         Json& points = head["opacity"] = Json::array();
         for (const auto& [value, opacity] : facts.opacity) points.push_back({value, opacity});

@@ -128,6 +128,7 @@ struct FrameFacts {
     std::string method;       ///< "direct" or "clusters"
     double extract_seconds = 0, mesh_seconds = 0, wait_seconds = 0;
     std::optional<ColorScale> scale; ///< of values on the surfaces
+    std::vector<std::string> classes = {}; ///< names of ColorScale::classes
     std::vector<std::string> notes;
     std::uint64_t step = 0;
     std::string field = {};                 ///< that is contoured
@@ -155,6 +156,9 @@ std::string parts_text(const PartsMessage& message, std::size_t step, const std:
                        const std::vector<std::uint64_t>& kept);
 std::string share_text(const ShareMessage& message, std::size_t step, double isovalue);
 std::string spectrum_text(const std::string& field, std::size_t step, const ContourSpectrum& spectrum);
+
+/// The scale of a frame's colours, as pages take it.
+Json scale_json(const ColorScale& scale, const std::vector<std::string>& classes);
 
 /// "#rrggbb"
 std::string color_text(const Color& color);

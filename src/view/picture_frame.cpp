@@ -36,6 +36,7 @@ SceneLook look_of(const ShowMessage& message, std::optional<ColorField> colors,
         look.volume.emplace(VolumeLook{*scale, {}});
         look.isovalue_range = {scale->lower, scale->upper}; // surfaces have the colours of the volume there
     }
+    if (state.colored_boundary && !state.volume) look.boundary_colors = colors;
     look.colors = std::move(colors);
     look.map = state.map;
     look.opacity = state.opacity;
@@ -55,7 +56,7 @@ SceneLook look_of(const ShowMessage& message, std::optional<ColorField> colors,
 Result<void> GridView::make_scene(const ShowMessage& message, const std::optional<ColorScale>& scale, const Run& run) {
     const ViewState& state = message.state;
     std::vector<double> isovalues; // each once
-    if (!state.volume || state.volume->surfaces)
+    if (state.volume ? state.volume->surfaces : state.isosurfaces)
         for (const double one : state.isovalues)
             if (std::ranges::find(isovalues, one) == isovalues.end()) isovalues.push_back(one);
     const std::string key = scene_key(message, step_);
@@ -70,9 +71,9 @@ Result<void> GridView::make_scene(const ShowMessage& message, const std::optiona
         options.surfaces = isovalues.size();
         options.where = ExtractOn::cpu;
         const bool colored = scale && !state.color_by.empty();
-        auto scene = IsosurfaceScene::create(
-            {}, std::move(options), look_of(message, colored ? color_field(state, *scale, run) : std::nullopt, scale),
-            run);
+        std::optional<ColorField> colors = colored ? color_field(state, *scale, run) : std::nullopt;
+        if (colored && !scale->classes.empty()) colors = classes_->field;
+        auto scene = IsosurfaceScene::create({}, std::move(options), look_of(message, std::move(colors), scale), run);
         if (!scene) return scene.error();
         scene_ = *std::move(scene);
         scene_key_ = key;
@@ -128,6 +129,7 @@ Result<Frame> GridView::picture_frame(const ShowMessage& message, double wait_se
     facts.preview = message.moving;
     facts.wait_seconds = wait_seconds;
     facts.scale = *scale;
+    if (*scale && !(*scale)->classes.empty()) facts.classes = classes_->field.classes;
     if (Result<void> told = tell_field(message.state.field, facts, run); !told) return told.error();
     facts.method = name_of(scene_->report().method);
     facts.notes = scene_->take_notes();
@@ -152,7 +154,7 @@ Result<Frame> GridView::picture_frame(const ShowMessage& message, double wait_se
     }
     std::vector<FrameSurface> surfaces;
     for (const double isovalue : message.state.isovalues) {
-        if (scene_isovalues_.empty()) break; // a volume alone
+        if (scene_isovalues_.empty()) break; // a volume or the boundary alone
         const auto which =
             static_cast<std::size_t>(std::ranges::find(scene_isovalues_, isovalue) - scene_isovalues_.begin());
         FrameSurface& surface = surfaces.emplace_back();

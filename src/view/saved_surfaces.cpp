@@ -127,11 +127,7 @@ Result<CodedSurface> SurfaceSaver::coded(const FrameParts& parts, const FrameSur
     const FrameFacts& facts = parts.facts;
     if (facts.range) out.told["range"] = {facts.range->lower, facts.range->upper};
     if (facts.field_bound) out.told["field_bound"] = *facts.field_bound;
-    if (facts.scale)
-        out.told["scale"] = {{"lower", facts.scale->lower},
-                             {"upper", facts.scale->upper},
-                             {"logarithmic", facts.scale->logarithmic},
-                             {"no_data", color_text(facts.scale->no_data)}};
+    if (facts.scale) out.told["scale"] = scale_json(*facts.scale, facts.classes);
     return out;
 }
 

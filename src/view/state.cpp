@@ -119,10 +119,9 @@ bool operator==(const ViewState& a, const ViewState& b) {
     const auto camera = [](const ViewState& s) { return s.camera ? to_text(*s.camera) : std::string(); };
     return a.field == b.field && a.isovalues == b.isovalues && a.color_by == b.color_by && a.map == b.map &&
            range(a) == range(b) && a.logarithmic == b.logarithmic && a.opacity == b.opacity && a.outline == b.outline &&
-           camera(a) == camera(b) && a.boundary == b.boundary && a.edges == b.edges && a.solid == b.solid &&
-           a.keep == b.keep &&
-           same_planes(a.clips, b.clips) && same_planes(a.slices, b.slices) && a.step == b.step &&
-           a.volume == b.volume;
+           camera(a) == camera(b) && a.boundary == b.boundary && a.isosurfaces == b.isosurfaces &&
+           a.colored_boundary == b.colored_boundary && a.edges == b.edges && a.solid == b.solid && a.keep == b.keep &&
+           same_planes(a.clips, b.clips) && same_planes(a.slices, b.slices) && a.step == b.step && a.volume == b.volume;
 }
 
 Json to_json(const ViewState& state) {
@@ -134,6 +133,8 @@ Json to_json(const ViewState& state) {
                  {"outline", state.outline},
                  {"edges", state.edges},
                  {"boundary", state.boundary},
+                 {"isosurfaces", state.isosurfaces},
+                 {"colored_boundary", state.colored_boundary},
                  {"clips", planes_json(state.clips)},
                  {"slices", planes_json(state.slices)}};
     if (state.solid) json["solid"] = name_of(*state.solid);
@@ -158,6 +159,8 @@ Result<ViewState> state_of(const Json& json) {
     reader.read_flag("logarithmic", state.logarithmic);
     reader.read_flag("outline", state.outline);
     reader.read_flag("edges", state.edges);
+    reader.read_flag("isosurfaces", state.isosurfaces);
+    reader.read_flag("colored_boundary", state.colored_boundary);
     reader.read("boundary", "a number from 0 to 1", [&](const Json& value) {
         const auto opacity = finite_number(value);
         if (opacity) state.boundary = *opacity;

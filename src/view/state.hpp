@@ -36,6 +36,7 @@ struct VolumeState {
 struct ViewState {
     std::string field;             ///< as find_field() takes it
     std::vector<double> isovalues; ///< the one that the slider moves, then the pinned ones
+    bool isosurfaces = true;       ///< they are shown, or solids in their place
     std::string color_by;          ///< a point or cell field; empty: a colour a surface
     ColorMap map = ColorMap::viridis;
     std::optional<ValueRange> range; ///< values at the ends of the map, lower < upper; nothing: the field's
@@ -44,6 +45,7 @@ struct ViewState {
     bool outline = false;
     std::optional<Camera> camera;
     double boundary = default_boundary_opacity; ///< opacity of the grid's boundary, 0 to 1; 0: it is not shown
+    bool colored_boundary = false;              ///< by `color_by`
     bool edges = false;                         ///< as SceneLook::edges
     std::optional<SolidSide> solid;             ///< in place of isosurfaces: solids on this side of them
     std::optional<PartChoice> keep;             ///< of each surface or solid only these connected parts; touching the

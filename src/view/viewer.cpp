@@ -199,15 +199,18 @@ void Viewer::Data::read_and_pack() {
     view_options.cells = input->cells;
     view_options.read_cells = options.read_cells;
     view_options.refine = options.refine;
+    view_options.regions = input->regions;
     Result<std::unique_ptr<GridView>> made = GridView::create(std::move(input->grid), view_options);
     if (!made) return set_failure(made.error());
     view = *std::move(made);
     set_grid(*input);
     worker->start(std::make_shared<GridFrames>(*view, options.threads));
-    tell_progress("pack", 0);
-    const Result<void> packed = view->pack(input->state.field, run);
-    tell_progress("boundary", 0);
-    const Result<void> found = view->find_boundary(run);
+    Result<void> packed, found;
+    for (const bool boundary : {!input->state.isosurfaces, input->state.isosurfaces}) { // what is seen first
+        tell_progress(boundary ? "boundary" : "pack", 0);
+        if (boundary) found = view->find_boundary(run);
+        else packed = view->pack(input->state.field, run);
+    }
     worker->start_background();
     if (!packed) return tell_progress("not packed: " + packed.error().message, 1);
     tell_progress(found ? "ready" : "no boundary: " + found.error().message, 1);

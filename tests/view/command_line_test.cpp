@@ -51,6 +51,25 @@ TEST(ExtractWords, GiveFieldAndIsovaluesBack) {
     }
 }
 
+TEST(RenderWords, GiveTheBoundaryAloneBack) {
+    ViewState state;
+    state.field = state.color_by = "porosity";
+    state.isosurfaces = false;
+    state.colored_boundary = true;
+    state.boundary = 1;
+    const std::string text = shell_text(render_words(state, "grid.vtu"));
+    EXPECT_EQ(text, "isotet render grid.vtu --boundary-color-by porosity -o picture.png");
+    auto back = state_of_command(text);
+    ASSERT_TRUE(back);
+    EXPECT_TRUE(back->state == state);
+
+    state.isosurfaces = true;
+    state.isovalues = {0.25};
+    back = state_of_command(shell_text(render_words(state, "grid.vtu")));
+    ASSERT_TRUE(back);
+    EXPECT_TRUE(back->state == state);
+}
+
 TEST(StateJson, GivesTheStateBack) {
     for (unsigned seed = 1; seed <= 500; ++seed) {
         SCOPED_TRACE(seed);
@@ -94,8 +113,9 @@ TEST(StateOfCommand, NamesWhatItDoesNotTake) {
                                          {"--merge-points", "0", "--block", "b"});
     ASSERT_TRUE(pasted) << pasted.error().message;
     EXPECT_EQ(pasted->file, "x.vtu");
-    EXPECT_EQ(pasted->left_out, (std::vector<std::string>{"--view +x", "--zoom=2", "--boundary-color-by p",
-                                                          "--scale 1,1,5", "--block a"}));
+    EXPECT_EQ(pasted->left_out, (std::vector<std::string>{"--view +x", "--zoom=2", "--scale 1,1,5", "--block a"}));
+    EXPECT_TRUE(pasted->state.colored_boundary);
+    EXPECT_EQ(pasted->state.color_by, "p");
 }
 
 TEST(StateOfCommand, SaysWhatIsWrong) {

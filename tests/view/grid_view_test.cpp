@@ -120,12 +120,40 @@ TEST_F(GridViewTest, ColoursFollowPointAndCellFieldsAndTheirRange) {
     message.state.color_by = "seventh";
     head = frame(message);
     EXPECT_FALSE(head["surfaces"][0]["mesh"].contains("corners_at")) << "triangles of a cell field share no vertices";
-    EXPECT_EQ(head["scale"]["upper"], 6.0);
+    EXPECT_EQ(head["scale"]["classes"].size(), 7) << "few whole numbers have a colour each";
+    EXPECT_EQ(head["scale"]["classes"][2]["name"], "2");
     message.state.range = ValueRange{1, 2};
-    EXPECT_EQ(frame(message)["scale"]["upper"], 2.0);
+    head = frame(message);
+    EXPECT_EQ(head["scale"]["upper"], 2.0);
+    EXPECT_FALSE(head["scale"].contains("classes"));
     message.state.range = ValueRange{-1, 2};
     message.state.logarithmic = true;
     EXPECT_FALSE(view_->frame(message, 0, known_, {}));
+}
+
+TEST_F(GridViewTest, TheBoundaryIsColouredAndStandsAlone) {
+    ShowMessage message = show(1, {0.7});
+    message.state.isosurfaces = false;
+    message.state.colored_boundary = true;
+    message.state.boundary = 1;
+    message.state.color_by = "gyroid";
+    EXPECT_TRUE(frame(message)["surfaces"].empty()) << "it is not found yet";
+    ASSERT_TRUE(view_->find_boundary({}));
+    Json head = frame(message);
+    ASSERT_EQ(head["surfaces"].size(), 1);
+    EXPECT_EQ(head["surfaces"][0]["kind"], "boundary");
+    EXPECT_EQ(head["surfaces"][0]["triangles"], 12 * 12 * 12);
+    EXPECT_TRUE(head["surfaces"][0]["mesh"].contains("colors_at"));
+    EXPECT_FALSE(frame(message)["surfaces"][0].contains("mesh")) << "the page has it";
+    message.state.color_by = "seventh";
+    head = frame(message);
+    EXPECT_TRUE(head["surfaces"][0]["mesh"].contains("colors_at"));
+    EXPECT_FALSE(head["surfaces"][0]["mesh"].contains("corners_at"));
+    message.state.colored_boundary = false;
+    head = frame(message);
+    EXPECT_FALSE(head["surfaces"][0]["mesh"].contains("colors_at"));
+    message.state.isosurfaces = true;
+    EXPECT_EQ(frame(message)["surfaces"].size(), 2);
 }
 
 TEST_F(GridViewTest, AnotherFieldIsFollowedDirectlyAndPacked) {

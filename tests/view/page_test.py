@@ -96,6 +96,36 @@ def test_first_surface(browser, viewer):
     check(0.1 < share_of_surface(browser) < 0.7, 'the surface is in the picture')
 
 
+def test_boundary_alone(browser, viewer):
+    """Where only regions are known, the boundary shows them, each with a colour; the slider brings isosurfaces."""
+    with Viewer(os.path.join(os.path.dirname(__file__), '../../data/gocad/geomodel3d_tsolid.so')) as other:
+        start(browser, other, '&labels=0')
+        browser.wait('document.body.dataset.kinds === "boundary"')
+        browser.wait('document.body.dataset.classes.split(" ").length === 4')
+        check(browser.value('document.getElementById("shown").textContent') == 'Boundary shown', 'it is said')
+        check(browser.value('document.getElementById("boundary").value') == '1', 'it is opaque')
+        check(not browser.value('document.getElementById("isosurfaces").checked'), 'there are no isosurfaces')
+        x, y, w, h = (int(v) for v in browser.box('#scene'))
+        _, _, rows = pixels(browser.picture())
+        seen = [rows[j][3 * i:3 * i + 3] for j in range(y, y + int(0.85 * h), 4) for i in range(x + 4, x + w - 4, 4)]
+        for name, fits in (('red', lambda r, g, b: r > g + 60 and r > b + 60), ('green', lambda r, g, b: g > r + 40 and g > b + 40),
+                           ('blue', lambda r, g, b: b > r + 40)):
+            check(any(fits(*one) for one in seen), f'a region is {name}')
+        browser.value('document.getElementById("slider").focus()')
+        browser.key('ArrowRight')
+        at_rest(browser)
+        browser.wait('document.body.dataset.kinds === "surface boundary"')
+        check(browser.value('document.getElementById("boundary").value') == '0.1', 'the boundary hides no isosurface')
+        check(int(browser.value('document.body.dataset.triangles')) > 0, 'there is one')
+        browser.click('#isosurfaces')
+        browser.wait('document.body.dataset.kinds === "boundary" && document.body.dataset.classes !== ""')
+        browser.wait('location.hash.includes("isosurfaces=0") && location.hash.includes("colored=1")')
+        browser.value('document.getElementById("drawn-by").value = "server"; document.getElementById("drawn-by").dispatchEvent(new Event("change"))')
+        browser.wait('document.body.dataset.picture === "image/png"')
+        check(len(browser.value('document.body.dataset.classes').split()) == 4, 'pictures of the server have the same classes')
+        browser.call('Page.navigate', url='about:blank')
+
+
 def test_drag(browser, viewer):
     """The surface follows the hand: values between the ends are shown while it moves, the last one at the end."""
     start(browser, viewer)

@@ -9,10 +9,15 @@ import {showSurfaces} from './surfaces.js';
 import {commitSoon} from './undo.js';
 import {wishSoon} from './wishes.js';
 
+/** 64 colours, one after another; of classes as many of each. */
+export function mapColors() {
+  const classes = app.frame?.scale?.classes;
+  return classes ? Array.from({length: 64}, (_, i) => classes[Math.floor(i * classes.length / 64)].color.slice(1)).join('') : app.maps[app.state.map];
+}
+
 export function showMap() {
   if (!app.maps) return;
-  const colors = app.maps[app.state.map], context = id('legend').getContext('2d');
-  app.scene?.setMap(app.state.map, colors);
+  const colors = mapColors(), context = id('legend').getContext('2d');
   for (let x = 0; x < 256; ++x) {
     const at = 6 * Math.round(x * 63 / 255);
     context.fillStyle = '#' + colors.slice(at, at + 6);
@@ -21,6 +26,9 @@ export function showMap() {
 }
 
 export function showRange() {
+  showMap();
+  id('color-range').hidden = !!app.frame?.scale?.classes;
+  document.body.dataset.classes = (app.frame?.scale?.classes || []).map(({name}) => name).join(' ');
   const scale = app.state.range ? {lower: app.state.range[0], upper: app.state.range[1]} : app.frame?.scale;
   for (const end of ['lower', 'upper']) {
     const input = id('range-' + end);

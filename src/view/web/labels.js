@@ -71,14 +71,15 @@ function paintEntry(context, [color, text], x, y) {
 /** At the right: the scale of the colours, else the colours of several surfaces. */
 function paintColumn(context, width, height) {
   const {frame, state} = app, scale = coloredBy(state) ? frame.scale : null, surfaces = shown();
-  const entries = scale || surfaces.length < 2 ? [] : surfaces.map((one) => [colorOf(one), numberLabel(one.isovalue)]).reverse();
+  const classes = scale?.classes?.map(({name, color}) => [color, name]), graded = scale && !classes;
+  const entries = classes || (scale || surfaces.length < 2 ? [] : surfaces.map((one) => [colorOf(one), numberLabel(one.isovalue)]).reverse());
   if (!scale && entries.length === 0) return;
-  const tall = scale ? Math.round(Math.min(0.55 * height, 320)) : line * entries.length, title = scale ? coloredBy(state) : frame.field;
-  const ticks = scale ? ticksOf(scale, Math.floor(tall / (3 * size))) : [];
+  const tall = graded ? Math.round(Math.min(0.55 * height, 320)) : line * entries.length, title = scale ? coloredBy(state) : frame.field;
+  const ticks = graded ? ticksOf(scale, Math.floor(tall / (3 * size))) : [];
   const wide = Math.max(context.measureText(title).width, ...[...ticks, ...entries].map(([, text]) => swatch + 9 + context.measureText(text).width));
   const x = Math.round(width - wide - size), y = Math.round((height - tall) / 2);
   write(context, title, x, y - line);
-  if (scale) paintScale(context, scale, ticks, x, y, tall);
+  if (graded) paintScale(context, scale, ticks, x, y, tall);
   entries.forEach((entry, i) => paintEntry(context, entry, x, y + line * (i + 0.5)));
 }
 

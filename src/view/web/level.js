@@ -2,7 +2,9 @@
 // The isovalue: slider, chart and number.
 import {app, id} from './app.js';
 import {ChartSlider} from './chart.js';
+import {colorsChanged} from './colors.js';
 import * as format from './format.js';
+import {showIsosurfaces} from './looking.js';
 import {say} from './notes.js';
 import {forgetParts, forgetPartNumbers} from './parts.js';
 import {pinColor, showSurfaces} from './surfaces.js';
@@ -10,7 +12,7 @@ import {commit, commitSoon, nameState} from './undo.js';
 import {forgetPoints, showCurve} from './volume.js';
 import {wishSoon} from './wishes.js';
 
-app.slider = new ChartSlider(id('slider'), id('chart'), {input: setValue, commit});
+app.slider = new ChartSlider(id('slider'), id('chart'), {input(value) { showIsosurfaces(true); setValue(value); }, commit});
 
 const level = {
   seen: new Map(),       // ranges: field -> step -> [lower, upper]
@@ -209,6 +211,7 @@ function typed() {
   id('value').setAttribute('aria-invalid', value === null);
   if (value === null) return say('An isovalue is a number, such as 0.25 or 1e-3, a part of the range, such as 50 %, or 90%v for 90 % of the volume below it, or p95 for a percentile of the points.');
   level.share = '';
+  showIsosurfaces(true);
   if (share) { say(''); return askShare(share); }
   say('');
   setValue(value);
@@ -228,6 +231,11 @@ export function chooseField(name) {
   forgetPartNumbers();
   level.left.set(state.field, {value: state.value, pins: state.pins});
   Object.assign(state, {field: name, value: null, pins: []}, level.left.get(name));
+  if (!state.isosurfaces && state.coloredBoundary && app.grid.fields.some((one) => one.name === name)) { // it is what is seen
+    state.range = null;
+    state.colorBy = id('color-by').value = name;
+    colorsChanged();
+  }
   app.slider.chart = app.slider.spectrum = null;
   level.automatic = false;
   forgetPoints();

@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Standard views, and what is drawn beside the surfaces.
 import {app, aspect, id} from './app.js';
+import {colorsChanged} from './colors.js';
 import {showValue} from './level.js';
 import {say} from './notes.js';
 import {closePicked} from './picked.js';
@@ -59,6 +60,8 @@ id('solid').addEventListener('change', () => {
 export function showBoundary() {
   id('boundary').value = app.state.boundary;
   id('boundary-text').textContent = app.state.boundary > 0 ? app.state.boundary.toFixed(2) : 'off';
+  id('isosurfaces').checked = app.state.isosurfaces;
+  id('colored-boundary').checked = app.state.coloredBoundary;
   id('boundary').setAttribute('aria-valuetext', id('boundary-text').textContent);
 }
 id('boundary').addEventListener('input', () => {
@@ -67,6 +70,32 @@ id('boundary').addEventListener('input', () => {
   wishSoon();
   drawSoon();
   commitSoon();
+});
+/** Without isosurfaces the boundary says all. */
+export function showIsosurfaces(shown) {
+  const {state} = app;
+  if (state.isosurfaces === shown) return;
+  state.isosurfaces = shown;
+  if (!shown) {
+    state.boundary = 1;
+    state.coloredBoundary = true;
+    state.colorBy ||= state.field;
+    closePicked();
+  } else if (state.boundary === 1) { // it would hide them
+    Object.assign(state, {boundary: 0.1, coloredBoundary: false});
+    if (state.colorBy === state.field) state.colorBy = ''; // says nothing on them
+  }
+  showBoundary();
+  id('color-by').value = state.colorBy;
+  colorsChanged();
+}
+id('isosurfaces').addEventListener('change', () => showIsosurfaces(id('isosurfaces').checked));
+id('colored-boundary').addEventListener('change', () => {
+  app.state.coloredBoundary = id('colored-boundary').checked;
+  if (app.state.coloredBoundary) app.state.colorBy ||= app.state.field;
+  id('color-by').value = app.state.colorBy;
+  showBoundary();
+  colorsChanged();
 });
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => { showValue(); drawSoon(); });
 new ResizeObserver(() => { if (app.grid && serverDraws()) wishSoon(); drawSoon(); }).observe(id('stage'));

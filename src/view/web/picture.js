@@ -1,7 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Frames of the server on the screen.
 import {app, aspect, css, id} from './app.js';
-import {showRange} from './colors.js';
+import {mapColors, showRange} from './colors.js';
 import * as format from './format.js';
 import {followStep, measureServer, rangeOf} from './level.js';
 import {paintLabels, showLabels} from './labels.js';
@@ -58,6 +58,7 @@ function draw() {
   chooseScale();
   const pad = app.grid.upper.map((u, i) => (u - app.grid.lower[i]) * 0.001);
   const start = performance.now();
+  if (app.maps) app.scene.setMap(mapColors());
   app.scene.draw(app.camera, dressed().filter((one) => !one.hidden), {background: css('scene'), lower: app.grid.lower.map((v, i) => v - pad[i]),
     upper: app.grid.upper.map((v, i) => v + pad[i]), boxLower: app.grid.lower, boxUpper: app.grid.upper, outline: app.state.outline,
     edges: app.state.edges, mapped: !!app.state.colorBy, noData: app.frame?.scale?.no_data, line: css('soft'),
@@ -146,9 +147,10 @@ function tellFacts() {
   const [first] = isosurfaces();
   const triangles = [...new Map(isosurfaces().map((one) => [one.isovalue, one.triangles])).values()].reduce((a, b) => a + b, 0);
   const drawn = isosurfaces().reduce((sum, one) => sum + (app.scene?.meshes.get(one.key)?.count || 0) / 3, 0);
-  const volume = app.frame.opacity_length > 0;
-  id('shown').textContent = first ? `${format.short(first.isovalue)} shown` : volume ? 'Volume shown' : 'No surface';
-  const parts = [`${format.grouped(triangles)} triangles` + (app.frame.preview && !app.frame.picture ? `, preview of ${format.rough(drawn)}` : '')];
+  const volume = app.frame.opacity_length > 0, boundary = app.frame.surfaces.find(({kind}) => kind === 'boundary');
+  const alone = !first && !volume && boundary;
+  id('shown').textContent = first ? `${format.short(first.isovalue)} shown` : volume ? 'Volume shown' : alone ? 'Boundary shown' : 'No surface';
+  const parts = [`${format.grouped(alone ? boundary.triangles : triangles)} triangles` + (app.frame.preview && !app.frame.picture && !alone ? `, preview of ${format.rough(drawn)}` : '')];
   if (triangles === 0 && first) parts[0] = ['no triangles at this value', outside(first.isovalue)].filter(Boolean).join(': ');
   if (volume && !first) parts[0] = `opacity of a length of ${format.short(app.frame.opacity_length)}`;
   const {picture} = app.frame, made = picture ? app.frame : app.made || app.frame;
@@ -165,8 +167,9 @@ function tellFacts() {
   Object.assign(document.body.dataset, {shown: first?.isovalue ?? '', triangles, drawn, preview: app.frame.preview, method: app.frame.method,
     bound: app.frame.field_bound ?? '', frame: app.frame.number, field: app.frame.field, step_shown: app.frame.step,
     volume: volume ? app.state.volume?.opacity ?? '' : '', picture: app.frame.picture?.type ?? '', kinds: app.frame.surfaces.map(({kind}) => kind).join(' ')});
-  id('scene').setAttribute('aria-label', `Isosurface of ${app.state.field} at ${first ? format.short(first.isovalue) : 'no value'}, ` +
-    `${format.grouped(triangles)} triangles. Arrow keys turn, with Shift they move, plus and minus zoom.`);
+  const what = alone ? `Boundary of the grid${app.state.coloredBoundary && app.state.colorBy ? ` coloured by ${app.state.colorBy}` : ''}` :
+    `Isosurface of ${app.state.field} at ${first ? format.short(first.isovalue) : 'no value'}, ${format.grouped(triangles)} triangles`;
+  id('scene').setAttribute('aria-label', `${what}. Arrow keys turn, with Shift they move, plus and minus zoom.`);
 }
 
 /** A picture of the server: newer ones only. */

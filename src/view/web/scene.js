@@ -116,7 +116,7 @@ export class Scene {
     this.line = program(lineVertex, lineFragment, ['clip', 'color', 'cuts', 'cutCount']);
     this.occlusion = new Occlusion(gl, program);
     this.map = gl.createTexture();
-    this.mapName = null;
+    this.mapColors = null;
     this.box = gl.createVertexArray();
     gl.bindVertexArray(this.box);
     gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
@@ -190,15 +190,16 @@ export class Scene {
     this.meshes.delete(key);
   }
 
-  setMap(name, colors) {
-    if (this.mapName === name) return;
+  /** Of 64 colours, "rrggbb" one after another. */
+  setMap(colors) {
+    if (this.mapColors === colors) return;
     const gl = this.gl, pixels = new Uint8Array(64 * 4).fill(255);
     for (let i = 0; i < 64; ++i) for (let k = 0; k < 3; ++k) pixels[4 * i + k] = parseInt(colors.slice(6 * i + 2 * k, 6 * i + 2 * k + 2), 16);
     gl.bindTexture(gl.TEXTURE_2D, this.map);
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, 64, 1, 0, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
     for (const [what, how] of [[gl.TEXTURE_MIN_FILTER, gl.LINEAR], [gl.TEXTURE_MAG_FILTER, gl.LINEAR],
       [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE], [gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE]]) gl.texParameteri(gl.TEXTURE_2D, what, how);
-    this.mapName = name;
+    this.mapColors = colors;
   }
 
   aspect() { return this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight); }

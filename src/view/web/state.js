@@ -5,7 +5,8 @@ export const firstState = () => ({
   field: '', value: null, pins: [], // [{value, color, opacity}], color null: the one that isotet render gives
   color: null, opacity: null,       // of the surface that the slider moves
   colorBy: '', map: 'viridis', range: null, logarithmic: false, outline: false, edges: false, camera: null,
-  boundary: 0.1, solid: '', // 'above' or 'below' in place of isosurfaces
+  boundary: 0.1, isosurfaces: true, coloredBoundary: false, // by colorBy
+  solid: '', // 'above' or 'below' in place of isosurfaces
   keep: '', // connected parts, as --keep takes them; all
   planes: [], step: null, drawn: '', // 'server': pictures, 'browser': never
   volume: null, // {opacity, length, surfaces}: as isotet render --volume draws it
@@ -36,6 +37,8 @@ export function toAddress(state) {
   if (state.range) parts.set('range', state.range.join(','));
   for (const flag of ['logarithmic', 'outline', 'edges']) if (state[flag]) parts.set(flag, 1);
   if (state.boundary !== 0.1) parts.set('boundary', state.boundary);
+  if (!state.isosurfaces) parts.set('isosurfaces', 0);
+  if (state.coloredBoundary) parts.set('colored', 1);
   if (state.solid) parts.set('solid', state.solid);
   if (state.keep) parts.set('keep', state.keep);
   for (const {kind, normal, offset} of state.planes) parts.append(kind, [...normal, offset].join(','));
@@ -73,6 +76,8 @@ export function fromAddress(text) {
   for (const flag of ['logarithmic', 'outline', 'edges']) state[flag] = parts.get(flag) === '1';
   const boundary = number(parts.get('boundary'));
   if (boundary !== null && isPart(boundary)) state.boundary = boundary;
+  state.isosurfaces = parts.get('isosurfaces') !== '0';
+  state.coloredBoundary = parts.get('colored') === '1';
   if (['above', 'below'].includes(parts.get('solid'))) state.solid = parts.get('solid');
   if (isKeptParts(parts.get('keep') || '')) state.keep = parts.get('keep');
   for (const [kind, text] of parts) {
@@ -102,7 +107,7 @@ export const coloredBy = ({volume, field, colorBy}) => (volume ? field : colorBy
 export function toMessage(state) {
   const message = {field: state.field, isovalues: [state.value, ...state.pins.map((pin) => pin.value)], color_by: state.colorBy,
     map: state.map, logarithmic: state.logarithmic, outline: state.outline,
-    edges: state.edges, boundary: state.boundary};
+    edges: state.edges, boundary: state.boundary, isosurfaces: state.isosurfaces, colored_boundary: state.coloredBoundary};
   for (const kind of ['clip', 'slice']) message[kind + 's'] = planesOf(state, kind).map(({normal, offset}) => [...normal, offset]);
   if (state.solid) message.solid = state.solid;
   if (state.keep) message.keep = state.keep;
@@ -125,7 +130,8 @@ export function fromMessage(message) {
   const opacity = message.opacity ?? null;
   return {...state, field: message.field, value, pins: pins.map((one) => ({value: one, color: null, opacity})), opacity,
     colorBy: message.color_by, map: message.map, logarithmic: message.logarithmic, outline: message.outline,
-    edges: message.edges, boundary: message.boundary, solid: message.solid ?? '', keep: message.keep ?? '', step: message.step ?? null,
+    edges: message.edges, boundary: message.boundary, isosurfaces: message.isosurfaces ?? true, coloredBoundary: message.colored_boundary ?? false,
+    solid: message.solid ?? '', keep: message.keep ?? '', step: message.step ?? null,
     planes: ['clip', 'slice'].flatMap((kind) => message[kind + 's'].map((plane) => ({kind, normal: plane.slice(0, 3), offset: plane[3]}))),
     volume: message.volume ? {length: null, ...message.volume} : null,
     range: message.range ?? null, camera: message.camera ?? null};

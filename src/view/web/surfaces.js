@@ -29,7 +29,7 @@ id('pin').addEventListener('click', pin);
 export function showSurfaces() {
   const list = id('surfaces'), all = app.state.value === null ? [] : [app.state, ...app.state.pins];
   while (list.children.length > all.length) list.lastChild.remove();
-  const looks = dressed();
+  const looks = dressed().filter(({kind}) => kind === 'surface');
   all.forEach((one, i) => {
     const row = list.children[i] || list.appendChild(surfaceRow(i));
     const [color, value, opacity] = row.children;
