@@ -342,5 +342,26 @@ TEST(LegacyVtkGrid, NamesWhatIsWrong) {
         "point field 's' cannot be read: it has 1 values, but the grid has 8000000000000000000 points");
 }
 
+TEST(ReadPvd, NotesDataSetsWithoutATimeBesideOthers) {
+    const TemporaryFolder folder;
+    folder.write("a.vtu", R"(<VTKFile type="UnstructuredGrid"><UnstructuredGrid>
+<Piece NumberOfPoints="4" NumberOfCells="1">
+<Points><DataArray type="Float32" NumberOfComponents="3" format="ascii">0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points>
+<Cells><DataArray type="Int32" Name="connectivity" format="ascii">0 1 2 3</DataArray>
+<DataArray type="Int32" Name="offsets" format="ascii">4</DataArray>
+<DataArray type="UInt8" Name="types" format="ascii">10</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>)");
+    const auto notes_of = [&](const std::string& time) {
+        const auto result = read(folder.write("a.pvd", "<VTKFile type=\"Collection\"><Collection><DataSet " + time +
+                                                           " file=\"a.vtu\"/><DataSet file=\"a.vtu\"/>"
+                                                           "</Collection></VTKFile>"));
+        EXPECT_TRUE(result) << result.error().message;
+        std::string all;
+        for (const std::string& note : result->notes) all += note + "\n";
+        return all;
+    };
+    EXPECT_NE(notes_of("timestep=\"1\"").find("1 of 2 data sets of the collection has no timestep"), std::string::npos);
+    EXPECT_EQ(notes_of("").find("no timestep"), std::string::npos);
+}
+
 } // namespace
 } // namespace isotet::test

@@ -24,7 +24,7 @@ namespace {
 struct Entry {
     double time = 0;
     std::string group, part, name, file;
-    bool has_part = false;
+    bool has_part = false, has_time = false;
 };
 
 Result<std::vector<Entry>> entries(const std::string& path) {
@@ -41,7 +41,8 @@ Result<std::vector<Entry>> entries(const std::string& path) {
                     part.as_string(),
                     node.attribute("name").as_string(),
                     node.attribute("file").as_string(),
-                    part && *part.value()};
+                    part && *part.value(),
+                    stated && *stated.value()};
         if (stated && *stated.value() && (!parse_number(stated.value(), entry.time) || entry.time != entry.time))
             return broken(path,
                           fmt::format("a data set has timestep \"{}\", which is no number", escaped(stated.value())));
@@ -78,6 +79,15 @@ std::string note_of_replaced(const std::vector<Entry>& entries, std::size_t kept
         entries.size(), replaced == 1 ? "is" : "are");
 }
 
+/// Empty where all have a time, or none has.
+std::string note_of_timeless(const std::vector<Entry>& entries) {
+    const auto timeless = static_cast<std::size_t>(std::ranges::count(entries, false, &Entry::has_time));
+    if (timeless == 0 || timeless == entries.size()) return {};
+    return fmt::format("{} of {} data sets of the collection {} no timestep, the first is {}: time 0 was taken",
+                       timeless, entries.size(), timeless == 1 ? "has" : "have",
+                       in_quotes(std::ranges::find(entries, false, &Entry::has_time)->file));
+}
+
 } // namespace
 
 Result<Loaded> load_collection(const std::string& path, const ReadOptions& options, Depth depth,
@@ -93,6 +103,7 @@ Result<Loaded> load_collection(const std::string& path, const ReadOptions& optio
         }
     auto loaded = load_times(path, names, options, depth, progress);
     if (loaded && kept < all->size()) loaded->notes.insert(loaded->notes.begin(), note_of_replaced(*all, kept));
+    if (const std::string note = note_of_timeless(*all); loaded && !note.empty()) loaded->notes.push_back(note);
     return loaded;
 }
 
