@@ -336,7 +336,7 @@ void add_view(const Command& program, ViewCommand& view) {
     add_field(
         command, view.field,
         "The field to begin with, or an expression such as mag(U); default: the one that info says is shown first");
-    add_isovalues(command, view.isovalues, view.shares);
+    add_isovalues(command, view.isovalues, view.shares, &view.decimal_comma);
     command.add_text("--color-by", view.color_by, "FIELD", "Colour by this point or cell field to begin with");
     command.add_count(
         "--port", {1, 65535}, [&](std::uint64_t n) { view.port = n; }, "N",

@@ -131,7 +131,7 @@ Result<ExitCode> run_view(const ViewCommand& command) {
     options.listen = command.listen;
     options.read = [&](const Run& run) {
         const ViewStart start{command.grid,     command.field, command.isovalues, command.shares, command.color_by,
-                              FirstCells::some, false};
+                              FirstCells::some, false, command.decimal_comma};
         return read_view_input(start, *source, console, run);
     };
     std::mutex reading; // steps are read by several threads

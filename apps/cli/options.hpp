@@ -56,6 +56,7 @@ struct RenderCommand : DrawJob {
 };
 
 struct ViewCommand {
+    std::optional<double> decimal_comma; ///< what two isovalues mean if their comma is a decimal sign
     CommonOptions common;
     GridOptions grid;
     FieldChoice field;

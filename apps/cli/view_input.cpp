@@ -1,7 +1,11 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "view_input.hpp"
 
+#include <fmt/format.h>
+
+#include <isotet/field_statistics.hpp>
 #include <isotet/jobs/first_choice.hpp>
+#include <isotet/jobs/number_text.hpp>
 
 namespace isotet::cli {
 
@@ -31,6 +35,28 @@ Result<void> add_shares(const ViewStart& start, const ReadResult& read, const Gr
     const auto found = isovalues_at(*grid, *field, start.shares, run);
     if (!found) return found.error();
     state.isovalues.insert(state.isovalues.end(), found->begin(), found->end());
+    return {};
+}
+
+/// Isovalues that no surface can have were not meant.
+Result<void> note_outside(const ViewStart& start, const Array& values, const std::string& name, bool has_steps,
+                          Console& console, const Run& run) {
+    const auto statistics = statistics_of(values, run);
+    if (!statistics) return statistics.error();
+    if (statistics->empty() || !(statistics->front().lower <= statistics->front().upper)) return {};
+    const double lower = statistics->front().lower, upper = statistics->front().upper;
+    const auto is_outside = [&](double value) { return value < lower || value > upper; };
+    std::string outside;
+    std::size_t count = 0;
+    for (const double value : start.isovalues)
+        if (is_outside(value)) outside += (count++ == 0 ? "" : ", ") + shortest(value);
+    if (count == 0) return {};
+    std::string sentence =
+        fmt::format("{} {} outside the range of '{}', {} to {}: no surface is there{}", outside,
+                    count == 1 ? "is" : "are", name, rounded(lower), rounded(upper), has_steps ? " at this step" : "");
+    if (start.decimal_comma && !is_outside(*start.decimal_comma))
+        sentence += fmt::format("; did you mean {}? Commas separate isovalues", shortest(*start.decimal_comma));
+    console.note(sentence);
     return {};
 }
 
@@ -76,6 +102,12 @@ Result<view::ViewerInput> read_view_input(const ViewStart& start, GridSource& so
     input.state.field = start.field.name;
     if (input.state.field.empty()) take_first_view(first_view(grid, fields), start, input.state, console);
     input.state.isovalues = start.isovalues;
+    if (!start.isovalues.empty())
+        if (const Result<PointField> field = find_field(grid, input.state.field, {}, run); field && !field->averaged)
+            if (Result<void> told = note_outside(start, field->values, input.state.field,
+                                                     source.info().times.size() > 1, console, run);
+                !told)
+                return told.error();
     if (Result<void> added = add_shares(start, *read, source, console, run, input.state); !added) return added.error();
     if (!start.color_by.empty()) input.state.color_by = start.color_by;
     input.regions = read->info.regions.empty() ? source.info().regions : read->info.regions;

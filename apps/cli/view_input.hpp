@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ struct ViewStart {
     const std::string& color_by;
     FirstCells cells = FirstCells::all;
     bool isosurfaces_always = true; ///< else the boundary may stand alone
+    std::optional<double> decimal_comma = {}; ///< what two isovalues mean if their comma is a decimal sign
 };
 
 /// Names that are no field's, before anything is read. Errors   as choose_field()

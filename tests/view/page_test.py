@@ -96,6 +96,15 @@ def test_first_surface(browser, viewer):
     check(0.1 < share_of_surface(browser) < 0.7, 'the surface is in the picture')
 
 
+def test_isovalues_outside(browser, viewer):
+    """A decimal comma gives two isovalues, one of them outside the range: it is said."""
+    with Viewer(GRID, '-i', '0,9') as other:
+        start(browser, other)
+        browser.wait('document.getElementById("notes-list").textContent.includes("did you mean 0.9?")')
+        check("9 is outside the range of 'sphere', 0 to 1.73" in browser.value('document.getElementById("notes-list").textContent'), 'the range is told')
+        browser.call('Page.navigate', url='about:blank')
+
+
 def test_boundary_alone(browser, viewer):
     """Where only regions are known, the boundary shows them, each with a colour; the slider brings isosurfaces."""
     with Viewer(os.path.join(os.path.dirname(__file__), '../../data/gocad/geomodel3d_tsolid.so')) as other:
