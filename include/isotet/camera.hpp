@@ -88,6 +88,10 @@ ISOTET_API Camera camera_of(View view, Projection projection = Projection::persp
 /// The same with another axis upwards; along that axis itself the view keeps its own.
 ISOTET_API Camera camera_of(View view, UpAxis up, Projection projection = Projection::perspective);
 
+/// The view that shows most of what lies in a box: along the axis that is under a twentieth of both others, iso where none
+/// is. `box` is not empty.
+ISOTET_API View best_view_of(const Box& box) noexcept;
+
 /// A camera that looks from the front (-y where z is up, +z where y is, -y where x is), `azimuth` degrees to the right
 /// of it and `elevation` degrees above, -90 to 90.
 ISOTET_API Camera camera_of(double azimuth, double elevation, UpAxis up = UpAxis::plus_z,

@@ -209,6 +209,9 @@ public:
     enum class Fit : std::uint8_t { once, orbit };
     void fit(Camera& camera, double aspect, Fit fit = Fit::once) const;
 
+    /// The box around the grid or surface.
+    const Box& bounds() const noexcept;
+
     /// Points a camera at the isosurfaces and slices that are shown now; at the grid where there are none in memory.
     void fit_surfaces(Camera& camera, double aspect) const;
 

@@ -9,13 +9,17 @@ namespace isotet::jobs {
 
 namespace {
 
-/// Where the options want the camera; fit() does the rest, unless it is all given.
-Camera camera_of_command(const DrawJob& job) {
+/// Where the options want the camera; fit() does the rest, unless it is all given. Isosurfaces of flat grids would be lines
+/// along their thin axis.
+Camera camera_of_command(const DrawJob& job, const DrawInput& input) {
     const Projection projection = job.parallel ? Projection::parallel : Projection::perspective;
     if (job.camera) return *job.camera;
     if (!job.angles.empty())
         return camera_of(job.angles[0], job.angles[1], job.up.value_or(UpAxis::plus_z), projection);
-    return job.up ? camera_of(job.view, *job.up, projection) : camera_of(job.view, projection);
+    const bool along_thin_axis = input.isovalues.empty() && !input.volume && job.sweep.empty() && job.orbit == 0;
+    const Box& box = input.scene->bounds();
+    const View view = job.view.value_or(along_thin_axis && !box.empty() ? best_view_of(box) : View::iso);
+    return job.up ? camera_of(view, *job.up, projection) : camera_of(view, projection);
 }
 
 } // namespace
@@ -41,7 +45,7 @@ Result<std::optional<PictureSize>> FrameDrawer::room_for(const Annotation& annot
 
 void FrameDrawer::point_camera(const DrawInput& input, double azimuth, double aspect) {
     if (camera_ && job_.all_steps) return;
-    camera_ = camera_of_command(job_);
+    camera_ = camera_of_command(job_, input);
     camera_->orbit(azimuth, 0);
     if (job_.camera) return;
     if (job_.fit_surface) input.scene->fit_surfaces(*camera_, aspect);

@@ -2,6 +2,7 @@
 #include <isotet/camera.hpp>
 
 #include <algorithm>
+#include <array>
 #include <numbers>
 
 #include "render/vector_math.hpp"
@@ -118,6 +119,17 @@ std::optional<View> parse_view(std::string_view name) noexcept {
     for (const NamedView& one : named_views)
         if (one.name == name) return one.view;
     return {};
+}
+
+View best_view_of(const Box& box) noexcept {
+    constexpr double flat = 1.0 / 20;
+    constexpr std::array<View, 3> along{View::plus_x, View::minus_y, View::plus_z};
+    std::array<double, 3> extents{};
+    for (std::size_t axis = 0; axis < 3; ++axis) extents[axis] = box.upper[axis] - box.lower[axis];
+    const std::size_t thin = static_cast<std::size_t>(std::ranges::min_element(extents) - extents.begin());
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (axis != thin && !(extents[thin] < flat * extents[axis])) return View::iso;
+    return along[thin];
 }
 
 Camera camera_of(View view, Projection projection) {

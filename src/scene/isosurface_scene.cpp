@@ -96,6 +96,8 @@ void IsosurfaceScene::fit_surfaces(Camera& camera, double aspect) const {
     camera.fit(box.empty() ? data.bounds : box, aspect);
 }
 
+const Box& IsosurfaceScene::bounds() const noexcept { return data_->bounds; }
+
 const Scene& IsosurfaceScene::scene() const noexcept { return data_->scene; }
 const std::vector<ShownSurface>& IsosurfaceScene::surfaces() const noexcept { return data_->shown; }
 const SceneReport& IsosurfaceScene::report() const noexcept { return data_->report; }

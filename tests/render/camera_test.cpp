@@ -68,6 +68,15 @@ TEST(Camera, SeesTheWholeBoxAsLargeAsItCan) {
     }
 }
 
+TEST(Camera, LooksAtFlatBoxesAlongTheirThinAxis) {
+    EXPECT_EQ(best_view_of({{0, 0, 0}, {1, 1, 0.01}}), View::plus_z);
+    EXPECT_EQ(best_view_of({{0, 5, 0}, {1, 5, 2}}), View::minus_y);
+    EXPECT_EQ(best_view_of({{0, 0, 0}, {1, 100, 60}}), View::plus_x);
+    EXPECT_EQ(best_view_of({{0, 0, 0}, {1, 1, 0.06}}), View::iso);
+    EXPECT_EQ(best_view_of({{0, 0, 0}, {100, 1, 1}}), View::iso) << "a rod has no thin axis";
+    EXPECT_EQ(best_view_of({{2, 2, 2}, {2, 2, 2}}), View::iso);
+}
+
 TEST(Camera, SeesBoxesWithoutSize) {
     for (const Box& box : {Box{{2, 2, 2}, {2, 2, 2}}, Box{}, Box{{0, 0, 0}, {0, 5, 0}}}) {
         for (const Projection projection : {Projection::perspective, Projection::parallel}) {

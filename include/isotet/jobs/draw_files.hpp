@@ -43,9 +43,11 @@ struct DrawJob {
     std::vector<double> isovalues;
     std::vector<IsovalueShare> shares; ///< more isovalues, after the others: of each time step its own
     std::uint64_t levels = 0;          ///< 0: `isovalues` and `shares` say it, or three
+    std::optional<double> decimal_comma; ///< as of ExtractJob
+    bool allow_empty = false; ///< also where all isovalues are outside the field's range, which else is an error
     PictureOptions picture;   ///< camera and occlusion aside
     std::optional<double> occlusion; ///< of the picture; nothing: default_occlusion where the CPU draws
-    View view = View::iso;
+    std::optional<View> view;   ///< nothing: best_view_of() the grid where no isosurface is drawn, else iso
     std::vector<double> angles; ///< azimuth and elevation, instead of `view`; or none
     std::optional<UpAxis> up;
     std::optional<Camera> camera; ///< all of it: neither view nor fit counts
