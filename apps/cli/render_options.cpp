@@ -34,6 +34,7 @@ Examples:
 )";
 
 void add_size(const Command& command, PictureOptions& picture) {
+    const OptionGroup group(command, "Picture and camera");
     command.add_value(
         "--size",
         [&picture](const std::string& text) {
@@ -62,6 +63,7 @@ void add_part(const Command& command, const std::string& name, std::optional<dou
 
 /// How dark folds become.
 void add_occlusion(const Command& command, RenderCommand& render) {
+    const OptionGroup group(command, "Opacity and light");
     command.add_number(
         "--occlusion",
         [&render](double number) {
@@ -91,6 +93,7 @@ std::optional<UpAxis> parse_up_axis(std::string_view text) {
 }
 
 void add_camera(const Command& command, RenderCommand& render) {
+    const OptionGroup group(command, "Picture and camera");
     command.add_value(
         "--view",
         [&render](const std::string& text) {
@@ -103,8 +106,9 @@ void add_camera(const Command& command, RenderCommand& render) {
             render.angles = named ? std::vector<double>() : angles;
         },
         "VIEW",
-        "From where one looks: iso (default), +x, -x, +y, -y, +z, -z, or AZIMUTH,ELEVATION, degrees to the right of "
-        "the front and upwards");
+        "From where one looks: iso, +x, -x, +y, -y, +z, -z, or AZIMUTH,ELEVATION, degrees to the right of the front "
+        "and "
+        "upwards; default: iso, and along the thin axis of flat grids without isosurfaces");
     command.add_value(
         "--up",
         [&render](const std::string& text) {
@@ -146,6 +150,7 @@ void add_camera(const Command& command, RenderCommand& render) {
 }
 
 void add_cuts(const Command& command, RenderCommand& render) {
+    const OptionGroup group(command, "Cuts, cells, shading");
     const auto add_planes = [&command](const std::string& name, std::vector<Plane>& planes, const std::string& text) {
         command.add_texts(
             name,
@@ -202,6 +207,7 @@ void set_opacity(RenderCommand& render, const std::string& text) {
 }
 
 void add_opacity(const Command& command, RenderCommand& render) {
+    const OptionGroup group(command, "Opacity and light");
     command.add_texts(
         "--opacity",
         [&render](const std::vector<std::string>& texts) {
@@ -251,9 +257,12 @@ Command add_render_command(const Command& program, RenderCommand& render) {
         .required();
     command.add_file("-o,--output", render.out, "OUT_FILE", "The picture, .png; many: {frame} in the name, or .webp");
     add_out_and_more_files(command, render.grid, render.out, "The picture, as -o");
-    add_field(command, render.field, "The field to contour, or an expression such as mag(U); default: the one that info says is shown first");
+    add_field(command, render.field,
+              "The field to contour, or an expression such as mag(U); default: the one that info says is shown first");
     add_centre(command, render.field);
-    const Option isovalues = add_isovalues(command, render.isovalues, render.shares);
+    const Option isovalues = add_isovalues(command, render.isovalues, render.shares, &render.decimal_comma);
+    command.add_flag("--allow-empty", render.allow_empty,
+                     "Draw also where all isovalues are outside the range of the field, which else is an error");
     command
         .add_count(
             "--levels", {1, 100}, [&](std::uint64_t n) { render.levels = n; }, "N",
@@ -321,6 +330,7 @@ Command add_render_command(const Command& program, RenderCommand& render) {
 }
 
 void add_color_scale(const Command& command, ColorScale& scale, std::vector<double>& range) {
+    const OptionGroup group(command, "Colours");
     command.add_choice<ColorMap>("--colormap", scale.map,
                                  {{"viridis", ColorMap::viridis},
                                   {"cividis", ColorMap::cividis},

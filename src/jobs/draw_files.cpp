@@ -14,6 +14,7 @@
 #include <isotet/process_memory.hpp>
 
 #include "base/stopwatch.hpp"
+#include "jobs/extract_notes.hpp"
 #include "jobs/frame_drawer.hpp"
 #include "jobs/picture_files.hpp"
 #include "jobs/picture_source.hpp"
@@ -44,6 +45,15 @@ Result<void> show_frame(const DrawJob& job, DrawInput& input, const std::vector<
     return input.scene->show({}, run);
 }
 
+/// Isovalues that are all outside the range of the field were not meant. Solids and volumes show something there, too.
+Result<void> check_that_some_meet(const DrawJob& job, const DrawInput& input, const std::vector<double>& isovalues) {
+    const bool is_asked = !job.isovalues.empty() && job.sweep.empty() && !job.solid && !job.volume && job.dirac.empty();
+    if (!is_asked || job.allow_empty || job.all_steps) return {};
+    const std::string why = why_all_are_empty(input.scene->report().field, isovalues, job.decimal_comma);
+    if (why.empty()) return {};
+    return Error{ErrorCode::invalid_data, why + "; `allow_empty` draws it nevertheless"};
+}
+
 /// Extracts, draws and writes one picture after another; returns the last one.
 Result<Picture> draw_frames(const std::vector<Frame>& frames, const DrawJob& job, Drawer& drawer, PictureSource& source,
                             DrawInput& input, PictureFiles& files, PictureNumbers& numbers, Caller& caller) {
@@ -62,6 +72,7 @@ Result<Picture> draw_frames(const std::vector<Frame>& frames, const DrawJob& job
         }
         if (i == 0 || next_step || frames[i].isovalues != frames[i - 1].isovalues) {
             if (auto shown = show_frame(job, input, frames[i].isovalues, caller.run()); !shown) return shown.error();
+            if (auto met = check_that_some_meet(job, input, frames[i].isovalues); !met) return met.error();
             caller.notes(input.scene->take_notes());
             note_what_is_empty(job, input, caller);
         }
@@ -143,9 +154,10 @@ Result<void> check_drawn_solid(const DrawJob& job) {
 Result<void> check_drawn_parts(const DrawJob& job) {
     if (!job.keep) return {};
     if (job.keep->kind == PartChoice::Kind::touching && job.keep->region != "boundary")
-        return refusal("`keep` touching got '{}', but a picture knows only 'boundary': isotet extract keeps what touches "
-                       "other regions, and isotet render draws its file",
-                       job.keep->region);
+        return refusal(
+            "`keep` touching got '{}', but a picture knows only 'boundary': isotet extract keeps what touches "
+            "other regions, and isotet render draws its file",
+            job.keep->region);
     if (job.method.draw)
         return refusal("`keep` is for parts of surfaces, but `method` {} makes none", name_of(*job.method.draw));
     if (job.engine == EngineChoice::vulkan)

@@ -76,13 +76,13 @@ private:
     ExtractJob job_; ///< with the field that was chosen where none is named
     Caller& caller_;
     std::optional<GridSource> source_;
-    std::optional<PackedFile> packed_;    ///< where chunks of it are read in place of a grid
-    std::vector<ComponentGroup> vectors_; ///< that surfaces of it carry, by component
+    std::optional<PackedFile> packed_;      ///< where chunks of it are read in place of a grid
+    std::vector<ComponentGroup> vectors_;   ///< that surfaces of it carry, by component
     std::vector<std::string> packed_names_; ///< of the fields that are read from it
     ExtractPlan plan_;
     std::shared_ptr<const Engine> device_; ///< null: the CPU extracts
     std::optional<Contour> contour_;
-    std::optional<Solids> solids_; ///< in its place where solids are made
+    std::optional<Solids> solids_;                 ///< in its place where solids are made
     Grid grid_;                                    ///< of the step at hand
     PointField field_;                             ///< that is contoured there
     std::vector<double> share_isovalues_;          ///< of ExtractJob::shares
@@ -168,7 +168,8 @@ Result<Contour> ExtractRun::start(ContourInput input) {
     numbers_.process_bytes = peak_resident_memory().value_or(0);
     if (reset_peak_memory()) resident_before_ = resident_memory();
     const bool has_cells = !input.packed;
-    const bool linear = has_cells && !has_cells_to_linearize(input.grid.cells); // else it is not known how many tets they become
+    const bool linear =
+        has_cells && !has_cells_to_linearize(input.grid.cells); // else it is not known how many tets they become
     const double kept =
         static_cast<double>(input.grid.cells.count()) / static_cast<double>(std::max<std::size_t>(numbers_.cells, 1));
     Result<Contour> contour = Contour::create(std::move(input), options, caller_.run());
@@ -513,20 +514,11 @@ OutputKey ExtractRun::key(double isovalue, std::size_t step) const {
 /// Isovalues that are all outside the range of the field were not meant.
 Result<void> ExtractRun::check_that_some_meet(const ContourResult& result) const {
     const bool is_asked = !job_.isovalues.empty() && !job_.allow_empty && !job_.fail_if_empty;
-    const bool has_range = result.field.lower <= result.field.upper;
-    if (!is_asked || !has_range || job_.piece || plan_.steps.size() > 1) return {};
-    const auto is_outside = [&](double value) { return !(value >= result.field.lower && value <= result.field.upper); };
-    const auto is_lowest = [&](double value) { return value == result.field.lower; };
     const auto is_empty = [](const auto& one) { return one.surface.triangle_count() == 0; };
-    if (!std::ranges::all_of(isovalues_, [&](double value) { return is_outside(value) || is_lowest(value); }) ||
-        std::ranges::none_of(isovalues_, is_outside) || !std::ranges::all_of(result.surfaces, is_empty))
-        return {};
-    std::string sentence = why_empty(result.field, isovalues_.front());
-    if (isovalues_.size() == 2) sentence += ", and so is the other one";
-    if (isovalues_.size() > 2) sentence += fmt::format(", and so are the other {}", isovalues_.size() - 1);
-    if (job_.decimal_comma && !is_outside(*job_.decimal_comma))
-        sentence += fmt::format("; did you mean {}? Commas separate isovalues", shortest(*job_.decimal_comma));
-    return Error{ErrorCode::invalid_data, sentence + "; `allow_empty` writes it nevertheless"};
+    if (!is_asked || job_.piece || plan_.steps.size() > 1 || !std::ranges::all_of(result.surfaces, is_empty)) return {};
+    const std::string why = why_all_are_empty(result.field, isovalues_, job_.decimal_comma);
+    if (why.empty()) return {};
+    return Error{ErrorCode::invalid_data, why + "; `allow_empty` writes it nevertheless"};
 }
 
 Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> isovalues, std::size_t step) {
@@ -625,13 +617,15 @@ Result<void> ExtractRun::find_parts_of(Surface& surface, SurfaceNumbers& numbers
     const std::vector<std::uint64_t>& kept = *which;
     if (job_.keep && !job_.keep->numbers.empty() && std::ranges::max(job_.keep->numbers) >= found->parts.size())
         caller_.note(fmt::format("`keep` names part {}, but isovalue {} has {}, counted from 0",
-                                 std::ranges::max(job_.keep->numbers), shortest(numbers.isovalue), found->parts.size()));
+                                 std::ranges::max(job_.keep->numbers), shortest(numbers.isovalue),
+                                 found->parts.size()));
     Result<Surface> some = keep_parts(surface, *found, kept, caller_.run());
     if (!some) return some.error();
     surface = *std::move(some);
     if (plan_.touched && plan_.touched->field != "boundary" && !is_carried(plan_, plan_.touched->field))
         std::erase_if(surface.cell_fields, [&](const Field& field) { return field.name == plan_.touched->field; });
-    if (!plan_.holds_fields) std::erase_if(surface.cell_fields, [](const Field& field) { return field.name == "part"; });
+    if (!plan_.holds_fields)
+        std::erase_if(surface.cell_fields, [](const Field& field) { return field.name == "part"; });
     numbers.vertices = surface.vertex_count();
     numbers.triangles = surface.triangle_count();
     numbers.parts_kept = kept.size();
@@ -685,9 +679,8 @@ Result<void> ExtractRun::write(Surface surface, SurfaceNumbers& numbers) {
     caller_.detail("writing " + numbers.file);
     std::error_code ignored;
     const bool replaces = surface.triangle_count() == 0 && std::filesystem::exists(numbers.file, ignored);
-    const Result<WriteReport> written =
-        write_surface(surface, numbers.file, {.compression = job_.compression, .field_data = field_data_of(surface)},
-                      caller_.run());
+    const Result<WriteReport> written = write_surface(
+        surface, numbers.file, {.compression = job_.compression, .field_data = field_data_of(surface)}, caller_.run());
     if (!written) return written.error();
     caller_.notes(written->notes);
     if (replaces) caller_.note(fmt::format("'{}' was replaced by an empty surface", numbers.file));
@@ -707,8 +700,7 @@ void ExtractRun::read_ahead(std::size_t step) const {
 Result<void> ExtractRun::extract_step(std::size_t step) {
     const bool one_file = goes_into_one_file();
     const std::size_t before = numbers_.surfaces.size();
-    std::size_t at_once =
-        solids_ || contour_->engine() == "vulkan" ? 1 : isovalues_together(isovalues_.size());
+    std::size_t at_once = solids_ || contour_->engine() == "vulkan" ? 1 : isovalues_together(isovalues_.size());
     std::vector<Surface> joined;
     for (std::span<const double> left = isovalues_; !left.empty();) {
         const std::span<const double> pass = left.first(std::min(at_once, left.size()));

@@ -46,6 +46,21 @@ std::string why_empty(const FieldReport& field, double isovalue) {
                        value, range);
 }
 
+std::string why_all_are_empty(const FieldReport& field, std::span<const double> isovalues,
+                              std::optional<double> decimal_comma) {
+    const auto is_outside = [&](double value) { return !(value >= field.lower && value <= field.upper); };
+    const auto gives_none = [&](double value) { return is_outside(value) || value == field.lower; };
+    if (!(field.lower <= field.upper) || !std::ranges::all_of(isovalues, gives_none) ||
+        std::ranges::none_of(isovalues, is_outside))
+        return {};
+    std::string sentence = why_empty(field, isovalues.front());
+    if (isovalues.size() == 2) sentence += ", and so is the other one";
+    if (isovalues.size() > 2) sentence += fmt::format(", and so are the other {}", isovalues.size() - 1);
+    if (decimal_comma && !is_outside(*decimal_comma))
+        sentence += fmt::format("; did you mean {}? Commas separate isovalues", shortest(*decimal_comma));
+    return sentence;
+}
+
 namespace {
 
 std::string why_solid_is_empty(const FieldReport& field, const SolidRange& range) {
@@ -65,18 +80,21 @@ void note_what_a_solid_is(const ExtractNumbers& numbers, const SurfaceNumbers& s
     const SolidRange& range = surface.solid->range;
     if (surface.triangles == 0) caller.note(why_solid_is_empty(numbers.field, range));
     if (surface.solid->seam_edges > 0)
-        caller.note(fmt::format("the grid's boundary is open to itself: points are doubled, so the isosurface has {} open edges "
-                                "inside the grid, and walls close the solid there; `merge_points` 0 makes it one body",
-                                grouped(surface.solid->seam_edges)));
+        caller.note(fmt::format(
+            "the grid's boundary is open to itself: points are doubled, so the isosurface has {} open edges "
+            "inside the grid, and walls close the solid there; `merge_points` 0 makes it one body",
+            grouped(surface.solid->seam_edges)));
     if (surface.solid->unfit_edges > 0)
-        caller.note(fmt::format("the grid's boundary is open to itself: cells of different sizes do not fit together, so the "
-                                "isosurface has {} open edges inside the grid, and walls close the solid there; hanging points "
-                                "that cover the larger face are joined by `hanging_points` close, others need another mesh",
-                                grouped(surface.solid->unfit_edges)));
+        caller.note(
+            fmt::format("the grid's boundary is open to itself: cells of different sizes do not fit together, so the "
+                        "isosurface has {} open edges inside the grid, and walls close the solid there; hanging points "
+                        "that cover the larger face are joined by `hanging_points` close, others need another mesh",
+                        grouped(surface.solid->unfit_edges)));
     if (surface.solid->open_edges > 0)
-        caller.note(fmt::format("the solid is open at {} edges, as where cells are repeated: isotet info `survey` counts "
-                                "these",
-                                grouped(surface.solid->open_edges)));
+        caller.note(
+            fmt::format("the solid is open at {} edges, as where cells are repeated: isotet info `survey` counts "
+                        "these",
+                        grouped(surface.solid->open_edges)));
 }
 
 void note_what_extracting_found(const ExtractNumbers& numbers, const SurfaceNumbers& surface, Caller& caller) {

@@ -2,12 +2,20 @@
 // What the user should know of extracted surfaces.
 #pragma once
 
+#include <span>
+#include <string>
+
 #include <isotet/jobs/extract_files.hpp>
 
 namespace isotet::jobs {
 
 /// Why an isovalue gives no surface: a sentence.
 std::string why_empty(const FieldReport& field, double isovalue);
+
+/// The same where all isovalues are outside the range of the field, at least one of them beyond it, so that they were not
+/// meant; empty where some are inside, or no value is finite. `decimal_comma` as of ExtractJob.
+std::string why_all_are_empty(const FieldReport& field, std::span<const double> isovalues,
+                              std::optional<double> decimal_comma);
 
 /// Notes of one surface: that it is empty, ties that only rounding made.
 void note_what_extracting_found(const ExtractNumbers& numbers, const SurfaceNumbers& surface, Caller& caller);

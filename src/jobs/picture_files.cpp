@@ -54,7 +54,9 @@ Result<PictureFiles> PictureFiles::open(const std::string& out, std::size_t pict
     PictureFiles files(out, pictures);
     const bool numbered = out.find(number_mark) != std::string::npos;
     if (pictures == 1) {
-        if (!out.ends_with(".png")) return refusal("the name of the output is '{}', but it must end in .png", out);
+        if (!out.ends_with(".png"))
+            return refusal("the name of the output is '{}', but it must end in .png, or in .webp for several pictures",
+                           out);
         if (numbered)
             return refusal(
                 "the name of the output is '{}', but only pictures of `sweep`, `orbit` and `all_steps` have numbers",
@@ -69,7 +71,7 @@ Result<PictureFiles> PictureFiles::open(const std::string& out, std::size_t pict
     }
     if (out.ends_with(".png") && numbered) return files;
     return refusal("the name of the output is '{}', but {} pictures need one that ends in .webp, or that holds {} "
-                   "and ends in .png",
+                   "and ends in .png (of these, ffmpeg makes films)",
                    out, pictures, number_mark);
 }
 

@@ -255,6 +255,18 @@ TEST_F(Render, IsNothingThatBenchCouldMeasureWithoutMemory) {
     EXPECT_NE(run.out.find("not measured: direct on make:kuhn:4:sphere: "), std::string::npos) << run.out;
 }
 
+TEST_F(Render, RefusesIsovaluesThatAreAllOutsideTheRange) {
+    const std::vector<std::string> words{"render", "make:kuhn:4:sphere", path("a.png"), "-i", "0,7", "--size", "80x60"};
+    const RunResult run = isotet(words);
+    EXPECT_EQ(run.status, 0) << "0.7 is not meant: 0 and 7 are not both outside";
+    RunResult outside = isotet({"render", "make:kuhn:4:sphere", path("b.png"), "-i", "-1,7", "--size", "80x60"});
+    EXPECT_EQ(outside.status, 3);
+    EXPECT_TRUE(is_one_error(outside, "isovalue -1 is outside the range of 'sphere'"));
+    EXPECT_FALSE(std::filesystem::exists(path("b.png")));
+    outside = isotet({"render", "make:kuhn:4:sphere", path("b.png"), "-i", "-1,7", "--size", "80x60", "--allow-empty"});
+    EXPECT_EQ(outside.status, 0) << outside.err;
+}
+
 TEST_F(Render, RefusesWhatCannotBe) {
     RunResult run = isotet({"render", "make:kuhn:4:sphere", "--device", "none", "--engine", "vulkan"});
     EXPECT_EQ(run.status, 2);
