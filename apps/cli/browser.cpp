@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdlib>
 #include <filesystem>
+#include <sstream>
+#include <string>
 #include <string_view>
 #include <system_error>
 #include <vector>
@@ -85,15 +87,15 @@ bool is_left_by_ssh() {
 
 std::string ssh_line(std::uint16_t port) {
     // SSH_CONNECTION: address and port of the client, address and port of this machine.
-    std::string_view host = environment("SSH_CONNECTION");
-    for (int part = 0; part < 2 && !host.empty(); ++part) {
-        const std::size_t blank = host.find(' ');
-        host = blank == std::string_view::npos ? std::string_view() : host.substr(blank + 1);
-    }
-    host = host.substr(0, host.find(' '));
+    std::array<std::string, 4> words;
+    std::istringstream connection{std::string(environment("SSH_CONNECTION"))};
+    for (std::string& word : words) connection >> word;
+    const std::string& host = words[2];
+    const std::string& ssh_port = words[3];
     const std::string_view user = environment("USER");
-    return fmt::format("ssh -N -L {0}:127.0.0.1:{0} {1}{2}{3}", port, user, user.empty() ? "" : "@",
-                       host.empty() ? "HOST" : host);
+    return fmt::format("ssh {0}-N -L {1}:127.0.0.1:{1} {2}{3}{4}",
+                       ssh_port.empty() || ssh_port == "22" ? "" : "-p " + ssh_port + " ", port, user,
+                       user.empty() ? "" : "@", host.empty() ? "HOST" : host);
 }
 
 Browser::~Browser() {
