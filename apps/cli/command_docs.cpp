@@ -1,5 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // `isotet docs`: man page, completions, docs/command-line.md and the page of Python's html(), for builds and for a test.
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "command_text.hpp"
@@ -11,7 +13,11 @@ namespace isotet::cli {
 
 Result<ExitCode> run_docs(const DocsCommand& command, const std::vector<CommandText>& commands) {
     std::string text;
-    if (command.kind == "man") text = man_page(commands);
+    if (command.kind == "man" && !command.topic.empty()) {
+        const auto topic = std::ranges::find(commands, command.topic, &CommandText::word);
+        if (topic == commands.end()) return usage_error("docs man got '{}', which is no command", command.topic);
+        text = man_page_of(*topic);
+    } else if (command.kind == "man") text = man_page(commands);
     else if (command.kind == "bash") text = bash_completion(commands);
     else if (command.kind == "fish") text = fish_completion(commands);
     else if (command.kind == "zsh") text = zsh_completion(commands);

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <isotet/jobs/number_text.hpp>
+#include <isotet/text.hpp>
 
 namespace isotet::cli {
 
@@ -27,6 +28,7 @@ void add_bytes(const Command& command, const char* name, std::optional<std::uint
 }
 
 void add_memory(const Command& command, std::optional<std::uint64_t>& memory) {
+    const OptionGroup group(command, "Method and machine");
     add_bytes(command, "--memory", memory,
               "Of a packed file, keep at most so much in memory, such as 2GB; default: half of what is free");
 }
@@ -52,6 +54,8 @@ constexpr const char* info_details = R"(
 A field's range is that of its finite values; no data is the number of NaN. Inverted tets are those whose sign is not
 that of most. --survey counts repeated tets (with the corners of an earlier one), duplicate points (at the place of
 another) and boundary faces (which the tets do not use equally often in both directions).
+
+Several files are time steps where their names differ in numbers alone; others are told one by one.
 
 Shown first is what isotet render, view and extract take where no field is named: the array that the file marks as its
 scalars; else one with a name that people contour, such as temperature, velocity or pressure; else the one that varies
@@ -79,6 +83,9 @@ files of several time steps a collection is written, front.pvd for front-{step}.
 series (one that isotet has not written is kept); beside .usda files front.usda. A .glb without {step} has all time
 steps. Ctrl-C leaves the files that were complete.
 
+{name} in OUT makes several files grids of their own in place of time steps: it is the name of each without folder and
+ending. What fails is said, the others go on, and the exit status is the worst.
+
 A point whose value equals the isovalue counts as above it. Triangles face the side of higher values. The methods give
 the same vertices and triangles in a different order, but direct repeats the triangles of repeated cells, which clusters
 drops. auto takes clusters from 32 surfaces on (isovalues times time steps), from 4 with gradient normals, or with a
@@ -94,6 +101,7 @@ Examples:
   isotet extract grid.vtu surface.vtp -f pressure -i 0.5
   isotet extract grid.e 'shell-{value}.stl' -f temp -i 300,350,400
   isotet extract run.pvd 'front-{step}.vtp' -f c -i 0.5 --all-steps
+  isotet extract *.vtu -f c -i 0.5 -o 'surfaces/{name}.vtp'
   isotet extract grid.vtu surface.vtp -f pressure -i @isovalues.txt --with pressure,velocity
   isotet extract make:kuhn:64:gyroid -i 0
   isotet extract grid.vtu part.stl -f density -i 0.5 --solid above
@@ -216,14 +224,18 @@ void add_info(const Command& program, InfoCommand& info) {
     const Option chart = command.add_count(
         "--chart", {1, 65'535}, [&](std::uint64_t n) { info.chart = n; }, "N",
         "Area of the isosurface and volume below it at N + 1 isovalues, from end to end of the field's range");
+    const Option all_steps =
+        command.add_flag("--all-steps", info.all_steps, "Ranges of fields over all time steps, each of which is read");
+    for (const char* name : {"--time", "--step"}) all_steps.excludes(command.option(name));
     command
         .add_flag("--heads", info.heads,
                   "Only what the file announces, without reading values: fields, cells, time steps, blocks")
         .excludes(survey)
-        .excludes(chart);
+        .excludes(chart)
+        .excludes(all_steps);
     add_field(command, info.field, "The field of the chart; default: the one that is shown first").needs(chart);
     add_common(command, info.common);
-    command.set_common({"--heads", "--survey", "--chart", "--field", "--time", "--json"});
+    command.set_common({"--heads", "--survey", "--chart", "--all-steps", "--time", "--json"});
     command.set_details(info_details);
 }
 
@@ -239,6 +251,7 @@ void add_levels(const Command& command, ExtractCommand& extract) {
 }
 
 void add_surface_arrays(const Command& command, ExtractJob& extract) {
+    const OptionGroup group(command, "Arrays of the surface");
     command.add_choice<Normals>("--normals", extract.normals,
                                 {{"none", Normals::none},
                                  {"gradient", Normals::gradient},
@@ -544,6 +557,7 @@ void add_docs(const Command& program, DocsCommand& docs) {
     const Command command = program.add_command(
         "docs", "Print the man page, the completion of a shell, docs/command-line.md or the page of Python's html()");
     command.add_text("KIND", docs.kind, "man|bash|fish|zsh|markdown|page", "").required();
+    command.add_text("COMMAND", docs.topic, "COMMAND", "Of man: the page of this command");
     command.hide(); // for the build, not for users
 }
 
@@ -558,6 +572,7 @@ PartChoice parse_parts(const std::string& text) {
 }
 
 void add_time(const Command& command, GridOptions& grid) {
+    const OptionGroup group(command, "Time steps");
     const Option time =
         command.add_number("--time", [&](double t) { grid.time = t; }, "T", "The time step with this time");
     command
@@ -567,6 +582,7 @@ void add_time(const Command& command, GridOptions& grid) {
 }
 
 void add_reading(const Command& command, GridOptions& grid, const std::string& format_option) {
+    const OptionGroup group(command, "Reading");
     command.add_text(format_option, grid.format, "FORMAT",
                      "Format of the grid; default: content decides, then the name");
     command.add_texts(
@@ -621,27 +637,6 @@ void add_centre(const Command& command, FieldChoice& field) {
 namespace {
 
 constexpr const char* more_files_text = "Files of further time steps, taken in the order of the numbers in their names";
-
-/// "run2" before "run10".
-bool comes_before(std::string_view a, std::string_view b) {
-    const auto number_at = [](std::string_view text) {
-        return text.substr(0, std::min(text.find_first_not_of("0123456789"), text.size()));
-    };
-    while (!a.empty() && !b.empty()) {
-        std::string_view x = number_at(a), y = number_at(b);
-        if (x.empty() || y.empty()) {
-            if (a[0] != b[0]) return a[0] < b[0];
-            x = a.substr(0, 1);
-            y = b.substr(0, 1);
-        }
-        a.remove_prefix(x.size());
-        b.remove_prefix(y.size());
-        x.remove_prefix(std::min(x.find_first_not_of('0'), x.size() - 1));
-        y.remove_prefix(std::min(y.find_first_not_of('0'), y.size() - 1));
-        if (x != y) return x.size() != y.size() ? x.size() < y.size() : x < y;
-    }
-    return a.size() < b.size();
-}
 
 void add_step(const std::string& option, const std::string& name, GridOptions& grid) {
     if (name.empty()) refuse_value(option, name, "the name of a file");
@@ -740,6 +735,7 @@ Option add_isovalues(const Command& command, std::vector<double>& isovalues, std
 }
 
 void add_device(const Command& command, DeviceChoice& choice) {
+    const OptionGroup group(command, "Method and machine");
     command.add_value(
         "--device",
         [&choice](const std::string& name) {
@@ -752,6 +748,7 @@ void add_device(const Command& command, DeviceChoice& choice) {
 }
 
 void add_refinement(const Command& command, RefineChoice& refine, bool* asked) {
+    const OptionGroup group(command, "Curved cells");
     const auto number = [](const std::string& name, const std::string& text, std::size_t size, const char* rule) {
         double value = 0;
         const char* const end = text.data() + size;
@@ -806,6 +803,7 @@ void add_refinement(const Command& command, RefineChoice& refine, bool* asked) {
 }
 
 void add_common(const Command& command, CommonOptions& common) {
+    const OptionGroup group(command, "Threads and messages");
     command.add_file("--json", common.json, "FILE",
                      "Write the numbers as JSON too; - is standard output, which then has no table");
     command.add_count(
@@ -821,13 +819,10 @@ void add_grid_and_surface(const Command& command, ExtractJob& job) {
     add_out_and_more_files(command, job.grid, job.out, "The surface, as -o");
 }
 
-void add_surface_options(const Command& command, ExtractJob& job, const std::string& solids) {
-    add_time(command, job.grid);
-    command.add_flag("--all-steps", job.all_steps, "Every time step; OUT then needs {step} or {time}")
-        .excludes(command.option("--time"))
-        .excludes(command.option("--step"));
-    add_surface_arrays(command, job);
-    add_refinement(command, job.refine, &job.refine_averaged);
+namespace {
+
+void add_parts_and_solids(const Command& command, ExtractJob& job, const std::string& solids) {
+    const OptionGroup group(command, "Solids, parts, pieces");
     command.add_value(
         "--piece", [&job](const std::string& text) { job.piece = parse_piece(text); }, "K/N",
         "Only piece K, from 1, of N: the surfaces of all N together are that of the whole grid, bit for bit");
@@ -858,11 +853,10 @@ void add_surface_options(const Command& command, ExtractJob& job, const std::str
             "--allow-empty", job.allow_empty,
             "Write empty surfaces also where all isovalues are outside the range of the field, which else is an error")
         .excludes(command.option("--fail-if-empty"));
-    command.add_text("--color-by", job.colors.by, "FIELD",
-                     "Colour vertices by this point field: vertex colours in .glb, .ply and .usda, a field rgb in .vtp "
-                     "and .vtk");
-    add_color_scale(command, job.colors.scale, job.colors.range);
-    add_compression(command, job.compression, ".vtp");
+}
+
+void add_method(const Command& command, ExtractJob& job) {
+    const OptionGroup group(command, "Method and machine");
     command.add_choice<Precision>("--precision", job.precision,
                                   {{"float", Precision::float32}, {"double", Precision::float64}},
                                   "Precision of the packed grid");
@@ -877,12 +871,38 @@ void add_surface_options(const Command& command, ExtractJob& job, const std::str
                                       {"reference", EngineChoice::reference}},
                                      "What extracts: auto is the CPU, or the device that --device names, with the CPU "
                                      "where that fails; vulkan is a device or an error; reference is slow and obvious");
+}
+
+} // namespace
+
+void add_surface_options(const Command& command, ExtractJob& job, const std::string& solids) {
+    add_time(command, job.grid);
+    {
+        const OptionGroup group(command, "Time steps");
+        command.add_flag("--all-steps", job.all_steps, "Every time step; OUT then needs {step} or {time}")
+            .excludes(command.option("--time"))
+            .excludes(command.option("--step"));
+    }
+    add_surface_arrays(command, job);
+    add_refinement(command, job.refine, &job.refine_averaged);
+    add_parts_and_solids(command, job, solids);
+    {
+        const OptionGroup group(command, "Colours and files");
+        command.add_text(
+            "--color-by", job.colors.by, "FIELD",
+            "Colour vertices by this point field: vertex colours in .glb, .ply and .usda, a field rgb in .vtp "
+            "and .vtk");
+        add_color_scale(command, job.colors.scale, job.colors.range);
+        add_compression(command, job.compression, ".vtp");
+    }
+    add_method(command, job);
     add_device(command, job.device);
     add_device_memory(command, job.device);
     add_reading(command, job.grid, "--format");
 }
 
 void add_device_memory(const Command& command, DeviceChoice& choice) {
+    const OptionGroup group(command, "Method and machine");
     add_bytes(command, "--device-memory", choice.memory,
               "Memory of the device to take at most, such as 2GB; default: what is free");
 }

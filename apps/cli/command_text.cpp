@@ -26,4 +26,14 @@ std::vector<Paragraph> paragraphs(const std::string& details) {
     return result;
 }
 
+std::vector<OptionText> by_groups(const std::vector<OptionText>& options) {
+    std::vector<OptionText> sorted = options;
+    const auto place = [&](const OptionText& option) {
+        if (option.positional) return options.begin();
+        return std::ranges::find(options, option.group, &OptionText::group);
+    };
+    std::ranges::stable_sort(sorted, {}, place);
+    return sorted;
+}
+
 } // namespace isotet::cli

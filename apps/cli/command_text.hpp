@@ -14,6 +14,7 @@ struct OptionText {
     std::string value;                ///< "FIELD"; empty for a flag
     std::vector<std::string> choices; ///< "none", "gradient", "face"; those that are words as they stand
     std::string description;
+    std::string group; ///< its heading in --help-all and man pages; positionals have the first
     bool positional = false, required = false, repeatable = false;
     bool is_file = false; ///< the value is a file's name
     bool rare = false;    ///< shown by --help-all alone
@@ -35,10 +36,14 @@ struct Paragraph {
 };
 std::vector<Paragraph> paragraphs(const std::string& details);
 
+/// Positionals first, then each group together, in the order of the first of each.
+std::vector<OptionText> by_groups(const std::vector<OptionText>& options);
+
 enum class Help { common, all };
 
 std::string help_text(const CommandText& command, const std::vector<CommandText>& commands, Help help);
 std::string man_page(const std::vector<CommandText>& commands);
+std::string man_page_of(const CommandText& command);
 std::string bash_completion(const std::vector<CommandText>& commands);
 std::string fish_completion(const std::vector<CommandText>& commands);
 std::string zsh_completion(const std::vector<CommandText>& commands);

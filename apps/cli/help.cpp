@@ -59,9 +59,15 @@ std::string help_text(const CommandText& command, const std::vector<CommandText>
     }
     text += "\nOptions:\n";
     std::size_t left_out = 0;
-    for (const OptionText& option : command.options)
-        if (option.rare && help == Help::common) ++left_out;
-        else text += entry(option);
+    std::string heading = "Options";
+    for (const OptionText& option : help == Help::all ? by_groups(command.options) : command.options) {
+        if (option.rare && help == Help::common) {
+            ++left_out;
+            continue;
+        }
+        if (help == Help::all && option.group != heading) text += fmt::format("\n{}:\n", heading = option.group);
+        text += entry(option);
+    }
     const std::vector<Paragraph> details = paragraphs(command.details);
     if (left_out == 0) return text + details_text(details);
     text += fmt::format("\n{} more options, and details: {} --help-all\n", left_out, command.name);

@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // The man page, from the walk over the option tree.
+#include <algorithm>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -33,9 +34,15 @@ std::string man_details(const std::string& text) {
     return result;
 }
 
+std::string upper(std::string text) {
+    std::ranges::transform(text, text.begin(), [](char c) { return c >= 'a' && c <= 'z' ? char(c - 'a' + 'A') : c; });
+    return text;
+}
+
 std::string man_options(const CommandText& command) {
-    std::string result;
-    for (const OptionText& option : command.options) {
+    std::string result, heading = "Options";
+    for (const OptionText& option : by_groups(command.options)) {
+        if (option.group != heading) result += ".SS " + roff(heading = option.group) + "\n";
         const bool with_value = !option.positional && !option.value.empty();
         result += fmt::format(".TP\n\\fB{}\\fR{}\n{}\n", roff(option.names),
                               with_value ? " \\fI" + roff(option.value) + "\\fR" : "", roff(option.description));
@@ -54,10 +61,16 @@ std::string man_page(const std::vector<CommandText>& commands) {
         ".SH DESCRIPTION\n" + man_details(program.details) + ".SH OPTIONS\n" + man_options(program) + ".SH COMMANDS\n";
     for (const CommandText& command : commands) {
         if (command.word.empty()) continue;
-        text += ".SS " + roff(command.usage) + "\n" + roff(command.summary) + ".\n" + man_options(command) +
-                man_details(command.details);
+        text += fmt::format(".TP\n.BR isotet\\-{} (1)\n{}\n", roff(command.word), roff(command.summary));
     }
     return text;
+}
+
+std::string man_page_of(const CommandText& command) {
+    return fmt::format(".TH ISOTET-{} 1 \"\" \"isotet " ISOTET_VERSION "\" \"User Commands\"\n", upper(command.word)) +
+           fmt::format(".SH NAME\nisotet\\-{} \\- {}\n.SH SYNOPSIS\n.B {}\n.SH OPTIONS\n", roff(command.word),
+                       roff(command.summary), roff(command.usage)) +
+           man_options(command) + ".SH DESCRIPTION\n" + man_details(command.details) + ".SH SEE ALSO\n.BR isotet (1)\n";
 }
 
 } // namespace isotet::cli

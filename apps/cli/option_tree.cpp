@@ -21,7 +21,7 @@ namespace isotet::cli {
 namespace {
 
 constexpr int first_error_code = 1000;       ///< above CLI11's own exit codes
-constexpr const char* rare_options = "rare"; ///< their group
+constexpr std::string_view rare_mark = "\n"; ///< behind the group of an option that --help-all alone shows
 
 double finite_number(const std::string& names, std::string_view text, std::string_view rule = "a finite number") {
     const std::optional<double> value = parse_number(text);
@@ -94,7 +94,9 @@ OptionText text_of(const CLI::Option& option) {
     OptionText text;
     text.positional = option.get_positional();
     text.required = option.get_required();
-    text.rare = option.get_group() == rare_options;
+    text.group = option.get_group();
+    text.rare = text.group.ends_with(rare_mark);
+    if (text.rare) text.group.resize(text.group.size() - rare_mark.size());
     text.description = option.get_description();
     if (option.get_items_expected_max() > 0) {
         text.choices = split_at_bars(option.get_type_name());
@@ -217,8 +219,15 @@ void Command::set_common(const std::vector<std::string>& names) const {
     for (const std::string& name : names) common.push_back(app_->get_option(name));
     for (CLI::Option* option : app_->get_options())
         if (!option->get_positional() && std::ranges::find(common, option) == common.end())
-            option->group(rare_options);
+            option->group(option->get_group() + std::string(rare_mark));
 }
+
+OptionGroup::OptionGroup(const Command& command, const std::string& heading)
+    : app_(command.app_), outer_(app_->option_defaults()->get_group()) {
+    app_->option_defaults()->group(heading);
+}
+
+OptionGroup::~OptionGroup() { app_->option_defaults()->group(outer_); }
 
 void Command::hide() const { app_->group(""); }
 

@@ -136,12 +136,27 @@ public:
     }
 
 private:
+    friend class OptionGroup;
+
     /// `set` is called with the number of the chosen word.
     Option add_one_of(const std::string& names, std::vector<std::string> words, std::function<void(std::size_t)> set,
                       const std::string& description) const;
 
     CLI::App* app_;
     std::vector<std::string>* number_files_;
+};
+
+/// Options that are added while it lives stand under this heading in --help-all.
+class OptionGroup {
+public:
+    OptionGroup(const Command& command, const std::string& heading);
+    ~OptionGroup();
+    OptionGroup(const OptionGroup&) = delete;
+    OptionGroup& operator=(const OptionGroup&) = delete;
+
+private:
+    CLI::App* app_;
+    std::string outer_;
 };
 
 class OptionTree {

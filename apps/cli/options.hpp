@@ -128,7 +128,7 @@ struct HelpCommand {
 
 /// The hidden command `docs`.
 struct DocsCommand {
-    std::string kind;
+    std::string kind, topic; ///< of man: the command, or empty
 };
 
 /// A whole command line. `command` says which of the structs counts.

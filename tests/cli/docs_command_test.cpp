@@ -13,8 +13,10 @@ TEST_F(Program, MarkdownIsWhatDocsCommandLineHolds) {
 }
 
 TEST_F(Program, ManPageNamesEveryOptionOfTheHelp) {
-    const std::string man = isotet({"docs", "man"}).out;
+    const std::string overview = isotet({"docs", "man"}).out;
     for (const char* command : {"info", "extract", "check"}) {
+        EXPECT_NE(overview.find(std::string("isotet\\-") + command + " (1)"), std::string::npos);
+        const std::string man = isotet({"docs", "man", command}).out;
         const std::string help = isotet({command, "--help-all"}).out;
         for (std::size_t at = 0; (at = help.find(" --", at)) != std::string::npos; ++at) {
             const std::string option = help.substr(at + 3, help.find_first_of(" \n.,;:)", at + 3) - at - 3);
@@ -42,7 +44,8 @@ TEST_F(Program, FishCompletesCommandsOptionsAndChoices) {
     const std::string script = "source '" + path("isotet.fish") +
                                "'; complete -C 'isotet ext'; complete -C 'isotet check --str';"
                                "complete -C 'isotet extract --normals g'";
-    const RunResult run = run_program({"/usr/bin/fish", "--no-config", "-c", script}, {.folder = folder.path().string()});
+    const RunResult run =
+        run_program({"/usr/bin/fish", "--no-config", "-c", script}, {.folder = folder.path().string()});
     EXPECT_NE(run.out.find("extract\tExtract isosurfaces"), std::string::npos) << run.out << run.err;
     EXPECT_NE(run.out.find("--strict\t"), std::string::npos) << run.out;
     EXPECT_NE(run.out.find("gradient"), std::string::npos) << run.out;
@@ -51,8 +54,8 @@ TEST_F(Program, FishCompletesCommandsOptionsAndChoices) {
 
 TEST_F(Program, ZshIsToldOfOptionsAndChoices) {
     put_content(path("_isotet"), isotet({"docs", "zsh"}).out);
-    const std::string script = "_arguments() { print -rl -- \"$@\" }; words=(isotet extract x); CURRENT=3; source '" +
-                               path("_isotet") + "'";
+    const std::string script =
+        "_arguments() { print -rl -- \"$@\" }; words=(isotet extract x); CURRENT=3; source '" + path("_isotet") + "'";
     const RunResult run = run_program({"/usr/bin/zsh", "-f", "-c", script}, {.folder = folder.path().string()});
     EXPECT_NE(run.out.find("\n(-f --field)--field[The field to contour"), std::string::npos) << run.out << run.err;
     EXPECT_NE(run.out.find("]:none|gradient|face|vertex:(none gradient face vertex)\n"), std::string::npos) << run.out;
