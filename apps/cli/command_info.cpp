@@ -9,10 +9,12 @@
 
 #include <isotet/contour.hpp>
 #include <isotet/jobs/look_into.hpp>
+#include <isotet/jobs/many_files.hpp>
 #include <isotet/jobs/number_text.hpp>
 
 #include "commands.hpp"
 #include "console.hpp"
+#include "each_file.hpp"
 #include "info_chart.hpp"
 #include "json_output.hpp"
 #include "packed_report.hpp"
@@ -25,21 +27,20 @@ namespace {
 /// "75, 0 to 7.4", or each of a few.
 std::string times_text(const std::vector<double>& times) {
     constexpr std::size_t max_shown = 10;
-    if (times.size() > max_shown)
-        return fmt::format("{}, times {} to {}", times.size(), shortest(times.front()), shortest(times.back()));
-    std::string list;
-    for (const double time : times) list += (list.empty() ? "" : ", ") + shortest(time);
-    return fmt::format("{}, time{} {}", times.size(), times.size() == 1 ? "" : "s", list);
+    const std::vector<std::string> texts = told_apart(times);
+    if (times.size() > max_shown) return fmt::format("{}, times {} to {}", times.size(), texts.front(), texts.back());
+    return fmt::format("{}, time{} {}", times.size(), times.size() == 1 ? "" : "s", fmt::join(texts, ", "));
 }
 
-/// The shortest decimal that reads back in the field's own type.
-std::string value_text(double value, ScalarType type) {
-    return type == ScalarType::float32 ? fmt::format("{}", static_cast<float>(value)) : shortest(value);
+/// As many digits as tell values apart that lie a thousandth of the range from each other.
+std::string range_text(double lower, double upper) {
+    const double apart = (upper - lower) / 1000;
+    return fmt::format("{} to {}", rounded(lower, apart), rounded(upper, apart));
 }
 
-std::string range_text(const ComponentStatistics& component, ScalarType type) {
+std::string range_text(const ComponentStatistics& component) {
     if (component.lower > component.upper) return "no finite value";
-    return fmt::format("{} to {}", value_text(component.lower, type), value_text(component.upper, type));
+    return range_text(component.lower, component.upper);
 }
 
 std::string holes_text(const ComponentStatistics& component) {
@@ -85,7 +86,7 @@ std::size_t open_polyhedra(const GridReport& report) {
 std::string nearly_matched(const HangingReport& report) {
     if (report.near_faces == 0) return "";
     return fmt::format(", {} nearly, points up to {} beside them", grouped(report.near_faces),
-                       shortest(report.largest_distance));
+                       rounded(report.largest_distance));
 }
 
 std::string grid_table(const GridSummary& found, const std::string& path) {
@@ -119,17 +120,16 @@ std::string grid_table(const GridSummary& found, const std::string& path) {
         table.row({"levels", fmt::format("{} apart; {} faces matched{}", found.hanging.levels,
                                          grouped(found.hanging.faces), nearly_matched(found.hanging))});
     if (found.surveyed) table.row({"boundary faces", grouped(report.boundary_faces)});
-    const ScalarType type = found.point_type;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        table.row(
-            {axis == 0 ? "bounds" : "", fmt::format("{} {} to {}", "xyz"[axis], value_text(report.lower[axis], type),
-                                                    value_text(report.upper[axis], type))});
-    }
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        table.row({axis == 0 ? "bounds" : "",
+                   fmt::format("{} {}", "xyz"[axis], range_text(report.lower[axis], report.upper[axis]))});
     const std::vector<double>& times = found.file.times;
     if (!times.empty()) {
         table.row({"time steps", fmt::format("{}; this is step {}, time {}", times_text(times), found.step,
-                                             shortest(times[found.step]))});
+                                             told_apart(times)[found.step])});
     }
+    if (found.steps > 1)
+        table.row({"", fmt::format("ranges of fields are those of all {} time steps", grouped(found.steps))});
     return table.text();
 }
 
@@ -236,11 +236,11 @@ std::string field_table(const std::vector<FieldSummary>& fields) {
     for (const FieldSummary& described : fields) {
         const std::size_t count = described.components.size();
         table.row({"field", described.name, name_of(described.association), type_text(described.type, count),
-                   count == 1 ? range_text(described.components[0], described.type) : "",
+                   count == 1 ? range_text(described.components[0]) : "",
                    count == 1 ? holes_text(described.components[0]) : ""});
         for (std::size_t c = 0; count > 1 && c < count; ++c) {
             const std::string component = count <= 3 ? std::string(1, "xyz"[c]) : std::to_string(c);
-            table.row({"", "  :" + component, "", "", range_text(described.components[c], described.type),
+            table.row({"", "  :" + component, "", "", range_text(described.components[c]),
                        holes_text(described.components[c])});
         }
     }
@@ -251,8 +251,7 @@ std::string vector_table(const std::vector<VectorSummary>& vectors) {
     using enum Table::Align;
     Table table({left, left, left, left});
     for (const auto& [group, association] : vectors)
-        table.row({"vector", group.name, name_of(association),
-                   fmt::format("{}", fmt::join(group.parts, ", "))});
+        table.row({"vector", group.name, name_of(association), fmt::format("{}", fmt::join(group.parts, ", "))});
     return table.text();
 }
 
@@ -261,9 +260,8 @@ Json json_of(const std::vector<VectorSummary>& vectors) {
     for (const auto& [group, association] : vectors) {
         Json parts = Json::array();
         for (const std::string& part : group.parts) parts.push_back(json_text(part));
-        list.push_back({{"name", json_text(group.name)},
-                        {"association", name_of(association)},
-                        {"fields", std::move(parts)}});
+        list.push_back(
+            {{"name", json_text(group.name)}, {"association", name_of(association)}, {"fields", std::move(parts)}});
     }
     return list;
 }
@@ -314,24 +312,21 @@ Json json_of(const GridSummary& found, const std::string& path) {
         report["boundary_faces"] = grid.boundary_faces;
         report["quads_on_triangles"] = grid.quads_on_triangles;
         report["hanging_points"] = found.hanging_points;
-        report["hanging"] = {{"points", found.hanging.points},
-                             {"levels", found.hanging.levels},
-                             {"cells", found.hanging.cells},
-                             {"faces", found.hanging.faces},
-                             {"near_faces", found.hanging.near_faces},
-                             {"largest_distance", found.hanging.largest_distance},
-                             {"open_faces", found.hanging.open_faces},
-                             {"curved_points", found.hanging.curved_points}};
+        report["hanging"] = {
+            {"points", found.hanging.points},         {"levels", found.hanging.levels},
+            {"cells", found.hanging.cells},           {"faces", found.hanging.faces},
+            {"near_faces", found.hanging.near_faces}, {"largest_distance", found.hanging.largest_distance},
+            {"open_faces", found.hanging.open_faces}, {"curved_points", found.hanging.curved_points}};
     }
     report["bounds"] = {{"lower", grid.lower}, {"upper", grid.upper}};
     report["times"] = found.file.times;
     report["step"] = found.step;
+    report["steps_of_ranges"] = found.steps;
     return report;
 }
 
 /// With --heads: what the file announces.
-Result<ExitCode> finish_heads(Console& console, const InfoCommand& command, const GridSummary& found) {
-    const std::string& path = command.grid.file;
+TableAndJson report_heads(const std::string& path, const GridSummary& found) {
     Json report = json_report("info");
     report["file"] = json_text(path);
     report["format"] = found.file.format;
@@ -341,29 +336,22 @@ Result<ExitCode> finish_heads(Console& console, const InfoCommand& command, cons
     report["regions"] = json_of(found.file.regions);
     report["fields"] = json_of(found.file.fields);
     report["vectors"] = json_of(found.vectors);
-    return finish(console, command.common,
-                  heads_table(found, path) + block_table(found.file) + region_table(found.file) +
-                      field_table(found.file.fields) + vector_table(found.vectors),
-                  std::move(report));
+    return {heads_table(found, path) + block_table(found.file) + region_table(found.file) +
+                field_table(found.file.fields) + vector_table(found.vectors),
+            std::move(report)};
 }
 
-} // namespace
-
-Result<ExitCode> run_info(const InfoCommand& command) {
-    Console console(command.common);
-    const bool needs_cells = command.survey || command.chart;
-    if (!needs_cells && PackedFile::is_one(command.grid.file)) {
-        const auto file = PackedFile::open(command.grid.file, {}, console.run());
+Result<TableAndJson> report_on(const InfoJob& job, Console& console) {
+    const std::string& path = job.grid.file;
+    const bool needs_cells = job.survey || job.chart;
+    if (!needs_cells && PackedFile::is_one(path)) {
+        const auto file = PackedFile::open(path, {}, console.run());
         if (!file) return file.error();
-        return finish(console, command.common, packed_table(file->info(), command.grid.file),
-                      packed_json(file->info(), command.grid.file, "info"));
+        return TableAndJson{packed_table(file->info(), path), packed_json(file->info(), path, "info")};
     }
-    InfoJob job = command;
-    job.other_outputs = {command.common.json};
     const Result<GridSummary> found = look_into(job, console);
     if (!found) return found.error();
-    if (job.heads) return finish_heads(console, command, *found);
-    const std::string& path = job.grid.file;
+    if (job.heads) return report_heads(path, *found);
     Json report = json_of(*found, path);
     report["curved"] = json_of(found->curved);
     report["blocks"] = json_of(found->file.blocks);
@@ -371,12 +359,28 @@ Result<ExitCode> run_info(const InfoCommand& command) {
     report["fields"] = json_of(found->fields);
     report["vectors"] = json_of(found->vectors);
     report["first_view"] = json_of(found->first);
-    if (found->chart) report["chart"] = json_of(*found->chart);
-    return finish(console, command.common,
-                  grid_table(*found, path) + curved_table(found->curved) + block_table(found->file) +
-                      region_table(found->file) + field_table(found->fields) + vector_table(found->vectors) +
-                      first_table(found->first) + (found->chart ? chart_table(*found->chart) : ""),
-                  std::move(report));
+    if (found->chart) report["chart"] = cli::json_of(*found->chart);
+    return TableAndJson{grid_table(*found, path) + curved_table(found->curved) + block_table(found->file) +
+                            region_table(found->file) + field_table(found->fields) + vector_table(found->vectors) +
+                            first_table(found->first) + (found->chart ? chart_table(*found->chart) : ""),
+                        std::move(report)};
+}
+
+} // namespace
+
+Result<ExitCode> run_info(const InfoCommand& command) {
+    Console console(command.common);
+    InfoJob job = command;
+    job.other_outputs = {command.common.json};
+    if (!are_time_steps(job.grid)) {
+        std::vector<InfoJob> jobs;
+        for (const GridOptions& grid : each_file(job.grid)) jobs.emplace_back(job).grid = grid;
+        return do_each(jobs, "info", console, command.common,
+                       [&](const InfoJob& one) { return report_on(one, console); });
+    }
+    Result<TableAndJson> found = report_on(job, console);
+    if (!found) return found.error();
+    return finish(console, command.common, found->table, std::move(found->json));
 }
 
 } // namespace isotet::cli

@@ -14,6 +14,9 @@ namespace isotet {
 /// "512 B", "1.2 MB", "2500.0 TB": a MB is 10^6 bytes.
 ISOTET_API std::string format_bytes(std::uint64_t bytes);
 
+/// The order of names by the numbers in them: "run2" comes before "run10".
+ISOTET_API bool comes_before(std::string_view a, std::string_view b) noexcept;
+
 /// A character of UTF-8 text.
 struct Utf8Character {
     char32_t code = 0xFFFD; ///< U+FFFD where the text is not UTF-8

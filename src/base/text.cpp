@@ -1,6 +1,8 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <isotet/text.hpp>
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 namespace isotet {
@@ -31,6 +33,26 @@ Utf8Character first_utf8_character(std::string_view text) noexcept {
     constexpr char32_t smallest[] = {0, 0, 0x80, 0x800, 0x10000};
     if (code < smallest[bytes] || code > 0x10FFFF || (code >= 0xD800 && code <= 0xDFFF)) return {};
     return {code, bytes, true};
+}
+
+bool comes_before(std::string_view a, std::string_view b) noexcept {
+    const auto number_at = [](std::string_view text) {
+        return text.substr(0, std::min(text.find_first_not_of("0123456789"), text.size()));
+    };
+    while (!a.empty() && !b.empty()) {
+        std::string_view x = number_at(a), y = number_at(b);
+        if (x.empty() || y.empty()) {
+            if (a[0] != b[0]) return a[0] < b[0];
+            x = a.substr(0, 1);
+            y = b.substr(0, 1);
+        }
+        a.remove_prefix(x.size());
+        b.remove_prefix(y.size());
+        x.remove_prefix(std::min(x.find_first_not_of('0'), x.size() - 1));
+        y.remove_prefix(std::min(y.find_first_not_of('0'), y.size() - 1));
+        if (x != y) return x.size() != y.size() ? x.size() < y.size() : x < y;
+    }
+    return a.size() < b.size();
 }
 
 } // namespace isotet

@@ -16,6 +16,7 @@
 #include <fmt/ranges.h>
 
 #include <isotet/grid.hpp>
+#include <isotet/text.hpp>
 
 #include "io/files/file_kind.hpp"
 #include "io/files/text_scanner.hpp"
@@ -35,10 +36,9 @@ std::vector<Format> written_formats() {
         format.reads_surface = format.writes_surface = true;
         return format;
     };
-    std::vector<Format> formats{
-        surface("vtp", "VTK XML surface"), surface("ply", "PLY"),        surface("stl", "STL"),
-        surface("obj", "Wavefront OBJ"),   surface("ts", "Gocad TSurf"), surface("3mf", "3MF"),
-        surface("vtk", "legacy VTK")};
+    std::vector<Format> formats{surface("vtp", "VTK XML surface"), surface("ply", "PLY"),        surface("stl", "STL"),
+                                surface("obj", "Wavefront OBJ"),   surface("ts", "Gocad TSurf"), surface("3mf", "3MF"),
+                                surface("vtk", "legacy VTK")};
     formats.back().writes_grid = true;
     for (const auto& [name, title] : {std::pair{"glb", "glTF, binary"}, {"usda", "USD, text"}}) {
         Format scene{name, title, {std::string(".") + name}};
@@ -115,6 +115,8 @@ Result<Head> read_head(const std::string& path) {
     };
     // Without O_NONBLOCK opening a pipe would wait for a writer.
     const Descriptor descriptor(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+    if (!descriptor && path == "-")
+        return Error{ErrorCode::file, "'-' would be standard input, but only files can be read"};
     if (!descriptor) return failed("cannot be opened", errno);
     struct stat status{};
     if (::fstat(descriptor.number(), &status) != 0) return failed("cannot be looked at", errno);
@@ -144,7 +146,7 @@ std::string_view utf_16_order(std::string_view bytes) {
 std::vector<std::string> grids_in(const std::string& folder) {
     constexpr std::size_t most_looked_at = 10'000;
     const auto is_index = [](const std::string& name) {
-        constexpr std::array<std::string_view, 8> endings{".pvd",  ".series", ".case", ".xdmf",
+        constexpr std::array<std::string_view, 8> endings{".pvd", ".series", ".case", ".xdmf",
                                                           ".xmf", ".foam",   ".pvtu", ".vtm"};
         return std::ranges::find(endings, extension_of(name)) != endings.end();
     };
@@ -160,7 +162,9 @@ std::vector<std::string> grids_in(const std::string& folder) {
         };
         if (!extension.empty() && std::ranges::any_of(grid_readers(), reads)) names.push_back(name);
     }
-    std::ranges::sort(names, {}, [&](const std::string& name) { return std::pair(!is_index(name), name); });
+    std::ranges::sort(names, [&](const std::string& a, const std::string& b) {
+        return is_index(a) != is_index(b) ? is_index(a) : comes_before(a, b);
+    });
     return names;
 }
 
@@ -172,9 +176,9 @@ Error not_a_case(const std::string& folder) {
     const std::size_t more = names.size() - std::min(names.size(), most_named);
     names.resize(names.size() - more);
     for (std::string& name : names) name = in_quotes(name);
-    return {ErrorCode::file, fmt::format("{}; in it {} {}{}", what, names.size() + more == 1 ? "is" : "are",
-                                         fmt::join(names, ", "),
-                                         more > 0 ? fmt::format(" and {} more", more) : std::string())};
+    return {ErrorCode::file,
+            fmt::format("{}; in it {} {}{}", what, names.size() + more == 1 ? "is" : "are", fmt::join(names, ", "),
+                        more > 0 ? fmt::format(" and {} more", more) : std::string())};
 }
 
 /// What a file is that holds no grid itself: a packed one, or a pointer to one. Empty if none.
@@ -216,9 +220,10 @@ Error nobody_knows(const std::string& path, const Head& head, const std::string&
         head.folder ? "it is a folder" : "it begins with " + in_quotes(std::string_view(head.bytes).substr(0, 20));
 #if !ISOTET_IO
     if (const auto title = title_left_out(head.bytes, extension); !title.empty()) {
-        return {ErrorCode::file,
-                fmt::format("{} is {}, but this isotet was built without isotet-reader (ISOTET_IO=OFF) and reads {} only", path,
-                            title, fmt::join(names_of_readers(), ", "))};
+        return {
+            ErrorCode::file,
+            fmt::format("{} is {}, but this isotet was built without isotet-reader (ISOTET_IO=OFF) and reads {} only",
+                        path, title, fmt::join(names_of_readers(), ", "))};
     }
 #endif
     if (const auto is = foreign_file(head.bytes, extension); !is.empty())

@@ -2,6 +2,7 @@
 #include <isotet/jobs/look_into.hpp>
 
 #include <algorithm>
+#include <numeric>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -61,6 +62,40 @@ Result<std::vector<FieldSummary>> summarize(const Grid& grid, const Run& run) {
         }
     }
     return summaries;
+}
+
+void widen(ComponentStatistics& all, const ComponentStatistics& one) {
+    all.lower = std::min(all.lower, one.lower);
+    all.upper = std::max(all.upper, one.upper);
+    all.not_a_number += one.not_a_number;
+    all.infinite += one.infinite;
+}
+
+/// Ranges and counts become those of all time steps; fields that only others have come behind.
+Result<void> add_other_steps(GridSource& source, GridSummary& summary, Caller& caller) {
+    const std::size_t steps = std::max<std::size_t>(summary.file.times.size(), 1);
+    std::vector<std::size_t> all(steps);
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    if (auto looked = source.look_at_steps(all, caller); !looked) return looked;
+    for (const std::size_t step : all) {
+        if (step == summary.step) continue;
+        const Result<Grid> grid = source.read({}, step, caller);
+        if (!grid) return grid.error();
+        Result<std::vector<FieldSummary>> fields = summarize(*grid, caller.run());
+        if (!fields) return fields.error();
+        for (FieldSummary& field : *fields) {
+            const auto same = std::ranges::find_if(summary.fields, [&](const FieldSummary& other) {
+                return other.name == field.name && other.association == field.association &&
+                       other.components.size() == field.components.size();
+            });
+            if (same == summary.fields.end()) summary.fields.push_back(std::move(field));
+            else
+                for (std::size_t c = 0; c < field.components.size(); ++c)
+                    widen(same->components[c], field.components[c]);
+        }
+    }
+    summary.steps = steps;
+    return {};
 }
 
 /// Vectors that are stored as three scalars.
@@ -171,6 +206,8 @@ Result<GridSummary> look_into(const InfoJob& job, Caller& caller) {
     Result<std::optional<FieldChart>> chart = make_chart(job, *grid, summary.first, caller);
     if (!chart) return chart.error();
     summary.chart = *std::move(chart);
+    if (job.all_steps)
+        if (auto added = add_other_steps(*source, summary, caller); !added) return added.error();
     return summary;
 }
 

@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // `isotet extract`: files, names, numbers.
+#include <filesystem>
 #include <limits>
 
 #include <fmt/format.h>
@@ -61,6 +62,28 @@ TEST_F(Program, ExtractHasEveryPromisedKey) {
     EXPECT_EQ(surface["file"], path("s.vtp"));
 }
 
+TEST_F(Program, ExtractTakesEachFileByItselfWhereItsNameIsInTheOutput) {
+    put_content(path("pump.msh"), small_grid({{"p", {0, 1, 1, 1, 2}}}));
+    put_content(path("valve.msh"), small_grid({{"p", {0, 3, 3, 3, 6}}}));
+    put_content(path("other.msh"), small_grid({{"q", {0, 3, 3, 3, 6}}}));
+    const std::vector<std::string> words{
+        "extract", path("pump.msh"),  path("other.msh"), path("valve.msh"), "-f", "p", "-i", "0.5",
+        "-o",      path("{name}.vtp")};
+    const json report = json_of(words, 2);
+    ASSERT_EQ(report["files"].size(), 3u);
+    EXPECT_NE(report["files"][0]["error"].get<std::string>().find("there is no field 'p'"), std::string::npos);
+    for (const char* name : {"pump", "valve"}) {
+        const std::string alone = path(std::string(name) + "_alone.vtp");
+        ASSERT_EQ(isotet({"extract", path(std::string(name) + ".msh"), alone, "-f", "p", "-i", "0.5"}).status, 0);
+        EXPECT_EQ(content_of(path(std::string(name) + ".vtp")), content_of(alone)) << name;
+    }
+    std::filesystem::create_directory(path("old"));
+    put_content(path("old/pump.msh"), content_of(path("pump.msh")));
+    const RunResult twice = isotet({"extract", path("pump.msh"), path("old/pump.msh"), "-o", path("{name}.stl")});
+    EXPECT_EQ(twice.status, 2);
+    EXPECT_TRUE(is_one_error(twice, "have the same name, 'pump'"));
+}
+
 TEST_F(Program, ExtractGivesTheSameSurfaceByEveryMethod) {
     const auto extracted = [&](const std::string& method, const std::string& out) {
         return json_of({"extract", "make:mixed:6:integer", path(out), "-i", "2", "-i", "2.5", "--method", method,
@@ -117,8 +140,7 @@ TEST_F(Program, ExtractTakesIsovaluesByTheirShare) {
     EXPECT_NEAR(report["surfaces"][2]["volume_above"].get<double>(), 4, 1e-6);
     put_content(path("shares.txt"), "p95 # the highest\n0.1 50%v\n");
     const json listed = json_of({"extract", "make:kuhn:8:gyroid", "-i", "@" + path("shares.txt")});
-    for (std::size_t i = 0; i < 3; ++i)
-        EXPECT_EQ(listed["surfaces"][i]["isovalue"], report["surfaces"][i]["isovalue"]);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(listed["surfaces"][i]["isovalue"], report["surfaces"][i]["isovalue"]);
     EXPECT_FALSE(listed["surfaces"][0].contains("volume_below"));
     const RunResult table = isotet({"extract", "make:kuhn:8:gyroid", "-i", "50%v", "--volumes"});
     EXPECT_NE(table.out.find("volume below  volume above"), std::string::npos) << table.out;
@@ -407,8 +429,8 @@ TEST_F(Program, SeveralFilesAreStepsInTheOrderOfTheirNumbers) {
         const std::string side = name[1] == '2' ? "3" : "2";
         ASSERT_EQ(isotet({"make", "kuhn", "--side", side, "--fields", "sphere", "-o", path(name)}).status, 0);
     }
-    const json report = json_of({"extract", path("g1.vtk"), path("g10.vtk"), path("g2.vtk"), path("s-{step}.vtp"),
-                                 "-i", "0.5", "--all-steps"});
+    const json report = json_of(
+        {"extract", path("g1.vtk"), path("g10.vtk"), path("g2.vtk"), path("s-{step}.vtp"), "-i", "0.5", "--all-steps"});
     ASSERT_EQ(report["surfaces"].size(), 3u);
     const auto triangles_of = [&](int step) { return report["surfaces"][step]["triangles"]; };
     EXPECT_EQ(triangles_of(0), triangles_of(2));

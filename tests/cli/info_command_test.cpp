@@ -27,9 +27,33 @@ TEST_F(Program, InfoTellsCellsFieldsAndRanges) {
     EXPECT_EQ(fields["c"]["range"], json::array({json::array({-5, 7})}));
 }
 
+TEST_F(Program, InfoShowsFewDigitsAndAsManyAsTellTheRangeApart) {
+    put_content(path("g.msh"), small_grid({{"p", {0.1 + 0.2, 1, 2, 3, 4.000000000000001}},
+                                           {"q", {101325.125, 101325.25, 101325.5, 101325.75, 101326}}}));
+    const std::string out = isotet({"info", path("g.msh")}).out;
+    EXPECT_NE(out.find("0.3 to 4\n"), std::string::npos) << out;
+    EXPECT_NE(out.find("101325.125 to 101326\n"), std::string::npos) << out;
+}
+
+TEST_F(Program, InfoTellsFilesWhoseNamesDifferInMoreThanNumbersOneByOne) {
+    put_content(path("pump.msh"), small_grid({{"p", {1, 2, 3, 4, 9}}}));
+    put_content(path("valve.msh"), small_grid({{"q", {-1, 2, 3, 4, 5}}}));
+    const std::vector<std::string> files{path("pump.msh"), path("none.msh"), path("valve.msh")};
+    const RunResult run = isotet({"info", files[0], files[1], files[2]});
+    EXPECT_EQ(run.status, 3);
+    EXPECT_TRUE(is_one_error(run, "none.msh")) << run.err;
+    EXPECT_NE(run.out.find("1 to 9"), std::string::npos) << run.out;
+    EXPECT_NE(run.out.find("-1 to 5"), std::string::npos) << run.out;
+    EXPECT_EQ(run.out.find("time steps"), std::string::npos) << run.out;
+    const json report = json_of({"info", files[0], files[1], files[2], "--quiet"}, 3);
+    ASSERT_EQ(report["files"].size(), 3u);
+    EXPECT_TRUE(report["files"][1].contains("error"));
+    EXPECT_EQ(report["files"][2]["fields"][0]["name"], "q");
+}
+
 TEST_F(Program, InfoCountsFacesAndPlacesOnlyInASurvey) {
-    const std::vector<std::string> of_survey{"repeated_tets", "duplicate_points", "boundary_faces",
-                                             "quads_on_triangles", "hanging_points", "hanging"};
+    const std::vector<std::string> of_survey{"repeated_tets",      "duplicate_points", "boundary_faces",
+                                             "quads_on_triangles", "hanging_points",   "hanging"};
     const json quick = json_of({"info", "make:kuhn:3"});
     const json survey = json_of({"info", "make:kuhn:3", "--survey"});
     for (const std::string& key : of_survey) {

@@ -26,6 +26,15 @@ TEST_F(ProgramWithTimes, InfoShowsEachOfAFewTimes) {
     EXPECT_NE(run.out.find("3, times 0, 0.1, 2.5; this is step 1, time 0.1\n"), std::string::npos) << run.out;
 }
 
+TEST_F(ProgramWithTimes, InfoTellsRangesOverAllSteps) {
+    const json one = json_of({"info", grid}), all = json_of({"info", grid, "--all-steps"});
+    EXPECT_EQ(one["fields"][0]["range"][0], json::array({0, 2}));
+    EXPECT_EQ(all["fields"][0]["range"][0], json::array({0, 8}));
+    EXPECT_EQ(all["steps_of_ranges"], 3);
+    EXPECT_NE(isotet({"info", grid, "--all-steps"}).out.find("those of all 3 time steps"), std::string::npos);
+    EXPECT_EQ(isotet({"info", grid, "--all-steps", "--step", "1"}).status, 2);
+}
+
 TEST_F(Program, InfoShowsTheFirstAndTheLastOfManyTimes) {
     std::vector<SmallField> steps;
     for (int step = 0; step < 11; ++step) steps.push_back({"p", {0, 1, 1, 1, 2}, 0.5 * step});
@@ -38,8 +47,8 @@ TEST_F(Program, InfoShowsTheFirstAndTheLastOfManyTimes) {
 TEST_F(ProgramWithTimes, OneGlbHasAllStepsAndUsdFilesAStage) {
     ASSERT_EQ(isotet({"extract", grid, path("all.glb"), "-f", "p", "-i", "0.5", "--all-steps"}).status, 0);
     const std::string glb = content_of(path("all.glb"));
-    const json head = json::parse(glb.substr(20, static_cast<unsigned char>(glb[12]) +
-                                                     256U * static_cast<unsigned char>(glb[13])));
+    const json head =
+        json::parse(glb.substr(20, static_cast<unsigned char>(glb[12]) + 256U * static_cast<unsigned char>(glb[13])));
     EXPECT_EQ(head["meshes"].size(), 3u);
     EXPECT_EQ(head["animations"][0]["channels"].size(), 3u);
     EXPECT_EQ(isotet({"extract", grid, path("all.stl"), "-f", "p", "-i", "0.5", "--all-steps"}).status, 2);
@@ -143,10 +152,10 @@ TEST_F(ProgramWithTimes, SurfacesOfOneTimeArePartsOfTheCollection) {
 }
 
 TEST_F(ProgramWithTimes, ACollectionIsWrittenForASeriesOfVtpOnlyAndNeverOverTheInput) {
-    EXPECT_TRUE(json_of({"extract", grid, path("s-{step}.ply"), "-f", "p", "-i", "1", "--all-steps"})["collection"]
-                    .is_null());
-    EXPECT_TRUE(json_of({"extract", grid, path("s-{step}.vtp"), "-f", "p", "-i", "1", "--step", "1"})["collection"]
-                    .is_null());
+    EXPECT_TRUE(
+        json_of({"extract", grid, path("s-{step}.ply"), "-f", "p", "-i", "1", "--all-steps"})["collection"].is_null());
+    EXPECT_TRUE(
+        json_of({"extract", grid, path("s-{step}.vtp"), "-f", "p", "-i", "1", "--step", "1"})["collection"].is_null());
     EXPECT_TRUE(std::filesystem::exists(path("s-1.vtp")));
     std::filesystem::create_symlink(grid, path("g.pvd"));
     const RunResult run = isotet({"extract", grid, path("g-{step}.vtp"), "-f", "p", "-i", "1", "--all-steps"});
@@ -156,13 +165,16 @@ TEST_F(ProgramWithTimes, ACollectionIsWrittenForASeriesOfVtpOnlyAndNeverOverTheI
 }
 
 TEST_F(ProgramWithTimes, ACollectionReplacesOneOfIsotetAndNoOther) {
-    const auto extract = [&] { return isotet({"extract", grid, path("s-{step}.vtp"), "-f", "p", "-i", "1", "--all-steps"}); };
+    const auto extract = [&] {
+        return isotet({"extract", grid, path("s-{step}.vtp"), "-f", "p", "-i", "1", "--all-steps"});
+    };
     ASSERT_EQ(extract().status, 0);
     const std::string own = content_of(path("s.pvd"));
     const RunResult again = extract();
     EXPECT_EQ(again.err.find("no collection"), std::string::npos) << again.err;
-    const std::string other = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
-                              "  <Collection>\n  </Collection>\n</VTKFile>\n";
+    const std::string other =
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
+        "  <Collection>\n  </Collection>\n</VTKFile>\n";
     for (const std::string& content : {other, std::string("mine"), std::string()}) {
         std::ofstream(path("s.pvd")) << content;
         const RunResult run = extract();

@@ -22,6 +22,7 @@ struct InfoJob {
     GridOptions grid;
     std::vector<std::string> other_outputs; ///< of the caller: no file of the grid may be one
     bool survey = false;                    ///< also what takes longer than reading
+    bool all_steps = false;                 ///< ranges of fields over all time steps: each is read
     bool heads = false;                     ///< only what the file announces: no values are read, nothing is counted
     FieldChoice field;                      ///< of the chart; empty: that of first_view()
     std::optional<std::uint64_t> chart;     ///< steps; nothing: no chart
@@ -67,6 +68,7 @@ struct GridSummary {
     bool surveyed = false; ///< whether faces and places were counted, too
     std::uint64_t hanging_points = 0; ///< if so: places in a face or edge of a larger cell
     HangingReport hanging;            ///< if so: which of them extraction closes
+    std::size_t steps = 1;            ///< of `fields`: one, or all of the file
     std::vector<FieldSummary> fields;
     std::vector<VectorSummary> vectors;
     FirstView first; ///< what render and view show, and extract contours, where no field is named
@@ -74,7 +76,7 @@ struct GridSummary {
     std::optional<FieldChart> chart;
 };
 
-/// Reads a step whole, and counts; with InfoJob::heads in time by the number of fields, blocks and files, for formats
+/// Reads a step whole, with InfoJob::all_steps the others one by one, and counts; with InfoJob::heads in time by the number of fields, blocks and files, for formats
 /// that have such heads (docs/formats.md).
 /// Errors   as of reading; invalid_argument: a step or field that there is not; invalid_data: nothing to chart
 Result<GridSummary> look_into(const InfoJob& job, Caller& caller);
