@@ -72,7 +72,7 @@ struct FileInfo {
         files;                     ///< those that were opened to find this out, or to read: the file and its companions
     std::vector<BlockInfo> blocks; ///< empty where the format has none that can be chosen; regions are listed when
                                    ///< some were chosen and read
-    std::vector<RegionName> regions; ///< names of physical groups of volumes (Gmsh); not always all numbers have one
+    std::vector<RegionName> regions; ///< names of volumes that Gmsh and Gocad have; not always all numbers have one
     std::vector<LeftOut> left_out;   ///< ReadResult::notes tell it, too
 };
 

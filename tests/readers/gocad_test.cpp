@@ -62,11 +62,10 @@ TEST(ReadGocad, NumbersVolumesInTheOrderOfTheFile) {
 
 TEST(ReadGocad, NotesWhatItChanged) {
     const ReadResult result = read_text(gocad_sample);
-    ASSERT_EQ(result.notes.size(), 4U);
+    ASSERT_EQ(result.notes.size(), 3U);
     EXPECT_NE(result.notes[0].find("depth"), std::string::npos);
     EXPECT_EQ(result.notes[1], "4 atoms are the points that they refer to");
     EXPECT_EQ(result.notes[2], "properties of atoms that differ from those of their points are dropped: 1");
-    EXPECT_EQ(result.notes[3], "tvolume: 0 'lower', 1 'upper'");
 }
 
 TEST(ReadGocad, NotesLinesThatItDoesNotRead) {
@@ -92,6 +91,11 @@ TEST(ReadGocad, AnnouncesWhatItReads) {
     EXPECT_EQ(info.fields[1].components, 3U);
     EXPECT_EQ(info.fields[2].name, "porosity");
     EXPECT_EQ(info.fields[3].name, "tvolume");
+    ASSERT_EQ(info.regions.size(), 2U);
+    EXPECT_EQ(info.regions[0].name, "lower");
+    EXPECT_EQ(info.regions[1].field, "tvolume");
+    EXPECT_EQ(info.regions[1].number, 1);
+    EXPECT_EQ(info.regions[1].name, "upper");
 }
 
 TEST(ReadGocad, ReadsOnlyTheFieldsThatAreWanted) {

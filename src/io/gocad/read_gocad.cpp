@@ -81,6 +81,9 @@ public:
             info.fields.push_back({property.name, Association::cell, ScalarType::float64, property.components});
         }
         info.fields.push_back({std::string(volume_name), Association::cell, ScalarType::int32, 1});
+        const std::vector<std::string> volumes = names_of_volumes();
+        for (std::size_t i = 0; i < volumes.size() && volumes.size() > 1; ++i)
+            info.regions.push_back({std::string(volume_name), static_cast<int>(i), volumes[i]});
         return info;
     }
 
@@ -129,6 +132,27 @@ public:
     }
 
 private:
+    /// What follows TVOLUME at the beginning of lines, until END. No other line is looked at.
+    std::vector<std::string> names_of_volumes() const {
+        constexpr std::string_view blanks = " \t", keyword = "TVOLUME";
+        const auto is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; };
+        std::size_t end = text_.find("\nEND");
+        while (end != std::string_view::npos && end + 4 < text_.size() && !is_blank(text_[end + 4]))
+            end = text_.find("\nEND", end + 4);
+        const std::string_view object = text_.substr(0, end);
+        std::vector<std::string> names;
+        for (std::size_t at = 0; (at = object.find(keyword, at)) != std::string_view::npos;) {
+            const std::string_view before =
+                object.substr(0, object.find_last_not_of(blanks, at - (at > 0 ? 1 : 0)) + 1);
+            at += keyword.size();
+            if (!before.ends_with('\n') || at >= object.size() || !is_blank(object[at])) continue;
+            const std::string_view line = object.substr(at, object.find('\n', at) - at);
+            const std::string_view name = line.substr(std::min(line.find_first_not_of(blanks), line.size()));
+            names.emplace_back(name.substr(0, name.find_first_of(" \t\r")));
+        }
+        return names;
+    }
+
     static bool is_content(std::string_view keyword) {
         constexpr std::string_view keywords[] = {"TVOLUME", "VRTX", "PVRTX", "ATOM", "PATOM", "TETRA", "END"};
         return std::find(std::begin(keywords), std::end(keywords), keyword) != std::end(keywords);
@@ -351,14 +375,6 @@ private:
         if (dropped_ > 0) {
             notes.push_back(
                 fmt::format("properties of atoms that differ from those of their points are dropped: {}", dropped_));
-        }
-        if (volumes_.size() > 1) {
-            constexpr std::size_t most = 16;
-            std::vector<std::string> names;
-            for (std::size_t i = 0; i < std::min(volumes_.size(), most); ++i)
-                names.push_back(fmt::format("{} {}", i, in_quotes(volumes_[i])));
-            notes.push_back(fmt::format("{}: {}{}", volume_name, fmt::join(names, ", "),
-                                        volumes_.size() > most ? " and so on" : ""));
         }
         if (another_) notes.emplace_back("the file holds more than one Gocad object: the first is read");
     }
