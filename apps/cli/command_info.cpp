@@ -32,15 +32,9 @@ std::string times_text(const std::vector<double>& times) {
     return fmt::format("{}, time{} {}", times.size(), times.size() == 1 ? "" : "s", fmt::join(texts, ", "));
 }
 
-/// As many digits as tell values apart that lie a thousandth of the range from each other.
-std::string range_text(double lower, double upper) {
-    const double apart = (upper - lower) / 1000;
-    return fmt::format("{} to {}", rounded(lower, apart), rounded(upper, apart));
-}
-
-std::string range_text(const ComponentStatistics& component) {
+std::string range_of(const ComponentStatistics& component) {
     if (component.lower > component.upper) return "no finite value";
-    return range_text(component.lower, component.upper);
+    return rounded_range(component.lower, component.upper);
 }
 
 std::string holes_text(const ComponentStatistics& component) {
@@ -122,7 +116,7 @@ std::string grid_table(const GridSummary& found, const std::string& path) {
     if (found.surveyed) table.row({"boundary faces", grouped(report.boundary_faces)});
     for (std::size_t axis = 0; axis < 3; ++axis)
         table.row({axis == 0 ? "bounds" : "",
-                   fmt::format("{} {}", "xyz"[axis], range_text(report.lower[axis], report.upper[axis]))});
+                   fmt::format("{} {}", "xyz"[axis], rounded_range(report.lower[axis], report.upper[axis]))});
     const std::vector<double>& times = found.file.times;
     if (!times.empty()) {
         table.row({"time steps", fmt::format("{}; this is step {}, time {}", times_text(times), found.step,
@@ -236,11 +230,11 @@ std::string field_table(const std::vector<FieldSummary>& fields) {
     for (const FieldSummary& described : fields) {
         const std::size_t count = described.components.size();
         table.row({"field", described.name, name_of(described.association), type_text(described.type, count),
-                   count == 1 ? range_text(described.components[0]) : "",
+                   count == 1 ? range_of(described.components[0]) : "",
                    count == 1 ? holes_text(described.components[0]) : ""});
         for (std::size_t c = 0; count > 1 && c < count; ++c) {
             const std::string component = count <= 3 ? std::string(1, "xyz"[c]) : std::to_string(c);
-            table.row({"", "  :" + component, "", "", range_text(described.components[c]),
+            table.row({"", "  :" + component, "", "", range_of(described.components[c]),
                        holes_text(described.components[c])});
         }
     }

@@ -31,7 +31,7 @@ std::string memory_text(const ExtractNumbers& numbers) {
 std::string field_text(const ExtractNumbers& numbers) {
     const FieldReport& field = numbers.field;
     std::string text = field.name + (numbers.averaged ? " (cell field, averaged to the points)" : "");
-    if (field.lower <= field.upper) text += fmt::format(", {} to {}", shortest(field.lower), shortest(field.upper));
+    if (field.lower <= field.upper) text += ", " + rounded_range(field.lower, field.upper);
     if (numbers.steps > 1) text += " in the last time step";
     if (field.no_data > 0) text += fmt::format(", no data at {} points", grouped(field.no_data));
     if (field.infinite > 0) text += fmt::format(", infinite at {}", grouped(field.infinite));
@@ -141,10 +141,10 @@ std::string facts_table(const ExtractNumbers& numbers, bool verbose) {
                                      numbers.threads == 1 ? "" : "s")});
     table.row({"memory", memory_text(numbers)});
     if (numbers.packed_file)
-        table.row({"packed file", fmt::format("read {} of {}, {} reads; {} in memory at most",
-                                              format_bytes(numbers.packed_file->bytes_read),
-                                              format_bytes(numbers.packed_file_bytes), grouped(numbers.packed_file->reads),
-                                              format_bytes(numbers.packed_file->peak_bytes))});
+        table.row({"packed file",
+                   fmt::format("read {} of {}, {} reads; {} in memory at most",
+                               format_bytes(numbers.packed_file->bytes_read), format_bytes(numbers.packed_file_bytes),
+                               grouped(numbers.packed_file->reads), format_bytes(numbers.packed_file->peak_bytes))});
     table.row({"time", time_text(numbers)});
     if (numbers.on_device()) table.row({"device", device_text(numbers)});
     return table.text();
@@ -161,10 +161,15 @@ std::string extract_table(const ExtractNumbers& numbers, bool verbose) {
     using enum Table::Align;
     Table table({right, right, right, right, right, right, right, right, left, right, right, right});
     table.row({solids ? "solid" : "isovalue", times ? "time" : "", "triangles", "vertices", "area",
-               solids ? "volume" : "", volumes ? "volume below" : "", volumes ? "volume above" : "", files ? "file" : "",
-               verbose ? "tied points" : "", verbose ? "extract" : "", verbose && files ? "write" : ""});
-    for (const SurfaceNumbers& surface : numbers.surfaces) {
-        std::vector<std::string> row{surface.solid ? solid_text(surface.solid->range) : shortest(surface.isovalue),
+               solids ? "volume" : "", volumes ? "volume below" : "", volumes ? "volume above" : "",
+               files ? "file" : "", verbose ? "tied points" : "", verbose ? "extract" : "",
+               verbose && files ? "write" : ""});
+    std::vector<double> isovalues;
+    for (const SurfaceNumbers& surface : numbers.surfaces) isovalues.push_back(surface.isovalue);
+    const std::vector<std::string> isovalue_texts = told_apart(isovalues);
+    for (std::size_t i = 0; i < numbers.surfaces.size(); ++i) {
+        const SurfaceNumbers& surface = numbers.surfaces[i];
+        std::vector<std::string> row{surface.solid ? solid_text(surface.solid->range) : isovalue_texts[i],
                                      surface.time ? shortest(*surface.time) : "",
                                      grouped(surface.triangles),
                                      grouped(surface.vertices),

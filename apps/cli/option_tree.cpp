@@ -21,7 +21,7 @@ namespace isotet::cli {
 namespace {
 
 constexpr int first_error_code = 1000;       ///< above CLI11's own exit codes
-constexpr std::string_view rare_mark = "\n"; ///< behind the group of an option that --help-all alone shows
+constexpr std::string_view rare_mark = "\t"; ///< behind the group of an option that --help-all alone shows
 
 double finite_number(const std::string& names, std::string_view text, std::string_view rule = "a finite number") {
     const std::optional<double> value = parse_number(text);

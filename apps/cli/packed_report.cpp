@@ -18,7 +18,9 @@ namespace {
 using KindCounts = std::array<std::pair<std::uint64_t, const char*>, 4>;
 
 KindCounts kinds_of(const PackReport& pack) {
-    return {{{pack.tets, "tetrahedron"}, {pack.pyramids, "pyramid"}, {pack.wedges, "wedge"},
+    return {{{pack.tets, "tetrahedron"},
+             {pack.pyramids, "pyramid"},
+             {pack.wedges, "wedge"},
              {pack.hexahedra, "hexahedron"}}};
 }
 
@@ -44,7 +46,7 @@ std::string packed_table(const PackedFileInfo& info, const std::string& path) {
             {"", fmt::format("{} cells left out: their type is not contoured", grouped(info.report.cells_left_out))});
     for (std::size_t axis = 0; axis < 3; ++axis)
         table.row({axis == 0 ? "bounds" : "",
-                   fmt::format("{} {} to {}", "xyz"[axis], shortest(info.lower[axis]), shortest(info.upper[axis]))});
+                   fmt::format("{} {}", "xyz"[axis], rounded_range(info.lower[axis], info.upper[axis]))});
     if (info.steps > 1 || !info.times.empty())
         table.row({"time steps", info.times.empty()
                                      ? grouped(info.steps)
@@ -53,8 +55,7 @@ std::string packed_table(const PackedFileInfo& info, const std::string& path) {
     for (const PackedFieldInfo& field : info.fields) {
         const FieldReport& report = field.report;
         std::string text = fmt::format("{}: {}, ", report.name, name_of(field.type));
-        text += report.lower <= report.upper ? fmt::format("{} to {}", shortest(report.lower), shortest(report.upper))
-                                             : "no finite value";
+        text += report.lower <= report.upper ? rounded_range(report.lower, report.upper) : "no finite value";
         if (report.no_data > 0) text += fmt::format(", no data {}", grouped(report.no_data));
         if (field.gradients) text += ", with gradients";
         if (info.steps > 1) text += fmt::format(", step {}", field.step);
@@ -79,12 +80,9 @@ Json packed_json(const PackedFileInfo& info, const std::string& path, const std:
     Json by_type = Json::object();
     for (const auto& [count, kind] : kinds_of(info.report))
         if (count > 0) by_type[kind] = count;
-    report["packed"] = {{"points", info.report.points},
-                        {"cells_by_type", std::move(by_type)},
-                        {"clusters", info.report.clusters},
-                        {"chunks", info.chunks},
-                        {"precision", precision_of(info)},
-                        {"source_cells", info.source_cells}};
+    report["packed"] = {{"points", info.report.points},     {"cells_by_type", std::move(by_type)},
+                        {"clusters", info.report.clusters}, {"chunks", info.chunks},
+                        {"precision", precision_of(info)},  {"source_cells", info.source_cells}};
     report["cells_left_out"] = info.report.cells_left_out;
     report["bounds"] = {{"lower", info.lower}, {"upper", info.upper}};
     report["steps"] = info.steps;

@@ -78,9 +78,9 @@ std::string render_table(const DrawJob& job, const DrawReport& drawn) {
     }
     if (!input.field.empty()) {
         const bool finite = report.field.lower <= report.field.upper;
-        table.row({"field", finite ? fmt::format("{}, {} to {}", input.field, shortest(report.field.lower),
-                                                 shortest(report.field.upper))
-                                   : input.field});
+        table.row(
+            {"field", finite ? fmt::format("{}, {}", input.field, rounded_range(report.field.lower, report.field.upper))
+                             : input.field});
     }
     if (!job.slices.empty()) table.row({"slices", counted(report.slice_triangles, "triangle")});
     if (report.boundary_faces > 0) table.row({"boundary", grouped(report.boundary_faces) + " faces"});

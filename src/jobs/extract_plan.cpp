@@ -190,7 +190,7 @@ Result<void> choose_first_of(ExtractJob& job, GridSource& source, ExtractPlan& p
                        "contour",
                        choice->view.field);
     job.field.name = choice->view.field;
-    caller.note(note_of(choice->view));
+    caller.note(note_of_field(choice->view));
     return {};
 }
 

@@ -123,6 +123,12 @@ std::string note_of(const FirstView& view) {
                        text_of(view.reason), how);
 }
 
+std::string note_of_field(const FirstView& view) {
+    if (view.field.empty()) return {};
+    return fmt::format("no field was named: '{}' was taken ({}); `field` names another", view.field,
+                       text_of(view.reason));
+}
+
 Result<FirstChoice> choose_first(GridSource& source, const GridOptions& options, const ChoiceWish& wish, Caller& caller,
                                  const Run& run) {
     const std::size_t count = std::max<std::size_t>(source.info().times.size(), 1);

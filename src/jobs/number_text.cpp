@@ -31,6 +31,11 @@ std::vector<std::string> told_apart(const std::vector<double>& values) {
     return texts;
 }
 
+std::string rounded_range(double lower, double upper) {
+    const double apart = (upper - lower) / 1000;
+    return fmt::format("{} to {}", rounded(lower, apart), rounded(upper, apart));
+}
+
 std::string counted(std::uint64_t count, std::string_view one) {
     return fmt::format("{} {}{}", grouped(count), one, count == 1 ? "" : "s");
 }

@@ -178,7 +178,7 @@ Result<void> PackRun::take_all_fields() {
         if (first->view.field.empty())
             return refusal("the grid has no field to pack with; `fields` x packs a coordinate");
         names_ = {first->view.field};
-        caller_.note(note_of(first->view));
+        caller_.note(note_of_field(first->view));
         std::erase_if(others, [&](const FieldInfo& field) { return field.name == names_.front(); });
     }
     std::vector<std::string> left_out;

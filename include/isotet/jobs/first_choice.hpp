@@ -37,4 +37,7 @@ Result<FirstChoice> choose_first(GridSource& source, const GridOptions& options,
 /// "no field was named: 'p', its name, ...": empty where nothing is to be said.
 std::string note_of(const FirstView& view);
 
+/// The same where it is not drawn: only which field was taken.
+std::string note_of_field(const FirstView& view);
+
 } // namespace isotet::jobs

@@ -25,6 +25,9 @@ std::string rounded(double value, double difference);
 /// The same of each value, so that different values have different texts.
 std::vector<std::string> told_apart(const std::vector<double>& values);
 
+/// "0.3 to 4": as many digits as tell values apart that lie a thousandth of the range from each other.
+std::string rounded_range(double lower, double upper);
+
 /// "1 triangle", "12,345 triangles".
 std::string counted(std::uint64_t count, std::string_view one);
 
