@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <isotet/export.hpp>
+#include <isotet/grid.hpp>
 #include <isotet/pack.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
@@ -42,6 +43,19 @@ ISOTET_API Result<Surface> boundary_of(const PackedGrid& packed, const std::vect
 /// Method       a signed sum of hashes a point, 64 bits, says where faces do not cancel; the tets there are dealt into
 ///              buckets that fit a processor's cache, where their faces are counted
 ISOTET_API Result<Surface> boundary_of(const Grid& grid, const Run& run = {});
+
+/// The grid whose boundary is worth looking at: where at least half of the points coincide with others, cells have points of
+/// their own (discontinuous Galerkin, MFEM), and every inner face would be boundary; points that differ by roundings are then
+/// one. Points and cells keep their numbers, so fields fit both grids. Else points and cells are the grid's.
+///
+/// Guarantees   the same for any thread count
+/// Cost         estimate_coincident_points(), and where that finds so many merge_points()
+/// Errors       as merge_points()
+struct DrawnGrid {
+    Grid grid;           ///< without fields
+    bool joined = false; ///< whether points were joined
+};
+ISOTET_API Result<DrawnGrid> grid_with_joined_points(const Grid& grid, const Run& run = {});
 
 /// Finds boundaries, and gives the last one again for a grid with the same cells and points, as time steps mostly have.
 ///

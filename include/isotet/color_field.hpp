@@ -2,6 +2,7 @@
 // A field that colours a surface or a grid: its values, and the scale that fits them.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <span>
@@ -74,5 +75,26 @@ ISOTET_API Result<FoundColors> find_colors(const Grid& grid, const std::string& 
 /// Errors   as for a grid
 ISOTET_API Result<FoundColors> find_colors(const Surface& surface, const std::string& name,
                                            const ColorOptions& options = {}, const Run& run = {});
+
+/// Gives a boundary_of() a grid the values of a field of that grid, as its first field of points or cells.
+///
+/// Cost     of points one pass over the boundary; of cells boundary_cells()
+/// Errors   invalid_argument: the field does not fit the grid; as boundary_cells()
+ISOTET_API Result<void> color_boundary(Surface& boundary, const Grid& grid, const ColorField& field,
+                                       const Run& run = {});
+
+/// The same of a field of points that fits, without the grid's cells.
+ISOTET_API void color_boundary_by_points(Surface& boundary, const ColorField& field);
+
+/// The same of a field of cells that fits, with boundary_cells().
+ISOTET_API void color_boundary_by_cells(Surface& boundary, const std::vector<std::uint64_t>& cells,
+                                        const ColorField& field);
+
+/// Of each triangle of a boundary_of() a grid the lowest cell that has it; UINT64_MAX where none has.
+///
+/// Cost     a pass over all cells, one thread; 40 bytes a triangle
+/// Errors   as linearize() and split()
+ISOTET_API Result<std::vector<std::uint64_t>> boundary_cells(const Surface& boundary, const Grid& grid,
+                                                             const Run& run = {});
 
 } // namespace isotet

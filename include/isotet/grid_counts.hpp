@@ -45,6 +45,10 @@ ISOTET_API CoincidentPoints estimate_coincident_points(const Grid& grid);
 /// Errors       as survey()
 ISOTET_API Result<std::uint64_t> count_hanging_points(const Grid& grid, const Run& run = {});
 
+/// A power of ten within which points lie that a program has computed twice: they may differ by roundings of the grid's size.
+/// 0 where no coordinate but 0 is finite. Cost: one pass over the points
+ISOTET_API double rounding_of(const Array& points);
+
 /// False where estimate_coincident_points() finds none, whatever the cells are. Cost: the first of its passes
 ISOTET_API bool may_have_coincident_points(const Array& points);
 

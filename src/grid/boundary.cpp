@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include <isotet/grid_counts.hpp>
 #include <isotet/linear_cells.hpp>
 
 #include "base/carry_out.hpp"
@@ -82,6 +84,17 @@ Result<Surface> boundary_of(const Grid& grid, const Run& run) {
         if (!linear) return linear.error();
         return core::boundary_of_grid(linear->grid, progress);
     });
+}
+
+Result<DrawnGrid> grid_with_joined_points(const Grid& grid, const Run& run) {
+    DrawnGrid drawn{{grid.points, grid.cells, {}, {}, grid.point_numbers}, false};
+    if (!may_have_coincident_points(grid.points)) return drawn;
+    if (2 * estimate_coincident_points(grid).points < grid.points.tuples()) return drawn;
+    Result<MergedPoints> merged = merge_points(drawn.grid, {rounding_of(grid.points), MergedValues::lowest}, run);
+    if (!merged) return merged.error();
+    drawn.grid = std::move(merged->grid);
+    drawn.joined = true;
+    return drawn;
 }
 
 } // namespace isotet

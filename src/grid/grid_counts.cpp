@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <mutex>
 #include <span>
 #include <type_traits>
@@ -135,6 +136,17 @@ std::map<std::uint8_t, std::uint64_t> count_cells_by_type(const Cells& cells) {
 
 bool is_contoured(std::uint8_t cell_type) noexcept {
     return core::is_contoured(cell_type) && !core::is_ordered(cell_type);
+}
+
+double rounding_of(const Array& points) {
+    if (!is_floating(points.type()) || points.components() != 3) return 0;
+    const core::PointReader reader(points);
+    double largest = 0;
+    for (std::size_t i = 0; i < points.tuples(); ++i)
+        for (const double x : reader[i])
+            if (std::isfinite(x)) largest = std::max(largest, std::abs(x));
+    const double share = points.type() == ScalarType::float32 ? 0x1p-23 : 0x1p-33;
+    return largest > 0 ? std::pow(10.0, std::ceil(std::log10(share * largest))) : 0;
 }
 
 CoincidentPoints estimate_coincident_points(const Grid& grid) {

@@ -39,16 +39,9 @@ FileInfo info_of(const MakeOptions& made) {
     return info;
 }
 
-/// A power of ten within which points lie that a program has computed twice: they may differ by roundings of the grid's
-/// size, and 0 would leave seams open there.
 std::string tolerance_of_rounding(const Array& points) {
-    const core::PointReader reader(points);
-    double largest = 0;
-    for (std::size_t i = 0; i < points.tuples(); ++i)
-        for (const double x : reader[i])
-            if (std::isfinite(x)) largest = std::max(largest, std::abs(x));
-    const double share = points.type() == ScalarType::float32 ? 0x1p-23 : 0x1p-33;
-    return largest > 0 ? fmt::format("1e{}", static_cast<int>(std::ceil(std::log10(share * largest)))) : "0";
+    const double tolerance = rounding_of(points);
+    return tolerance > 0 ? fmt::format("1e{}", std::lround(std::log10(tolerance))) : "0";
 }
 
 std::string coincident_points_note(const Grid& grid) {
@@ -128,10 +121,11 @@ Result<Grid> closed(Grid grid, HangingChoice choice, KnownClosing* known, Caller
     if (!found) return found.error();
     if (choice == HangingChoice::leave) {
         if (found->report.points > 0)
-            caller.note(fmt::format("{} on faces or edges of larger cells: surfaces have open edges along {} there, and solids "
-                                    "walls, as `hanging_points` leave asks; `hanging_points` close joins the cells",
-                                    counted(found->report.points, "point") + (found->report.points == 1 ? " hangs" : " hang"),
-                                    counted(found->report.faces, "face")));
+            caller.note(
+                fmt::format("{} on faces or edges of larger cells: surfaces have open edges along {} there, and solids "
+                            "walls, as `hanging_points` leave asks; `hanging_points` close joins the cells",
+                            counted(found->report.points, "point") + (found->report.points == 1 ? " hangs" : " hang"),
+                            counted(found->report.faces, "face")));
         return grid;
     }
     caller.notes(found->report.notes());
@@ -333,8 +327,8 @@ using Names = std::optional<std::vector<std::string>>; // nothing: all
 bool holds_all(const Names& there, const Names& wanted) {
     if (!there) return true;
     return wanted && std::ranges::all_of(*wanted, [&](const std::string& name) {
-        return std::ranges::find(*there, name) != there->end();
-    });
+               return std::ranges::find(*there, name) != there->end();
+           });
 }
 
 void leave(std::vector<Field>& fields, const Names& wanted) {

@@ -9,6 +9,7 @@
 
 #include <fmt/core.h>
 
+#include <isotet/color_field.hpp>
 #include <isotet/contour.hpp>
 
 #include "base/errors.hpp"
@@ -50,12 +51,21 @@ Array gathered_of_cells(const Array& values, const std::vector<std::uint64_t>& c
 
 } // namespace
 
+SurfaceColors carried_colors(const Surface& surface, const ColorField& field) {
+    const auto& fields = field.association == Association::point ? surface.point_fields : surface.cell_fields;
+    return {fields.front().values, field.association, field.scale};
+}
+
+} // namespace isotet::scene
+
+namespace isotet {
+
 Result<std::vector<std::uint64_t>> boundary_cells(const Surface& boundary, const Grid& grid, const Run& run) {
     const auto ends = boundary.edge_ends.as<std::int64_t>();
-    std::unordered_map<Face, std::size_t, FaceHash> faces(boundary.triangle_count());
+    std::unordered_map<scene::Face, std::size_t, scene::FaceHash> faces(boundary.triangle_count());
     boundary.triangles.visit([&](auto corners) {
         for (std::size_t i = 0; i < boundary.triangle_count(); ++i) {
-            Face face{};
+            scene::Face face{};
             for (std::size_t k = 0; k < 3; ++k)
                 face[k] = static_cast<std::uint64_t>(ends[2 * static_cast<std::size_t>(corners[3 * i + k])]);
             std::ranges::sort(face);
@@ -72,7 +82,7 @@ Result<std::vector<std::uint64_t>> boundary_cells(const Surface& boundary, const
     std::vector<std::uint64_t> cells(boundary.triangle_count(), UINT64_MAX);
     for (std::size_t tet = 0; tet < tets->tets.size(); ++tet) {
         for (std::size_t left_out = 0; left_out < 4; ++left_out) {
-            Face face{};
+            scene::Face face{};
             for (std::size_t k = 0, to = 0; k < 4; ++k)
                 if (k != left_out) face[to++] = tets->tets[tet][k];
             std::ranges::sort(face);
@@ -84,15 +94,15 @@ Result<std::vector<std::uint64_t>> boundary_cells(const Surface& boundary, const
     return cells;
 }
 
-void color_by_points(Surface& boundary, const ColorField& field) {
+void color_boundary_by_points(Surface& boundary, const ColorField& field) {
     const auto ends = boundary.edge_ends.as<std::int64_t>();
-    boundary.point_fields = {{field.name, gathered(field.values, boundary.vertex_count(), [&](std::size_t i) {
+    boundary.point_fields = {{field.name, scene::gathered(field.values, boundary.vertex_count(), [&](std::size_t i) {
                                   return static_cast<std::size_t>(ends[2 * i]);
                               })}};
 }
 
-void color_by_cells(Surface& boundary, const std::vector<std::uint64_t>& cells, const ColorField& field) {
-    boundary.cell_fields = {{field.name, gathered_of_cells(field.values, cells)}};
+void color_boundary_by_cells(Surface& boundary, const std::vector<std::uint64_t>& cells, const ColorField& field) {
+    boundary.cell_fields = {{field.name, scene::gathered_of_cells(field.values, cells)}};
 }
 
 Result<void> color_boundary(Surface& boundary, const Grid& grid, const ColorField& field, const Run& run) {
@@ -102,23 +112,14 @@ Result<void> color_boundary(Surface& boundary, const Grid& grid, const ColorFiel
         return invalid_argument(fmt::format("{} values shall colour a grid of {} {}", field.values.size(), needed,
                                             of_points ? "points" : "cells"));
     if (of_points) {
-        color_by_points(boundary, field);
+        color_boundary_by_points(boundary, field);
         return {};
     }
     const Result<std::vector<std::uint64_t>> cells = boundary_cells(boundary, grid, run);
     if (!cells) return cells.error();
-    color_by_cells(boundary, *cells, field);
+    color_boundary_by_cells(boundary, *cells, field);
     return {};
 }
-
-SurfaceColors carried_colors(const Surface& surface, const ColorField& field) {
-    const auto& fields = field.association == Association::point ? surface.point_fields : surface.cell_fields;
-    return {fields.front().values, field.association, field.scale};
-}
-
-} // namespace isotet::scene
-
-namespace isotet {
 
 Result<Surface> slice_of(const Grid& grid, const Plane& plane, const ColorField* field, const Run& run) {
     Result<PointField> heights = slice_field(grid.points, plane, run);

@@ -17,10 +17,12 @@ using scene::single_color;
 Result<void> IsosurfaceScene::Data::look_around(const Grid& grid, KnownBoundary* known, const Run& run) {
     const core::Stopwatch looking;
     if (look.boundary_opacity > 0) {
-        Result<Surface> found = known ? known->of(grid, run) : boundary_of(grid, run);
+        const Result<DrawnGrid> drawn = grid_with_joined_points(grid, run);
+        if (!drawn) return drawn.error();
+        Result<Surface> found = known ? known->of(drawn->grid, run) : boundary_of(drawn->grid, run);
         if (!found) return found.error();
         if (look.boundary_colors)
-            if (auto colored = scene::color_boundary(*found, grid, *look.boundary_colors, run); !colored)
+            if (auto colored = color_boundary(*found, drawn->grid, *look.boundary_colors, run); !colored)
                 return colored;
         take_boundary(*std::move(found));
     } else {

@@ -22,6 +22,12 @@ namespace isotet::view {
 
 namespace {
 
+Result<Surface> drawn_boundary(const Grid& grid, const Run& run) {
+    const Result<DrawnGrid> drawn = grid_with_joined_points(grid, run);
+    if (!drawn) return drawn.error();
+    return boundary_of(drawn->grid, run);
+}
+
 void offer(const std::vector<Field>& fields, Association association, std::vector<OfferedField>& offered) {
     constexpr std::size_t max_components = 9;
     constexpr std::array<const char*, 3> axes{"x", "y", "z"};
@@ -178,10 +184,11 @@ Result<std::optional<ColorScale>> GridView::scale_of(const ViewState& state, con
     const std::string& name = state.volume ? state.field : state.color_by;
     if (name.empty()) return std::optional<ColorScale>();
     if (state.volume && !state.color_by.empty() && state.color_by != name)
-        return Error{ErrorCode::invalid_argument,
-                     fmt::format("colours are those of '{}', but the volume is one of '{}', and a picture has one colour "
-                                 "scale",
-                                 state.color_by, name)};
+        return Error{
+            ErrorCode::invalid_argument,
+            fmt::format("colours are those of '{}', but the volume is one of '{}', and a picture has one colour "
+                        "scale",
+                        state.color_by, name)};
     Array values;
     const Result<const ColorField*> classes = classes_of(state, run);
     if (!classes) return classes.error();
@@ -286,7 +293,7 @@ Result<void> GridView::find_boundary(const Run& run) {
     const Grid grid = grid_;
     const std::uint64_t number = grid_number_;
     lock.unlock();
-    Result<Surface> boundary = is_of_file() ? PackedSource(*options_.packed).boundary(run) : boundary_of(grid, run);
+    Result<Surface> boundary = is_of_file() ? PackedSource(*options_.packed).boundary(run) : drawn_boundary(grid, run);
     if (!boundary) return boundary.error();
     Result<Mesh> mesh = mesh_of(*boundary, nullptr, run);
     if (!mesh) return mesh.error();
@@ -310,8 +317,9 @@ Result<void> GridView::need_cells(const Run& run) {
     if (!again) return again.error();
     const bool first = is_of_file() && cells_sum_ == 0;
     if (!same_values(again->points, grid_.points) || (!first && sum_of(again->cells) != cells_sum_))
-        return Error{ErrorCode::invalid_data, "the file has changed since it was read: it has other points or cells now, "
-                                              "so what needs its cells cannot be shown. Start isotet view again"};
+        return Error{ErrorCode::invalid_data,
+                     "the file has changed since it was read: it has other points or cells now, "
+                     "so what needs its cells cannot be shown. Start isotet view again"};
     const std::lock_guard lock(grid_mutex_);
     grid_.cells = std::move(again->cells);
     has_cells_ = true;

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include <isotet/boundary.hpp>
+#include <isotet/color_field.hpp>
 
-#include "scene/colored_surface.hpp"
 #include "view/grid_view.hpp"
 
 namespace isotet::view {
@@ -53,7 +53,8 @@ bool holds(const std::vector<std::string>& keys, const std::string& key) {
 } // namespace
 
 Result<std::shared_ptr<const Mesh>> GridView::packed_mesh_at(const ViewState& state, double isovalue,
-                                                             const std::string& key, FrameParts& making, const Run& run) {
+                                                             const std::string& key, FrameParts& making,
+                                                             const Run& run) {
     if (auto kept = kept_mesh(key)) return kept;
     const Result<PointField> field = field_of(state.field, run);
     if (!field) return field.error();
@@ -81,12 +82,13 @@ Result<Solid> GridView::solid_at(const ViewState& state, double isovalue, const 
         solids_ = *std::move(solids);
         solids_key_ = wanted;
     }
-    return solids_->extract(
-        state.solid == SolidSide::above ? SolidRange::above(isovalue) : SolidRange::below(isovalue), run);
+    return solids_->extract(state.solid == SolidSide::above ? SolidRange::above(isovalue) : SolidRange::below(isovalue),
+                            run);
 }
 
 Result<std::shared_ptr<const Mesh>> GridView::solid_mesh_at(const ViewState& state, double isovalue,
-                                                            const std::string& key, FrameParts& making, const Run& run) {
+                                                            const std::string& key, FrameParts& making,
+                                                            const Run& run) {
     if (auto kept = kept_mesh(key)) return kept;
     const auto start = std::chrono::steady_clock::now();
     const Result<Solid> solid = solid_at(state, isovalue, run);
@@ -312,7 +314,7 @@ Result<void> GridView::add_slices(const ViewState& state, const std::vector<std:
 Result<Surface> GridView::colored_boundary(Surface boundary, std::uint64_t number, const ColorField& colors,
                                            const Run& run) {
     if (colors.association == Association::point) {
-        scene::color_by_points(boundary, colors);
+        color_boundary_by_points(boundary, colors);
         return boundary;
     }
     if (Result<void> here = need_cells(run); !here) return here.error();
@@ -322,12 +324,14 @@ Result<Surface> GridView::colored_boundary(Surface boundary, std::uint64_t numbe
         boundary = *std::move(found);
     }
     if (boundary_cells_of_ != number) {
-        Result<std::vector<std::uint64_t>> cells = scene::boundary_cells(boundary, grid_, run);
+        const Result<DrawnGrid> drawn = is_of_file() ? DrawnGrid{grid_, false} : grid_with_joined_points(grid_, run);
+        if (!drawn) return drawn.error();
+        Result<std::vector<std::uint64_t>> cells = boundary_cells(boundary, drawn->grid, run);
         if (!cells) return cells.error();
         boundary_cells_ = *std::move(cells);
         boundary_cells_of_ = number;
     }
-    scene::color_by_cells(boundary, boundary_cells_, colors);
+    color_boundary_by_cells(boundary, boundary_cells_, colors);
     return boundary;
 }
 

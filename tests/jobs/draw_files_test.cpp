@@ -183,6 +183,8 @@ TEST(DrawFiles, NotesIsovaluesWithoutASurface) {
     DrawJob job = small_picture("make:kuhn:4:sphere", folder.file("a.png"));
     job.field.name = "sphere";
     job.isovalues = {9};
+    EXPECT_EQ(draw_files(job, listener).error().code, ErrorCode::invalid_data);
+    job.allow_empty = true;
     ASSERT_TRUE(draw_files(job, listener));
     ASSERT_EQ(listener.noted.size(), 1u);
     EXPECT_TRUE(listener.noted[0].starts_with("there is no surface at 9: the values of 'sphere' go from 0 to"))

@@ -2,7 +2,9 @@
 // The boundary of a packed grid: closed, as large as it must be, facing outwards, the same for any number of threads.
 // No device.
 #include <atomic>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -55,6 +57,42 @@ std::vector<std::byte> bytes_of(const Surface& surface) {
         all.insert(all.end(), data, data + array->bytes());
     }
     return all;
+}
+
+/// Each cell has points of its own, moved by a rounding.
+Grid taken_apart(const Grid& grid) {
+    const Array& corners = grid.cells.connectivity;
+    const auto from = grid.points.as<float>();
+    std::vector<float> points;
+    std::vector<std::int64_t> connectivity;
+    for (std::size_t i = 0; i < corners.tuples(); ++i) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const float x = from[3 * static_cast<std::size_t>(corners.at(i)) + axis];
+            points.push_back(i % 3 == axis ? std::nextafter(x, 2.0F) : x);
+        }
+        connectivity.push_back(static_cast<std::int64_t>(i));
+    }
+    Grid apart = grid;
+    apart.points = Array::own(std::move(points), 3);
+    apart.cells.connectivity = Array::own(std::move(connectivity));
+    apart.point_fields.clear();
+    return apart;
+}
+
+TEST(DrawnGrid, JoinsPointsWhereCellsHaveTheirOwn) {
+    for (const char* shape : {"kuhn", "hex"}) {
+        const Grid grid = make_grid({.shape = shape, .side = 4, .fields = {}}).value();
+        const Grid apart = taken_apart(grid);
+        EXPECT_GT(boundary_of(apart).value().triangle_count(), 6u * 4 * 4 * 2) << shape;
+        const DrawnGrid drawn = grid_with_joined_points(apart).value();
+        EXPECT_TRUE(drawn.joined) << shape;
+        EXPECT_EQ(drawn.grid.points.tuples(), apart.points.tuples()) << shape;
+        EXPECT_EQ(drawn.grid.cells.count(), grid.cells.count()) << shape;
+        EXPECT_EQ(boundary_of(drawn.grid).value().triangle_count(), 6u * 4 * 4 * 2) << shape;
+        const DrawnGrid whole = grid_with_joined_points(grid).value();
+        EXPECT_FALSE(whole.joined) << shape;
+        EXPECT_EQ(whole.grid.cells.connectivity.data(), grid.cells.connectivity.data()) << shape;
+    }
 }
 
 TEST(KnownBoundary, IsFoundAgainWhereCellsOrPointsAreOthers) {
