@@ -427,6 +427,35 @@ TEST(ReadLegacyCells, TakesOffsetsAndCornersOfAnyType) {
     EXPECT_EQ(error_in_legacy(file("short", "0 1 -2 3")), "cells: -2 is no offset or corner");
 }
 
+TEST(ReadLegacyStructured, TakesAnExtentInPlaceOfDimensions) {
+    const TemporaryFolder folder;
+    const std::string head = "# vtk DataFile Version 5.1\nx\nASCII\nDATASET STRUCTURED_POINTS\n";
+    const auto points_of = [&](const std::string& dataset) {
+        Result<ReadResult> result = read(folder.write("e.vtk", head + dataset + "ORIGIN -1 0 0\nSPACING 0.5 1 2\n"));
+        if (result) return result->grid.points;
+        ADD_FAILURE() << result.error().message;
+        return Array();
+    };
+    const Array points = points_of("EXTENT 2 4 -1 1 0 1\n");
+    ASSERT_EQ(points.tuples(), 18U);
+    EXPECT_EQ(points.at(0, 0), 0) << "the origin has the index 0";
+    EXPECT_EQ(points.at(0, 1), -1);
+    EXPECT_EQ(points.at(17, 0), 1);
+    EXPECT_EQ(points.at(17, 1), 1);
+    EXPECT_EQ(points.at(17, 2), 2);
+    for (const char* broken : {"EXTENT 2 4 -1 1 0\n", "EXTENT 4 2 0 1 0 1\n", "EXTENT 0 99999999999 0 1 0 1\n"})
+        EXPECT_NE(error_in_legacy(head + broken + "ORIGIN 0 0 0\n").find("EXTENT is not three pairs"),
+                  std::string::npos)
+            << broken;
+}
+
+TEST(ReadLegacy, PassesOverArraysWithoutValues) {
+    const std::string file =
+        "# vtk DataFile Version 4.2\nx\nBINARY\nDATASET UNSTRUCTURED_GRID\nFIELD FieldData 1\nA 0 0 double\n"
+        "POINTS 0 float\nCELLS 0 0\nCELL_TYPES 0\n";
+    EXPECT_EQ(error_in_legacy(file), error_in_legacy(replaced(file, "FIELD FieldData 1\nA 0 0 double\n", "")));
+}
+
 TEST(ReadLegacyPlanes, AreToldAsWhatTheyAre) {
     const TemporaryFolder folder;
     const auto message = [&](std::string_view dataset) {

@@ -78,6 +78,7 @@ TEST(VtkXml, ReadsATetrahedron) {
 
 TEST(VtkXml, NamesWhatIsWrong) {
     EXPECT_EQ(error_of(TetFile{.points = "x"}.text()), "NumberOfPoints is 'x', not a count");
+    EXPECT_EQ(error_of(TetFile{.points = " 4\n"}.text()), "no error") << "blanks around numbers are none of them";
     EXPECT_EQ(error_of(TetFile{.points = "5"}.text()),
               "the array '' should have 15 numbers, but there are only 23 characters");
     EXPECT_EQ(error_of(TetFile{.connectivity = "0 1 2 3 x"}.text()), "no error") << "behind what the offsets need";

@@ -95,6 +95,7 @@ Result<void> LegacyValues::check_size(std::uint64_t tuples, std::uint64_t compon
 
 Result<Array> LegacyValues::read_values(const LegacyType& type, std::uint64_t tuples, std::uint64_t components,
                                         std::string_view what, bool is_wanted) {
+    if (tuples == 0 && components == 0) components = 1; // an array without values has no bytes
     if (auto sized = check_size(tuples, components, what); !sized) return sized.error();
     auto values = binary_ ? read_binary(type, tuples, components, what, is_wanted)
                           : read_ascii(type, tuples, components, what, is_wanted);

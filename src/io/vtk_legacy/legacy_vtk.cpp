@@ -92,6 +92,7 @@ private:
             return read_legacy_cell_types(values_, wants_.geometry, file_);
         }
         if (keyword == "dimensions") return read_dimensions();
+        if (keyword == "extent") return read_extent();
         if (keyword == "origin") return read_three(file_.origin, keyword);
         if (keyword == "spacing" || keyword == "aspect_ratio") return read_three(file_.spacing, keyword);
         for (std::size_t axis = 0; axis < 3; ++axis)
@@ -127,6 +128,19 @@ private:
         for (std::uint64_t& count : file_.dimensions)
             if (!scanner_.number(count) || count > std::numeric_limits<std::int32_t>::max())
                 return values_.before_here("DIMENSIONS are not three counts");
+        return {};
+    }
+
+    /// In place of DIMENSIONS: the first and the last index along each axis.
+    Result<void> read_extent() {
+        constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max();
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            std::int64_t first = 0, last = 0;
+            if (!scanner_.number(first) || !scanner_.number(last) || first < -most || last > most || last < first - 1)
+                return values_.before_here("EXTENT is not three pairs of a first and a last index");
+            file_.first_index[axis] = first;
+            file_.dimensions[axis] = static_cast<std::uint64_t>(last - first + 1);
+        }
         return {};
     }
 

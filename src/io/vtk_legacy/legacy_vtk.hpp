@@ -52,6 +52,7 @@ struct LegacyFile {
     std::optional<std::uint8_t> one_type; ///< of all cells
     std::uint64_t cell_type_count = 0;
     std::array<std::uint64_t, 3> dimensions{};
+    std::array<std::int64_t, 3> first_index{}; ///< of EXTENT: the origin has the index 0
     std::array<double, 3> origin{0, 0, 0}, spacing{1, 1, 1};
     std::array<Array, 3> coordinates; ///< of a rectilinear grid
     std::vector<Attribute> point_data, cell_data;

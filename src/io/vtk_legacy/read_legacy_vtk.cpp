@@ -77,7 +77,8 @@ Result<Array> structured_points(const LegacyFile& file, const GridSize& size) {
     }
     if (file.dataset == "structured_points") {
         const auto& s = file.spacing;
-        return points_of(size, vtk_xml::ImagePoints{{0, 0, 0}, {s[0], 0, 0, 0, s[1], 0, 0, 0, s[2]}, file.origin});
+        return points_of(size,
+                         vtk_xml::ImagePoints{file.first_index, {s[0], 0, 0, 0, s[1], 0, 0, 0, s[2]}, file.origin});
     }
     std::array<std::vector<double>, 3> ticks;
     for (std::size_t axis = 0; axis < 3; ++axis) {

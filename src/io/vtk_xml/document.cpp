@@ -18,6 +18,13 @@ namespace {
 constexpr std::size_t max_components = 1U << 20U;
 constexpr std::size_t tail_bytes = 4096;
 
+/// Around numbers; files of some programs have them.
+std::string_view without_blanks(std::string_view text) {
+    constexpr std::string_view blanks = " \t\r\n";
+    text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
+    return text.substr(0, text.find_last_not_of(blanks) + 1);
+}
+
 struct TypeName {
     std::string_view name;
     ScalarType type;
@@ -187,10 +194,10 @@ Result<std::optional<DataArray>> describe_array(const Document& document, const 
         return wrong(array.name, fmt::format("its type is {}, which is not known", in_quotes(type)));
     array.type = known->type;
     array.bits = type == "Bit";
-    const std::string_view components = element.attribute("NumberOfComponents").value();
+    const std::string_view components = without_blanks(element.attribute("NumberOfComponents").value());
     const bool stated = !components.empty() && components != "0";
-    if (stated && (!parse_number(components, array.components) || array.components == 0 ||
-                   array.components > max_components))
+    if (stated &&
+        (!parse_number(components, array.components) || array.components == 0 || array.components > max_components))
         return wrong(array.name,
                      fmt::format("it has {} components, not 1 to {}", in_quotes(components), max_components));
     const std::string_view form = element.attribute("format").value();
@@ -213,7 +220,7 @@ Result<std::uint64_t> count_of(const pugi::xml_node& element, const char* attrib
     std::uint64_t count = 0;
     if (!stated && otherwise) return *otherwise;
     if (!stated) return invalid_data(fmt::format("a {} has no {}", element.name(), attribute));
-    if (!parse_number(stated.value(), count))
+    if (!parse_number(without_blanks(stated.value()), count))
         return invalid_data(fmt::format("{} is {}, not a count", attribute, in_quotes(stated.value())));
     return count;
 }
