@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include <isotet/jobs/output_names.hpp>
+
 #include "json_output.hpp"
 
 namespace isotet::cli {
@@ -22,6 +24,9 @@ struct TableAndJson {
 template <class Job, class Work>
 Result<ExitCode> do_each(const std::vector<Job>& jobs, const std::string& command, Console& console,
                          const CommonOptions& common, const Work& work) {
+    std::vector<std::string> inputs;
+    for (const Job& job : jobs) inputs.push_back(job.grid.file);
+    if (auto paths = check_output_paths(inputs, {common.json}); !paths) return paths.error();
     Json files = Json::array();
     ExitCode worst = ExitCode::done;
     for (std::size_t i = 0; i < jobs.size(); ++i) {

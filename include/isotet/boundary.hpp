@@ -46,7 +46,8 @@ ISOTET_API Result<Surface> boundary_of(const Grid& grid, const Run& run = {});
 
 /// The grid whose boundary is worth looking at: where at least half of the points coincide with others, cells have points of
 /// their own (discontinuous Galerkin, MFEM), and every inner face would be boundary; points that differ by roundings are then
-/// one. Points and cells keep their numbers, so fields fit both grids. Else points and cells are the grid's.
+/// one. Points and cells keep their numbers, so fields fit both grids. Else, and where cells would collapse, points and cells
+/// are the grid's.
 ///
 /// Guarantees   the same for any thread count
 /// Cost         estimate_coincident_points(), and where that finds so many merge_points()

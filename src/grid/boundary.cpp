@@ -91,7 +91,9 @@ Result<DrawnGrid> grid_with_joined_points(const Grid& grid, const Run& run) {
     if (!may_have_coincident_points(grid.points)) return drawn;
     if (2 * estimate_coincident_points(grid).points < grid.points.tuples()) return drawn;
     Result<MergedPoints> merged = merge_points(drawn.grid, {rounding_of(grid.points), MergedValues::lowest}, run);
+    if (!merged && merged.error().code == ErrorCode::invalid_argument) return drawn; // all cells would collapse
     if (!merged) return merged.error();
+    if (merged->collapsed_cells > 0) return drawn;
     drawn.grid = std::move(merged->grid);
     drawn.joined = true;
     return drawn;

@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <isotet/jobs/draw_files.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <utility>
@@ -48,7 +49,9 @@ Result<void> show_frame(const DrawJob& job, DrawInput& input, const std::vector<
 /// Isovalues that are all outside the range of the field were not meant. Solids and volumes show something there, too.
 Result<void> check_that_some_meet(const DrawJob& job, const DrawInput& input, const std::vector<double>& isovalues) {
     const bool is_asked = !job.isovalues.empty() && job.sweep.empty() && !job.solid && !job.volume && job.dirac.empty();
-    if (!is_asked || job.allow_empty || job.all_steps) return {};
+    const auto is_empty = [](const ShownSurface& surface) { return surface.triangles == 0; };
+    if (!is_asked || job.allow_empty || job.all_steps || !std::ranges::all_of(input.scene->surfaces(), is_empty))
+        return {};
     const std::string why = why_all_are_empty(input.scene->report().field, isovalues, job.decimal_comma);
     if (why.empty()) return {};
     return Error{ErrorCode::invalid_data, why + "; `allow_empty` draws it nevertheless"};

@@ -6,6 +6,8 @@
 #include <map>
 #include <string_view>
 
+#include <isotet/jobs/output_names.hpp>
+
 #include "jobs/refuse.hpp"
 
 namespace isotet::jobs {
@@ -14,10 +16,16 @@ namespace {
 
 constexpr std::string_view name_mark = "{name}";
 
+/// The path without a slash at its end, which folders may have.
+std::filesystem::path last_of(const std::string& path) {
+    const std::filesystem::path whole(path);
+    return whole.has_filename() ? whole : whole.parent_path();
+}
+
 /// The name with "#" for each number in it.
 std::string without_numbers(const std::string& path) {
     std::string text;
-    for (const char c : std::filesystem::path(path).filename().string()) {
+    for (const char c : last_of(path).filename().string()) {
         if (c < '0' || c > '9') text += c;
         else if (text.empty() || text.back() != '#') text += '#';
     }
@@ -25,11 +33,7 @@ std::string without_numbers(const std::string& path) {
 }
 
 /// "run" of "results/run.vtu" and of the folder "results/run/".
-std::string name_of_file(const std::string& path) {
-    std::filesystem::path whole(path);
-    if (!whole.has_filename()) whole = whole.parent_path();
-    return whole.stem().string();
-}
+std::string name_of_file(const std::string& path) { return last_of(path).stem().string(); }
 
 } // namespace
 
@@ -54,7 +58,12 @@ std::vector<GridOptions> each_file(const GridOptions& grid) {
 bool names_each_file(const ExtractJob& job) { return job.out.find(name_mark) != std::string::npos; }
 
 Result<std::vector<ExtractJob>> job_for_each_file(const ExtractJob& job) {
+    const bool several = !job.grid.more_files.empty();
+    if (several && !job.parts_table.empty() && job.parts_table.find(name_mark) == std::string::npos)
+        return refusal("`parts` is '{}', which would be the same file for all: it needs {}", job.parts_table,
+                       name_mark);
     std::vector<ExtractJob> jobs;
+    std::vector<std::string> inputs;
     std::map<std::string, std::string> files; // by name
     for (const GridOptions& grid : each_file(job.grid)) {
         const std::string name = name_of_file(grid.file);
@@ -64,9 +73,13 @@ Result<std::vector<ExtractJob>> job_for_each_file(const ExtractJob& job) {
                            grid.file, name, job.out);
         ExtractJob& one = jobs.emplace_back(job);
         one.grid = grid;
-        for (std::size_t at = 0; (at = one.out.find(name_mark, at)) != std::string::npos; at += name.size())
-            one.out.replace(at, name_mark.size(), name);
+        for (std::string* text : {&one.out, &one.parts_table})
+            for (std::size_t at = 0; (at = text->find(name_mark, at)) != std::string::npos; at += name.size())
+                text->replace(at, name_mark.size(), name);
+        inputs.push_back(grid.file);
     }
+    for (const ExtractJob& one : jobs)
+        if (auto paths = check_output_paths(inputs, {one.out, one.parts_table}); !paths) return paths.error();
     return jobs;
 }
 

@@ -270,9 +270,9 @@ Result<std::size_t> begin_of_options(const std::vector<std::string>& words) {
 
 /// Options that say nothing about what is seen.
 bool is_of_the_machine(std::string_view word) {
-    constexpr std::array<std::string_view, 12> with_value{"-o",       "--output", "--size",   "--json",
+    constexpr std::array<std::string_view, 12> with_value{"-o",        "--output", "--size",   "--json",
                                                           "--threads", "--device", "--port",   "--listen",
-                                                          "--engine", "--out",    "--method", "--snap"};
+                                                          "--engine",  "--out",    "--method", "--snap"};
     return std::ranges::find(with_value, word.substr(0, word.find('='))) != with_value.end();
 }
 
@@ -422,7 +422,7 @@ Result<PastedCommand> state_of_command(std::string_view text, const std::vector<
     }
     ViewState& state = pasted.state;
     if (state.volume) state.volume->surfaces = !state.isovalues.empty();
-    if (state.colored_boundary && state.field.empty()) {
+    if (state.colored_boundary && state.field.empty() && state.isovalues.empty()) {
         state.isosurfaces = false;
         state.field = state.color_by;
     }

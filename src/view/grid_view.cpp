@@ -302,6 +302,7 @@ Result<void> GridView::find_boundary(const Run& run) {
     const std::lock_guard boundary_lock(boundary_mutex_);
     boundary_ = std::make_shared<const Mesh>(*std::move(mesh));
     boundary_surface_ = std::make_shared<const Surface>(*std::move(boundary));
+    boundary_grid_ = number;
     ++boundary_number_;
     return {};
 }

@@ -246,6 +246,7 @@ private:
     std::mutex boundary_mutex_;
     std::shared_ptr<const Mesh> boundary_; ///< of the cells and points of grid_; null: not there yet
     std::shared_ptr<const Surface> boundary_surface_; ///< the same
+    std::uint64_t boundary_grid_ = 0;      ///< grid_number_ that it is of
     std::uint64_t boundary_number_ = 0;    ///< another one for each boundary, in its key
     std::vector<std::uint64_t> boundary_cells_; ///< of the triangles of the boundary with boundary_cells_of_
     std::uint64_t boundary_cells_of_ = 0;

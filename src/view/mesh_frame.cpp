@@ -339,6 +339,11 @@ Result<void> GridView::add_boundary(const ViewState& state, const std::vector<st
                                     const Run& run) {
     if (state.boundary <= 0) return {};
     std::unique_lock lock(boundary_mutex_);
+    const bool is_of_another_grid = boundary_ && boundary_grid_ != grid_number_; // finding it was cancelled
+    lock.unlock();
+    if (is_of_another_grid)
+        if (Result<void> again = find_boundary(run); !again) return again;
+    lock.lock();
     std::shared_ptr<const Mesh> boundary = boundary_;
     const std::shared_ptr<const Surface> found = boundary_surface_;
     const std::uint64_t number = boundary_number_;

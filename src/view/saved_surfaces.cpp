@@ -306,6 +306,7 @@ Result<SavedSurfaces> save_surfaces(ViewerInput input, const ReadStep& read_step
     view_options.step = options.steps.front();
     view_options.steps = std::max<std::size_t>(1, input.times.size());
     view_options.refine = options.refine;
+    view_options.regions = input.regions;
     view_options.read_step = read_step;
     Result<std::unique_ptr<GridView>> view = GridView::create(std::move(input.grid), view_options);
     if (!view) return view.error();

@@ -45,10 +45,15 @@ ReadOptions options_of(const Told& told) {
     return options;
 }
 
-/// What is shown first: an opaque boundary hides what says nothing.
+/// What is shown first, as `isotet view` does.
 void take_first_view(const FirstView& first, Told& told) {
     told.state.field = first.field.empty() ? std::string("x") : first.field;
-    if (first.draw != FirstDraw::isosurfaces) told.state.boundary = 1;
+    if (first.draw != FirstDraw::isosurfaces) {
+        told.state.boundary = 1;
+        told.state.isosurfaces = false;
+        told.state.color_by = first.field;
+        told.state.colored_boundary = !first.field.empty();
+    }
     told.notes.push_back(first.field.empty() ? std::string("no field varies: this is the grid") : jobs::note_of(first));
 }
 
@@ -61,6 +66,7 @@ Result<std::unique_ptr<Looker>> looker_of_files(Told& told) {
     take_first_view(first_view(read->grid, read->info.fields), told);
     GridViewOptions view_options;
     view_options.threads = 1;
+    view_options.regions = read->info.regions;
     view_options.steps = std::max<std::size_t>(1, read->info.times.size());
     view_options.read_step = [file = told.files.front(), options](std::size_t step, const Run& run) -> Result<Grid> {
         ReadOptions of_step = options;

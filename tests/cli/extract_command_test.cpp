@@ -82,6 +82,15 @@ TEST_F(Program, ExtractTakesEachFileByItselfWhereItsNameIsInTheOutput) {
     const RunResult twice = isotet({"extract", path("pump.msh"), path("old/pump.msh"), "-o", path("{name}.stl")});
     EXPECT_EQ(twice.status, 2);
     EXPECT_TRUE(is_one_error(twice, "have the same name, 'pump'"));
+    const std::string before = content_of(path("valve.msh"));
+    for (const std::vector<std::string>& more :
+         {std::vector<std::string>{"--json", path("valve.msh")}, {"--parts", path("parts.csv")}}) {
+        std::vector<std::string> wrong = words;
+        wrong.insert(wrong.end(), more.begin(), more.end());
+        EXPECT_EQ(isotet(wrong).status, 2) << more.front();
+    }
+    EXPECT_EQ(isotet({"info", path("pump.msh"), path("valve.msh"), "--json", path("valve.msh")}).status, 2);
+    EXPECT_EQ(content_of(path("valve.msh")), before);
 }
 
 TEST_F(Program, ExtractGivesTheSameSurfaceByEveryMethod) {

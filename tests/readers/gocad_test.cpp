@@ -91,6 +91,7 @@ TEST(ReadGocad, AnnouncesWhatItReads) {
     EXPECT_EQ(info.fields[1].components, 3U);
     EXPECT_EQ(info.fields[2].name, "porosity");
     EXPECT_EQ(info.fields[3].name, "tvolume");
+    EXPECT_EQ(read_text(gocad_sample).info.regions.size(), 2U);
     ASSERT_EQ(info.regions.size(), 2U);
     EXPECT_EQ(info.regions[0].name, "lower");
     EXPECT_EQ(info.regions[1].field, "tvolume");

@@ -18,8 +18,9 @@ std::vector<GridOptions> each_file(const GridOptions& grid);
 /// True where {name} stands in ExtractJob::out: each file has surfaces of its own.
 bool names_each_file(const ExtractJob& job);
 
-/// The job for each file by itself: {name} is the name of the file without folder and ending.
-/// Errors   invalid_argument: two files have the same name, so that one output would overwrite the other
+/// The job for each file by itself: {name} in `out` and `parts_table` is the name of the file without folder and ending.
+/// Errors   invalid_argument: two files have the same name, so that one output would overwrite the other; an output is one of
+///          the files, or cannot be written
 Result<std::vector<ExtractJob>> job_for_each_file(const ExtractJob& job);
 
 } // namespace isotet::jobs

@@ -71,7 +71,9 @@ Result<std::vector<AnnouncedField>> fields_in(const CaseFiles& files, const std:
         const std::string fault = fault_without_header(*text, folder + name);
         foam::Scanner scanner(std::move(*text));
         if (!scanner.is_foam()) {
-            if (!fault.empty()) leave_out(info, {"field", name, fault});
+            if (fault.empty()) continue;
+            seen.erase(name);
+            leave_out(info, {"field", name, fault});
             continue;
         }
         auto header = scanner.header();
@@ -107,15 +109,15 @@ struct RegionChoice {
 
 /// `only`   the step whose fields are told; nothing: those of all steps
 Result<void> announce_chosen_fields(const CaseFiles& files, const CaseLayout& layout,
-                             const std::vector<RegionChoice>& choices, std::optional<std::size_t> only,
-                             FileInfo& info) {
+                                    const std::vector<RegionChoice>& choices, std::optional<std::size_t> only,
+                                    FileInfo& info) {
     for (std::size_t region = 0; region < choices.size(); ++region) {
         if (choices[region].empty()) continue;
         std::set<std::string> seen;
         for (std::size_t step = 0; step < layout.times.size(); ++step) {
             if (only && *only != step) continue;
-            auto fields = fields_in(
-                files, layout.prefixes.front() + field_folder(layout, layout.regions[region], step), seen, info);
+            auto fields = fields_in(files, layout.prefixes.front() + field_folder(layout, layout.regions[region], step),
+                                    seen, info);
             if (!fields) return fields.error();
             for (const AnnouncedField& field : *fields) announce_field(info, field);
         }

@@ -125,9 +125,6 @@ public:
             grid.cell_fields.push_back({std::string(volume_name), Array::own(std::move(volume_of_tet_))});
         add_notes(result.notes);
         tell_unread(result.info);
-        for (std::size_t i = 0; i < volumes_.size(); ++i)
-            result.info.regions.push_back(
-                {std::string(volume_name), static_cast<std::int64_t>(i), std::string(volumes_[i])});
         return {};
     }
 

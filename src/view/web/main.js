@@ -167,9 +167,10 @@ function takeProgress({step, fraction}) {
   id('progress-bar').hidden = !running;
   if (fraction > 0) id('progress-bar').value = fraction;
   else id('progress-bar').removeAttribute('value');
+  const changed = document.body.dataset.step !== step;
   document.body.dataset.step = step;
   if (step === 'ready') forgetSpeed();
-  if (step === 'ready' && app.grid) wishSoon(); // the boundary is there
+  if (changed && app.grid) wishSoon(); // the boundary may be there
 }
 
 const messages = {

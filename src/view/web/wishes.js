@@ -45,7 +45,7 @@ export function stopWaiting() {
 
 /** What a frame depends on. */
 const wanted = () => JSON.stringify([app.state.field, app.state.value, app.state.pins.map((pin) => pin.value), app.state.colorBy, app.state.map, app.state.range, app.state.logarithmic,
-  planesOf(app.state, 'slice'), app.state.boundary > 0, app.state.isosurfaces, app.state.coloredBoundary, app.state.solid, app.state.keep, app.state.step, document.body.dataset.step === 'ready', serverDraws() && [app.camera.text(), pictureSize(), toMessage(app.state)]]);
+  planesOf(app.state, 'slice'), app.state.boundary > 0, app.state.isosurfaces, app.state.coloredBoundary, app.state.solid, app.state.keep, app.state.step, document.body.dataset.step, serverDraws() && [app.camera.text(), pictureSize(), toMessage(app.state)]]);
 
 /** Bytes a ms of the line, by frames that are large enough to tell. */
 export function measureLine(next) {

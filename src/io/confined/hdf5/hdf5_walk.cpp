@@ -17,7 +17,7 @@
 namespace isotet::io::confined {
 namespace {
 
-constexpr std::size_t max_objects = 1000000, max_files = 1000;
+constexpr std::size_t max_objects = 1000000, max_files = 1000, max_broken = 1000;
 constexpr int max_depth = 100;
 
 /// Closes an HDF5 object at the end of a block.
@@ -139,6 +139,8 @@ private:
         if (object.id < 0) {
             auto dispensable = field_at(path, in_solution_);
             if (!dispensable) return fail(in(path, "cannot be opened"));
+            if (broken_.size() == max_broken)
+                return fail(fmt::format("more than {} of its objects cannot be opened", max_broken));
             broken_.push_back(*std::move(dispensable));
             return;
         }
