@@ -28,7 +28,7 @@ async function compare(contents, path) {
   const {field} = grid.state;
   isotet.answer({do: 'chart', field});
   const chart = find('chart'), isovalue = 0.55 * chart.lower + 0.45 * chart.upper;
-  isotet.answer({do: 'show', number: 1, state: {...grid.state, isovalues: [isovalue]}, moving: false});
+  isotet.answer({do: 'show', number: 1, state: {...grid.state, isosurfaces: true, isovalues: [isovalue]}, moving: false});
   const frame = said.find((one) => one.frame);
   check(frame, `${path}: ${find('refused')?.sentence}`);
   const shown = headOf(frame.frame).surfaces.find(({kind}) => kind === 'surface').triangles;
