@@ -33,6 +33,9 @@ public:
     void external_link(const std::string& name, const std::string& file, const std::string& target) {
         H5Lcreate_external(file.c_str(), target.c_str(), file_, name.c_str(), H5P_DEFAULT, H5P_DEFAULT);
     }
+    void soft_link(const std::string& name, const std::string& target) {
+        H5Lcreate_soft(target.c_str(), file_, name.c_str(), H5P_DEFAULT, H5P_DEFAULT);
+    }
     void hard_link(const std::string& object, const std::string& name) {
         H5Lcreate_hard(file_, object.c_str(), file_, name.c_str(), H5P_DEFAULT, H5P_DEFAULT);
     }

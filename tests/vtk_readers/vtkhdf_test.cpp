@@ -474,6 +474,65 @@ TEST(ReadVtkhdf, LeavesOutArraysThatHdf5CannotOpen) {
     }
 }
 
+/// Two tets with a field q and something else.
+Result<ReadResult> two_tets_with(const TemporaryFolder& folder, const std::function<void(Hdf5Writer&)>& put,
+                                 const ReadOptions& options = {}) {
+    {
+        Hdf5Writer file(folder.file("a.vtkhdf"));
+        write_two_tets(file);
+        file.data<double>("/VTKHDF/PointData/q", {1, 2, 3, 4, 5}, {5});
+        put(file);
+    }
+    return read(folder.file("a.vtkhdf"), options);
+}
+
+TEST(ReadVtkhdf, LeavesOutArraysThatAreLinksToNothing) {
+    const TemporaryFolder folder;
+    folder.write("text.h5", "no HDF5");
+    {
+        Hdf5Writer other(folder.file("other.h5"));
+        other.data<double>("/p", {1, 2, 3, 4, 5}, {5});
+    }
+    ReadOptions asked;
+    asked.point_fields = {"p"};
+    struct Case {
+        std::function<void(Hdf5Writer&, const std::string&)> link;
+        std::string reason;
+    };
+    const auto external = [](const char* file, const char* target) {
+        return [=](Hdf5Writer& to, const std::string& name) { to.external_link(name, file, target); };
+    };
+    const Case cases[] = {
+        {external("missing.h5", "/p"), "\"missing.h5\", which is not there"},
+        {external("other.h5", "/missing"), "links to \"/missing\" in \"other.h5\", which HDF5 cannot open"},
+        {external("text.h5", "/p"), "links to \"/p\" in \"text.h5\", which HDF5 cannot open"},
+        {[](Hdf5Writer& to, const std::string& name) { to.soft_link(name, "/VTKHDF/missing"); },
+         "is a link that leads to nothing"},
+    };
+    for (const Case& one : cases) {
+        SCOPED_TRACE(one.reason);
+        const auto p = [&](Hdf5Writer& file) { one.link(file, "/VTKHDF/PointData/p"); };
+        const auto rest = two_tets_with(folder, p);
+        ASSERT_TRUE(rest) << rest.error().message;
+        ASSERT_EQ(rest->grid.point_fields.size(), 1u);
+        EXPECT_EQ(rest->grid.point_fields[0].name, "q");
+        ASSERT_EQ(rest->info.left_out.size(), 1u);
+        EXPECT_EQ(rest->info.left_out[0].name, "p");
+        EXPECT_NE(rest->info.left_out[0].reason.find(one.reason), std::string::npos) << rest->info.left_out[0].reason;
+        EXPECT_EQ(inspect(folder.file("a.vtkhdf")).value().left_out.size(), 1u);
+        const auto refused = two_tets_with(folder, p, asked);
+        ASSERT_FALSE(refused);
+        EXPECT_NE(refused.error().message.find(one.reason), std::string::npos) << refused.error().message;
+        EXPECT_FALSE(two_tets_with(
+            folder, [&](Hdf5Writer& file) { one.link(file, "/VTKHDF/CellData/vtkGhostType"); }))
+            << "ghost cells would be shown";
+    }
+    EXPECT_TRUE(two_tets_with(folder, [](Hdf5Writer& file) {
+        file.soft_link("/VTKHDF/PointData/p", "/VTKHDF/PointData/q");
+        file.soft_link("/elsewhere", "/missing");
+    })->info.left_out.empty());
+}
+
 /// Bytes of chunks are changed: the values are right, or there is an error.
 TEST(ReadVtkhdf, RefusesChunksThatAreBroken) {
     const Strip strip(997);

@@ -52,7 +52,7 @@ std::optional<LeftOut> field_at(const std::string& path, bool in_solution) {
     if (in_solution) {
         for (const char* name : {"GridLocation", "Rind", "PointList", "PointRange", "DataConversion", "DataClass"})
             if (std::ranges::find(parts, name) != parts.end()) return std::nullopt;
-        const bool of_array = parts.back() == " data" && parts.size() > 1;
+        const bool of_array = parts.back().starts_with(' ') && parts.size() > 1; // " data", " link"
         return LeftOut{"field", of_array ? parts[parts.size() - 2] : parts.back(), reason};
     }
     if (parts.size() < 2 || parts.back().starts_with("vtkGhost")) return std::nullopt;
@@ -61,6 +61,12 @@ std::optional<LeftOut> field_at(const std::string& path, bool in_solution) {
     if (group == "CellData") return LeftOut{"cell field", parts.back(), reason};
     if (group == "FieldData" || parts.back() == "FieldData") return LeftOut{"array", parts.back(), reason};
     return std::nullopt;
+}
+
+/// Without its target cells or fields would be missing in silence.
+bool must_lead_somewhere(const std::string& path) {
+    const std::string last = parts_of(path).back();
+    return last == "PointData" || last == "CellData" || last.starts_with("vtkGhost");
 }
 
 /// The kind of a CGNS node.
@@ -81,21 +87,54 @@ std::string label_of(hid_t group) {
 
 class Walk {
 public:
-    Walk(const std::string& path, bool allow_outside) : allow_outside_(allow_outside), files_{path} {}
+    Walk(const std::string& path, bool allow_outside) : allow_outside_(allow_outside), files_{{path, true}} {}
 
     Result<std::vector<LeftOut>> all_files() {
-        for (std::size_t i = 0; i < files_.size() && !failed_; ++i) one_file(std::string(files_[i]));
+        for (std::size_t i = 0; i < files_.size() && !failed_; ++i) one_file(WalkedFile(files_[i]));
+        if (!failed_) follow_links();
         if (failed_) return *failed_;
         return std::move(broken_);
     }
 
 private:
+    struct WalkedFile {
+        std::string path;
+        bool needed; ///< else only fields are in it
+    };
+    /// A link that may lead to nothing.
+    struct LooseLink {
+        std::string file, path;
+        std::optional<LeftOut> without; ///< what a grid then lacks; nothing: it cannot
+        std::optional<Error> missing;   ///< its file is not where it may be
+    };
+
     void fail(std::string_view what) {
         if (!failed_) failed_ = broken(file_, what);
     }
-    void one_file(const std::string& path) {
-        file_ = path;
-        const Closing file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    void lack(LeftOut item) {
+        if (broken_.size() == max_broken)
+            return fail(fmt::format("more than {} of its objects cannot be opened", max_broken));
+        broken_.push_back(std::move(item));
+    }
+    /// Once all files are known to be sound: HDF5 opens what links lead to.
+    void follow_links() {
+        for (std::size_t i = 0; i < links_.size() && !failed_;) {
+            file_ = links_[i].file;
+            const Closing file(H5Fopen(file_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+            for (; i < links_.size() && links_[i].file == file_ && !failed_; ++i) {
+                LooseLink& link = links_[i];
+                const Closing object(H5Oopen(file.id, link.path.c_str(), H5P_DEFAULT), H5Oclose);
+                if (object.id >= 0 && link.missing) failed_ = std::move(link.missing); // HDF5 found another one
+                else if (object.id < 0 && link.without) lack(*std::move(link.without));
+                else if (object.id < 0) fail(in(link.path, "is a link that leads to nothing"));
+            }
+        }
+    }
+    void one_file(const WalkedFile& walked) {
+        file_ = walked.path;
+        needed_ = walked.needed;
+        const Closing file(H5Fopen(file_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+        if (file.id < 0 && !needed_) return;
         if (file.id < 0) return fail("HDF5 cannot open it: the file is broken");
         const Closing root(H5Gopen2(file.id, "/", H5P_DEFAULT), H5Gclose);
         if (root.id < 0) return fail("it has no root group: the file is broken");
@@ -132,21 +171,25 @@ private:
     void link(hid_t group_id, const std::string& group_name, const char* name, const H5L_info_t& about) {
         const std::string path = group_name + "/" + name;
         if (++objects_ > max_objects) return fail(fmt::format("it holds more than {} objects", max_objects));
-        if (about.type == H5L_TYPE_SOFT) return;
+        if (about.type == H5L_TYPE_SOFT) return soft(path);
         if (about.type == H5L_TYPE_EXTERNAL) return external(group_id, path, name, about);
         if (about.type != H5L_TYPE_HARD) return fail(in(path, "is a link of a kind of its own"));
         const Closing object(H5Oopen(group_id, name, H5P_DEFAULT), H5Oclose);
         if (object.id < 0) {
             auto dispensable = field_at(path, in_solution_);
-            if (!dispensable) return fail(in(path, "cannot be opened"));
-            if (broken_.size() == max_broken)
-                return fail(fmt::format("more than {} of its objects cannot be opened", max_broken));
-            broken_.push_back(*std::move(dispensable));
+            if (dispensable) lack(*std::move(dispensable));
+            else if (needed_) fail(in(path, "cannot be opened"));
             return;
         }
         const H5I_type_t kind = H5Iget_type(object.id);
         if (kind == H5I_GROUP) group(object.id, path);
         else if (kind == H5I_DATASET) data_set(object.id, path);
+    }
+
+    void soft(const std::string& path) {
+        auto dispensable = field_at(path, in_solution_);
+        if (dispensable) dispensable->reason = in(path, "is a link that leads to nothing");
+        if (dispensable || must_lead_somewhere(path)) links_.push_back({file_, path, std::move(dispensable), {}});
     }
 
     void external(hid_t group_id, const std::string& path, const char* name, const H5L_info_t& about) {
@@ -156,7 +199,20 @@ private:
         if (H5Lget_val(group_id, name, value.data(), value.size() - 1, H5P_DEFAULT) < 0 ||
             H5Lunpack_elink_val(value.data(), about.u.val_size, &flags, &file, &target) < 0)
             return fail(in(path, "is a link that cannot be read"));
-        other_file(path, file, "links to");
+        auto dispensable = field_at(path, in_solution_);
+        if (!dispensable) {
+            if (must_lead_somewhere(path)) links_.push_back({file_, path, {}, {}});
+            return other_file(path, file, true);
+        }
+        const auto there = named_file(file_, file, allow_outside_);
+        if (!there && there.error().code == ErrorCode::file) {
+            dispensable->reason = there.error().message;
+            return links_.push_back({file_, path, std::move(dispensable), there.error()});
+        }
+        dispensable->reason =
+            in(path, fmt::format("links to \"{}\" in \"{}\", which HDF5 cannot open", escaped(target), escaped(file)));
+        links_.push_back({file_, path, std::move(dispensable), {}});
+        other_file(path, file, false);
     }
 
     void data_set(hid_t id, const std::string& path) {
@@ -177,21 +233,26 @@ private:
             failed_ = Error{file.error().code, fmt::format("{}: {} another file: {}", escaped(file_), in(path, does),
                                                            file.error().message)};
     }
-    void other_file(const std::string& path, std::string_view name, std::string_view does) {
-        named(path, name, does);
+    void other_file(const std::string& path, std::string_view name, bool needed) {
+        named(path, name, "links to");
         if (failed_) return;
         const auto file = named_file(file_, name, allow_outside_);
-        if (std::ranges::find(files_, *file) != files_.end()) return;
+        if (const auto known = std::ranges::find(files_, *file, &WalkedFile::path); known != files_.end()) {
+            known->needed = known->needed || needed;
+            return;
+        }
         if (files_.size() == max_files) return fail(fmt::format("it links to more than {} files", max_files));
-        files_.push_back(*file);
+        files_.push_back({*file, needed});
     }
     static std::string in(const std::string& path, std::string_view what) {
         return fmt::format("\"{}\" {}", escaped(path.empty() ? "/" : path), what);
     }
 
     bool allow_outside_;
-    std::vector<std::string> files_; ///< this one, and those that it links to
+    std::vector<WalkedFile> files_; ///< this one, and those that it links to
+    std::vector<LooseLink> links_;  ///< of each file together
     std::string file_;
+    bool needed_ = true;
     std::vector<haddr_t> ancestors_, seen_; ///< groups: around this one; with several names
     std::size_t objects_ = 0;
     bool in_solution_ = false; ///< of CGNS

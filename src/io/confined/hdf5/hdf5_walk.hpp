@@ -13,7 +13,8 @@ namespace isotet::io::confined {
 /// be files that the index rules allow (check_name(), named_file()), which are gone over, too; no group may contain
 /// itself; no data set may be put together of others, elsewhere. Files of other kinds pass.
 ///
-/// Returns  objects that HDF5 cannot open and that a grid can lack: arrays of VTKHDF, fields of MED, solutions of CGNS
+/// Returns  what HDF5 cannot open, or links to nothing, and a grid can lack: arrays of VTKHDF, fields of MED, solutions of
+///          CGNS
 ///
 /// Cost     O(objects), at most a million
 /// Errors   invalid_data: the name that breaks a rule; the file, a group or another object cannot be opened
