@@ -56,7 +56,9 @@ public:
 
     template <class T>
     void data(const std::string& name, const std::vector<T>& values, std::vector<hsize_t> dimensions) {
-        const hid_t space = H5Screate_simple(static_cast<int>(dimensions.size()), dimensions.data(), nullptr);
+        const hid_t space = dimensions.empty()
+                                ? H5Screate(H5S_SCALAR)
+                                : H5Screate_simple(static_cast<int>(dimensions.size()), dimensions.data(), nullptr);
         const hid_t set = H5Dcreate2(file_, name.c_str(), type<T>(), space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
         H5Dwrite(set, type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
         H5Dclose(set);
@@ -185,10 +187,10 @@ private:
 };
 
 /// A grid of VTKHDF: two tets on five points, no field yet.
-inline void write_two_tets(Hdf5Writer& file) {
+inline void write_two_tets(Hdf5Writer& file, const std::string& type = "UnstructuredGrid") {
     for (const char* name : {"/VTKHDF", "/VTKHDF/PointData", "/VTKHDF/CellData", "/VTKHDF/FieldData"}) file.group(name);
     file.attribute("/VTKHDF", "Version", std::vector<std::int64_t>{1, 0});
-    file.attribute("/VTKHDF", "Type", "UnstructuredGrid");
+    file.attribute("/VTKHDF", "Type", type);
     file.data<std::int64_t>("/VTKHDF/NumberOfPoints", {5}, {1});
     file.data<std::int64_t>("/VTKHDF/NumberOfCells", {2}, {1});
     file.data<std::int64_t>("/VTKHDF/NumberOfConnectivityIds", {8}, {1});

@@ -523,14 +523,86 @@ TEST(ReadVtkhdf, LeavesOutArraysThatAreLinksToNothing) {
         const auto refused = two_tets_with(folder, p, asked);
         ASSERT_FALSE(refused);
         EXPECT_NE(refused.error().message.find(one.reason), std::string::npos) << refused.error().message;
-        EXPECT_FALSE(two_tets_with(
-            folder, [&](Hdf5Writer& file) { one.link(file, "/VTKHDF/CellData/vtkGhostType"); }))
+        EXPECT_FALSE(two_tets_with(folder, [&](Hdf5Writer& file) { one.link(file, "/VTKHDF/CellData/vtkGhostType"); }))
             << "ghost cells would be shown";
     }
     EXPECT_TRUE(two_tets_with(folder, [](Hdf5Writer& file) {
-        file.soft_link("/VTKHDF/PointData/p", "/VTKHDF/PointData/q");
-        file.soft_link("/elsewhere", "/missing");
-    })->info.left_out.empty());
+                    file.soft_link("/VTKHDF/PointData/p", "/VTKHDF/PointData/q");
+                    file.soft_link("/elsewhere", "/missing");
+                })->info.left_out.empty());
+}
+
+TEST(ReadVtkhdf, TakesATypeThatIsPadded) {
+    const TemporaryFolder folder;
+    for (const std::string& type :
+         {std::string("UnstructuredGrid        "), std::string("UnstructuredGrid\0\0\0", 19),
+          std::string("UnstructuredGrid  \0 ", 20), "UnstructuredGrid" + std::string(400, ' ')}) {
+        {
+            Hdf5Writer file(folder.file("a.vtkhdf"));
+            write_two_tets(file, type);
+        }
+        const auto result = read(folder.file("a.vtkhdf"));
+        ASSERT_TRUE(result) << result.error().message;
+        EXPECT_EQ(result->grid.cells.count(), 2u);
+    }
+}
+
+TEST(ReadVtkhdf, ReadsCountsWithoutDimensions) {
+    const Strip strip(7);
+    const TemporaryFolder folder;
+    {
+        Hdf5Writer file(folder.file("a.vtkhdf"));
+        write_groups(file, 2);
+        file.data<std::int64_t>("/VTKHDF/NumberOfPoints", {10}, {});
+        file.data<std::int64_t>("/VTKHDF/NumberOfCells", {7}, {});
+        file.data<std::int32_t>("/VTKHDF/NumberOfConnectivityIds", {28}, {});
+        file.data("/VTKHDF/Points", strip.points, {10, 3});
+        file.data("/VTKHDF/Connectivity", strip.connectivity, {28});
+        file.data("/VTKHDF/Offsets", strip.offsets, {8});
+        file.data("/VTKHDF/Types", strip.types, {7});
+        file.data("/VTKHDF/PointData/p", strip.values, {10});
+        file.data<double>("/VTKHDF/PointData/single", {1}, {});
+        file.group("/VTKHDF/Steps");
+        file.data<double>("/VTKHDF/Steps/Values", {0.5}, {});
+        file.data<std::int64_t>("/VTKHDF/Steps/NumberOfParts", {1}, {});
+    }
+    const auto result = read(folder.file("a.vtkhdf"));
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(result->info.times, std::vector<double>{0.5});
+    EXPECT_EQ(result->grid.cells.count(), 7u);
+    ASSERT_EQ(result->grid.point_fields.size(), 1u);
+    EXPECT_EQ(numbers_of(result->grid.point_fields[0].values), strip.values);
+    ASSERT_EQ(result->info.left_out.size(), 1u);
+    EXPECT_EQ(result->info.left_out[0].name, "single");
+}
+
+TEST(ReadVtkhdf, NumbersStepsThatHaveNoTimes) {
+    const TemporaryFolder folder;
+    const auto steps = [](Hdf5Writer& file) {
+        file.data<double>("/VTKHDF/PointData/p", {0, 1, 2, 3, 4, 10, 11, 12, 13, 14}, {10});
+        file.group("/VTKHDF/Steps");
+        file.group("/VTKHDF/Steps/PointDataOffsets");
+        file.data<std::int64_t>("/VTKHDF/Steps/PointDataOffsets/p", {0, 5}, {2});
+    };
+    ReadOptions second;
+    second.step = 1;
+    const auto told = two_tets_with(
+        folder,
+        [&](Hdf5Writer& file) {
+            steps(file);
+            file.attribute("/VTKHDF/Steps", "NSteps", std::vector<std::int64_t>{2});
+        },
+        second);
+    ASSERT_TRUE(told) << told.error().message;
+    EXPECT_EQ(told->info.times, (std::vector<double>{0, 1}));
+    EXPECT_EQ(told->grid.point_fields.at(0).values.at(4), 14);
+    ASSERT_EQ(told->info.left_out.size(), 1u);
+    EXPECT_NE(told->info.left_out[0].reason.find("the numbers of the steps were taken"), std::string::npos);
+    const auto unknown = two_tets_with(folder, steps);
+    ASSERT_TRUE(unknown) << unknown.error().message;
+    EXPECT_TRUE(unknown->info.times.empty());
+    ASSERT_EQ(unknown->info.left_out.size(), 1u);
+    EXPECT_NE(unknown->info.left_out[0].reason.find("as one without steps"), std::string::npos);
 }
 
 /// Bytes of chunks are changed: the values are right, or there is an error.

@@ -1,4 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -8,6 +9,7 @@
 #include <hdf5.h>
 
 #include "io/files/escape.hpp"
+#include "io/files/text_scanner.hpp"
 #include "io/confined/hdf5/hdf5_array.hpp"
 #include "io/confined/hdf5/hdf5_filters.hpp"
 #include "io/confined/hdf5/hdf5_handle.hpp"
@@ -186,6 +188,13 @@ std::optional<std::int64_t> integer_attribute(const std::string& file, const std
 
 namespace {
 
+/// Up to the first zero, without blanks at the end: Fortran pads its texts with them.
+std::string unpadded(std::string text) {
+    text.resize(std::min(text.find('\0'), text.size()));
+    while (!text.empty() && is_space(text.back())) text.pop_back();
+    return text;
+}
+
 /// One text of any length, as h5py writes texts of Python.
 std::string variable_text(hid_t attribute, hid_t type) {
     const Handle space(H5Aget_space(attribute), H5Sclose);
@@ -205,10 +214,12 @@ std::string text_attribute(const std::string& file, const std::string& group, co
     const Handle attribute(H5Aopen_by_name(opened, group.c_str(), name, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
     const Handle type(attribute.good() ? H5Aget_type(attribute) : -1, H5Tclose);
     if (!type.good() || H5Tget_class(type) != H5T_STRING) return {};
-    if (H5Tis_variable_str(type) > 0) return variable_text(attribute, type);
-    if (H5Tget_size(type) > 256 || H5Aget_storage_size(attribute) > 256) return {};
-    char text[257] = {};
-    return H5Aread(attribute, type, text) < 0 ? "" : text;
+    if (H5Tis_variable_str(type) > 0) return unpadded(variable_text(attribute, type));
+    constexpr std::size_t most = 1 << 16; // bytes of one attribute in HDF5's usual form
+    const std::size_t size = H5Tget_size(type);
+    if (size > most || H5Aget_storage_size(attribute) != size) return {}; // or there are several
+    std::string text(size, '\0');
+    return H5Aread(attribute, type, text.data()) < 0 ? std::string() : unpadded(std::move(text));
 }
 
 } // namespace isotet::io::confined

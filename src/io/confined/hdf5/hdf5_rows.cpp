@@ -64,6 +64,7 @@ Array as_int32(const Array& values) {
 HdfRead read_by_library(const DataSet& set, hid_t type, const RowRange& range, std::byte* to) {
     const std::scoped_lock lock(hdf5_calls());
     const std::array<hsize_t, 2> start{range.first, 0}, count{range.rows, range.columns};
+    if (set.rank == 0) return read_written(set.data, type, set.space, set.space, {to, range.row_bytes()});
     if (H5Sselect_hyperslab(set.space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr) < 0)
         return HdfRead::failed;
     const Handle memory(H5Screate_simple(set.rank, count.data(), nullptr), H5Sclose);
@@ -127,14 +128,15 @@ OpenDataSet Hdf5Rows::File::open(const std::string& name) const {
                                              0,
                                              {}});
     const auto type = set->stored.good() ? scalar_type_of(set->stored) : std::nullopt;
-    set->rank = set->space.good() ? H5Sget_simple_extent_ndims(set->space) : 0;
-    if (!type || (set->rank != 1 && set->rank != 2) || !set->creation.good()) return nullptr;
-    std::array<hsize_t, 2> extent{0, 1};
+    set->rank = set->space.good() ? H5Sget_simple_extent_ndims(set->space) : -1;
+    if (!type || set->rank < 0 || set->rank > 2 || !set->creation.good()) return nullptr;
+    if (H5Sget_simple_extent_type(set->space) == H5S_NULL) return nullptr;
+    std::array<hsize_t, 2> extent{set->rank == 0 ? 1U : 0U, 1};
     H5Sget_simple_extent_dims(set->space, extent.data(), nullptr);
     if (extent[1] == 0 || extent[1] > 1'000'000) return nullptr;
-    set->shape = {extent[0], static_cast<std::size_t>(extent[1]), *type};
+    set->shape = {extent[0], static_cast<std::size_t>(extent[1]), *type, set->rank == 0};
     set->window_rows = window_rows_of(set->creation, set->rank, extent[0]);
-    set->is_here = starts_at_zero && name_of_file(data) == name_of_file(file);
+    set->is_here = set->rank > 0 && starts_at_zero && name_of_file(data) == name_of_file(file);
     return OpenDataSet(set.release());
 }
 

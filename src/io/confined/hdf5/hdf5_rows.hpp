@@ -18,6 +18,7 @@ struct RowsShape {
     std::uint64_t rows = 0;
     std::size_t columns = 1;
     ScalarType type = ScalarType::float32;
+    bool is_single = false; ///< one value without dimensions, which is one row
 };
 
 /// An open file. Copies share it. Links and outside storage are followed: check_hdf5_names() first.
@@ -27,7 +28,7 @@ public:
     /// Errors   invalid_data: not an HDF5 file; as ByteSource::open()
     static Result<Hdf5Rows> open(const std::string& path);
 
-    /// Nothing where there is no data set of this name with one or two dimensions of numbers.
+    /// Nothing where there is no data set of this name with up to two dimensions of numbers.
     std::optional<RowsShape> shape(const std::string& name) const;
 
     /// Errors   invalid_data: no such data set, rows that it does not have

@@ -11,8 +11,8 @@
 #include "io/amr/boxes_as_pieces.hpp"
 #include "io/confined/hdf5/hdf5_array.hpp"
 #include "io/confined/hdf5/hdf5_rows.hpp"
+#include "io/confined/hdf5/vtkhdf_steps.hpp"
 #include "io/files/text_scanner.hpp"
-#include "io/files/time_values.hpp"
 #include "io/vtk_xml/columns.hpp"
 
 namespace isotet::io::confined {
@@ -31,14 +31,15 @@ Array tuples_of(const Array& values, std::size_t first, std::size_t count) {
 
 class HdfAmr {
 public:
-    HdfAmr(const std::string& path, const Hdf5Rows& rows) : path_(path), rows_(rows) {}
+    HdfAmr(const std::string& path, const Hdf5Rows& rows)
+        : path_(path), rows_(rows), steps_(steps_of(path, "/VTKHDF")) {}
 
     Result<void> announce_all(FileInfo& info);
     Result<void> load(const ReadOptions& options, Loaded& loaded) const;
 
 private:
     std::string group(std::size_t level) const { return "/VTKHDF/" + level_name(level); }
-    bool has_steps() const { return rows_.shape("/VTKHDF/Steps/Values").has_value(); }
+    bool has_steps() const { return !steps_.times.empty(); }
     Result<std::uint64_t> number(const std::string& name, std::uint64_t place) const;
     Result<std::uint64_t> place_of_step(std::size_t level, const std::string& name, std::size_t step) const;
     Result<amr::Level> read_level(std::size_t level, std::size_t step) const;
@@ -47,6 +48,7 @@ private:
 
     const std::string& path_;
     const Hdf5Rows& rows_;
+    HdfSteps steps_;
     std::size_t levels_ = 0;
 };
 
@@ -65,10 +67,8 @@ Result<void> HdfAmr::announce_all(FileInfo& info) {
                     announce(info, {name, association, shape->type, shape->columns});
             }
     amr::announce_point_values(info);
-    if (!has_steps()) return {};
-    const auto times = rows_.read("/VTKHDF/Steps/Values");
-    if (!times) return times.error();
-    info.times = time_values(*times);
+    if (steps_.missing) leave_out(info, *steps_.missing);
+    info.times = steps_.times;
     return {};
 }
 

@@ -16,7 +16,6 @@
 #include "io/confined/hdf5/hdf5_array.hpp"
 #include "io/confined/hdf5/hdf5_cells.hpp"
 #include "io/files/escape.hpp"
-#include "io/files/time_values.hpp"
 #include "io/pieces/shared_faces.hpp"
 #include "io/vtk_xml/columns.hpp"
 
@@ -65,13 +64,11 @@ Result<void> HdfGrid::announce_all(FileInfo& info) const {
         for (const std::string& name : data_sets_of(path_, group_ + data_group_of(association))) {
             const auto shape = rows_.shape(group_ + data_group_of(association) + "/" + name);
             if (vtk_xml::is_ghost_array(name)) continue;
-            if (shape) announce(info, {name, association, shape->type, shape->columns});
+            if (shape && !shape->is_single) announce(info, {name, association, shape->type, shape->columns});
             else leave_out(info, {kind_of_field(association), name, "it is no table of numbers of 1, 2, 4 or 8 bytes"});
         }
-    if (!has_steps()) return {};
-    const auto times = rows_.read(group_ + "Steps/Values");
-    if (!times) return times.error();
-    info.times = time_values(*times);
+    if (steps_.missing) leave_out(info, *steps_.missing);
+    if (has_steps()) info.times = steps_.times;
     return {};
 }
 
@@ -190,7 +187,6 @@ Result<Array> HdfGrid::read_points(const HdfPartition& part) const {
 /// entries for parts, not steps, and they count only where they have as many rows as there are steps.
 Result<void> HdfGrid::find_faces(const HdfStepPlace& place, std::size_t step, std::vector<HdfPartition>& parts) const {
     if (!has("FaceConnectivity") || !has("PolyhedronToFaces")) return {};
-    const auto steps = rows_.shape(group_ + "Steps/Values");
     const auto fill = [&](const char* number, const char* table, std::uint64_t HdfPartition::* size,
                           std::uint64_t HdfPartition::* first) -> Result<void> {
         const auto sizes = counts(number, 0, place.first_part + place.parts);
@@ -198,7 +194,7 @@ Result<void> HdfGrid::find_faces(const HdfStepPlace& place, std::size_t step, st
         const auto own = sizes->begin() + static_cast<std::ptrdiff_t>(place.first_part);
         std::uint64_t at = std::accumulate(sizes->begin(), own, std::uint64_t{0});
         const auto listed = rows_.shape(group_ + "Steps/" + table);
-        if (steps && listed && listed->rows == steps->rows) {
+        if (has_steps() && listed && listed->rows == steps_.times.size()) {
             const auto told = counts(std::string("Steps/") + table, step, 1);
             if (!told) return told.error();
             at = told->front();
@@ -327,7 +323,7 @@ Result<void> HdfGrid::load_fields(const HdfPartition& part, const HdfStepPlace& 
         const bool is_field = !ghost && wanted(options, association, name);
         const bool marks = !of_points && (ghost || name == vtk_xml::ghost_rank_name);
         if (!is_field && !marks) continue;
-        if (!has(group + "/" + name)) continue;
+        if (const auto shape = rows_.shape(group_ + group + "/" + name); !shape || shape->is_single) continue;
         auto values = read_field(part, place, step, association, name);
         if (!values && (ghost || values.error().code != ErrorCode::invalid_data)) return values.error();
         if (!values) leave_out(info, {kind_of_field(association), name, values.error().message});

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "io/confined/hdf5/hdf5_rows.hpp"
+#include "io/confined/hdf5/vtkhdf_steps.hpp"
 #include "io/pieces/cell_places.hpp"
 #include "io/pieces/loaded.hpp"
 #include "io/reader.hpp"
@@ -44,7 +45,10 @@ class HdfGrid {
 public:
     /// `group`   where it is, with a slash at the end: "/VTKHDF/"
     HdfGrid(std::string path, const Hdf5Rows& rows, std::string group)
-        : path_(std::move(path)), rows_(rows), group_(std::move(group)) {}
+        : path_(std::move(path)),
+          rows_(rows),
+          group_(std::move(group)),
+          steps_(steps_of(path_, group_.substr(0, group_.size() - 1))) {}
 
     /// Adds fields and times.
     Result<void> announce_all(FileInfo& info) const;
@@ -56,7 +60,7 @@ public:
 private:
     Error wrong(const std::string& what) const { return broken(path_, what); }
     bool has(const std::string& name) const { return rows_.shape(group_ + name).has_value(); }
-    bool has_steps() const { return has("Steps/Values"); }
+    bool has_steps() const { return !steps_.times.empty(); }
 
     Result<std::vector<std::uint64_t>> counts(const std::string& name, std::uint64_t first, std::uint64_t rows) const;
     Result<std::uint64_t> number_or(const std::string& name, std::uint64_t place, std::uint64_t otherwise) const;
@@ -79,6 +83,7 @@ private:
     std::string path_;
     const Hdf5Rows& rows_;
     std::string group_;
+    HdfSteps steps_;
 };
 
 } // namespace isotet::io::confined

@@ -10,7 +10,6 @@
 #include <fmt/core.h>
 
 #include "io/confined/hdf5/hdf5_array.hpp"
-#include "io/files/time_values.hpp"
 #include "io/vtk_xml/columns.hpp"
 #include "io/vtk_xml/load.hpp"
 
@@ -38,11 +37,7 @@ Result<HdfImage> HdfImage::open(const std::string& path, const std::string& root
             image.points_.matrix[3 * row + axis] = direction[3 * row + axis] * spacing[axis];
     }
     image.size_ = {along[0], along[1], along[2]};
-    const std::string steps = root + "/Steps";
-    if (const auto times = read_hdf5_array(path, steps + "/Values", {}, Depth::arrays)) {
-        image.has_steps_ = true;
-        image.times_ = time_values(times->values);
-    }
+    image.steps_ = steps_of(path, root);
     return image;
 }
 
@@ -51,7 +46,7 @@ Result<Array> HdfImage::read_field(Association association, const std::string& n
                                    Depth depth) const {
     const std::uint64_t less = association == Association::cell ? 1 : 0;
     std::vector<std::uint64_t> expected{size_.z - less, size_.y - less, size_.x - less};
-    if (has_steps_) expected.insert(expected.begin(), times_.size());
+    if (!steps_.times.empty()) expected.insert(expected.begin(), steps_.times.size());
     const std::string full = group(association) + "/" + name;
     const auto described = read_hdf5_array(path_, full, {}, Depth::description);
     if (!described) return described.error();
@@ -67,7 +62,7 @@ Result<Array> HdfImage::read_field(Association association, const std::string& n
     if (depth == Depth::description) return Array(described->values.type(), nullptr, 0, components, nullptr);
     if (!is_written(path_, full)) return Error{ErrorCode::invalid_data, "it has values that were never written"};
     Box box{std::vector<std::uint64_t>(shape.size(), 0), std::vector<std::uint64_t>(shape.size(), 1), shape};
-    if (has_steps_) {
+    if (!steps_.times.empty()) {
         box.start[0] = step;
         box.count[0] = 1;
     }
@@ -78,7 +73,8 @@ Result<Array> HdfImage::read_field(Association association, const std::string& n
 }
 
 void HdfImage::announce(FileInfo& info) const {
-    if (info.times.empty()) info.times = times_;
+    if (steps_.missing) leave_out(info, *steps_.missing);
+    if (info.times.empty()) info.times = steps_.times;
     for (const Association association : {Association::point, Association::cell})
         for (const std::string& name : data_sets_of(path_, group(association))) {
             if (vtk_xml::is_ghost_array(name) || (association == Association::cell && is_flat())) continue;

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/confined/hdf5/vtkhdf_steps.hpp"
 #include "io/pieces/loaded.hpp"
 #include "io/reader.hpp"
 #include "io/vtk_xml/load.hpp"
@@ -38,8 +39,7 @@ private:
     std::string path_, root_;
     vtk_xml::GridSize size_;
     vtk_xml::ImagePoints points_;
-    std::vector<double> times_;
-    bool has_steps_ = false;
+    HdfSteps steps_;
 };
 
 /// A VTKHDF file of type ImageData, as hexahedra. Data sets of fields have the axes z, y, x, before them the step where there

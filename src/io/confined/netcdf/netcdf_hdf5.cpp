@@ -22,7 +22,8 @@ public:
     }
     std::optional<std::vector<std::uint64_t>> shape(const std::string& variable) const override {
         auto described = read_hdf5_array(path_, variable, {}, Depth::description);
-        if (!described || (!rows_.shape(variable) && !has_many(described->dimensions))) return std::nullopt;
+        if (!described || described->dimensions.empty()) return std::nullopt;
+        if (!rows_.shape(variable) && !has_many(described->dimensions)) return std::nullopt;
         return std::move(described->dimensions);
     }
     Result<Array> rows(const std::string& variable, std::uint64_t first, std::uint64_t count) const override {
