@@ -370,6 +370,40 @@ TEST(ReadExodusPieces, AVariableThatIsBrokenIsLeftOutAndOthersAreRead) {
     EXPECT_FALSE(read(folder.file("b.e"), options));
 }
 
+TEST(ReadExodusPieces, OneThatHdf5CannotOpenIsLeftOutWithTheReason) {
+    const TemporaryFolder folder;
+    ExodusSample sample;
+    sample.format = EX_NETCDF4;
+    write_exodus(sample, folder.file("a.e"));
+    const std::string content = content_of(folder.file("a.e"));
+    const auto without = [&](const char* name) {
+        std::string broken = content;
+        broken.replace(Hdf5Writer::place_of(folder.file("a.e"), name), 8, 8, '\xff');
+        return folder.write("b.e", broken);
+    };
+    for (const auto& [data, field] : {std::pair("vals_nod_var4", "temp"), {"vals_elem_var1eb1", "load"}}) {
+        const std::string path = without(data);
+        const auto result = read(path);
+        ASSERT_TRUE(result) << result.error().message;
+        EXPECT_EQ(result->grid.point_fields.size() + result->grid.cell_fields.size(), 4u);
+        ASSERT_EQ(result->info.left_out.size(), 1u);
+        EXPECT_EQ(result->info.left_out[0].name, field);
+        EXPECT_EQ(result->info.left_out[0].reason, "HDF5 cannot open \"/" + std::string(data) + "\"");
+        const auto info = inspect(path);
+        ASSERT_TRUE(info) << info.error().message;
+        EXPECT_EQ(info->fields.size(), 4u);
+        EXPECT_EQ(info->left_out.size(), 1u);
+        ReadOptions options;
+        options.point_fields = {"temp"};
+        options.cell_fields = {"load"};
+        EXPECT_FALSE(read(path, options));
+    }
+    const auto needed = read(without("connect1"));
+    ASSERT_FALSE(needed);
+    EXPECT_NE(needed.error().message.find("\"/connect1\" cannot be opened"), std::string::npos)
+        << needed.error().message;
+}
+
 TEST(ReadExodusPieces, BlocksOfUnknownElementsAreLeftOutWithTheirNames) {
     const TemporaryFolder folder;
     ExodusSample sample;

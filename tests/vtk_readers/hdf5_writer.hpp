@@ -27,6 +27,16 @@ public:
     Hdf5Writer& operator=(const Hdf5Writer&) = delete;
     ~Hdf5Writer() { H5Fclose(file_); }
 
+    /// Of the header of an object.
+    static std::size_t place_of(const std::string& path, const char* object) {
+        const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+        H5O_info_t info;
+        info.addr = 0;
+        H5Oget_info_by_name2(file, object, &info, H5O_INFO_BASIC, H5P_DEFAULT);
+        H5Fclose(file);
+        return static_cast<std::size_t>(info.addr);
+    }
+
     void group(const std::string& name) {
         H5Gclose(H5Gcreate2(file_, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
     }

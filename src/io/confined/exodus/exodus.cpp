@@ -22,13 +22,43 @@
 namespace isotet::io::confined {
 namespace {
 
+const char* kind_of_variable(Association association) {
+    return association == Association::point ? "point field" : "cell field";
+}
+
 constexpr std::size_t most_open = 200; ///< parts, of up to two files each: a process may have 1024
 
-FileInfo describe(const ExodusFile& file) {
+/// A part, and the data sets that HDF5 cannot open.
+struct OpenPart {
+    ExodusFile file;
+    std::vector<LeftOut> broken;
+
+    /// Why a variable cannot be read, for some step or block; nothing: as far as is known, it can.
+    std::optional<std::string> why_without(Association association, std::size_t variable) const {
+        const std::string own = association == Association::point ? fmt::format("vals_nod_var{}", variable + 1)
+                                                                  : fmt::format("vals_elem_var{}eb", variable + 1);
+        for (const LeftOut& item : broken)
+            if (association == Association::point ? item.name == own || item.name == "vals_nod_var"
+                                                  : item.name.starts_with(own))
+                return item.reason;
+        return std::nullopt;
+    }
+};
+
+FileInfo describe(const OpenPart& part) {
+    const ExodusFile& file = part.file;
     FileInfo info;
     info.times = file.times();
-    for (const auto& name : file.point_variables()) announce(info, {name, Association::point, file.type(), 1});
-    for (const auto& name : file.cell_variables()) announce(info, {name, Association::cell, file.type(), 1});
+    const auto take = [&](Association association, const std::vector<std::string>& names) {
+        for (std::size_t i = 0; i < names.size(); ++i)
+            if (auto reason = part.why_without(association, i))
+                leave_out(info, {kind_of_variable(association), names[i], *std::move(reason)});
+            else announce(info, {names[i], association, file.type(), 1});
+    };
+    take(Association::point, file.point_variables());
+    take(Association::cell, file.cell_variables());
+    for (const LeftOut& item : part.broken)
+        if (!item.name.starts_with("vals_nod_var") && !item.name.starts_with("vals_elem_var")) leave_out(info, item);
     return info;
 }
 
@@ -37,24 +67,26 @@ Result<void> take_variable(Association association, const std::string& name, Res
                            std::vector<Field>& fields) {
     if (values) fields.push_back({name, *std::move(values)});
     else if (values.error().code != ErrorCode::invalid_data) return values.error();
-    else
-        leave_out(info, {association == Association::point ? "point field" : "cell field", name,
-                         values.error().message});
+    else leave_out(info, {kind_of_variable(association), name, values.error().message});
     return {};
 }
 
-Result<void> read_fields(ExodusFile& file, const ReadOptions& options, Loaded& loaded, Grid& grid) {
+Result<void> read_fields(OpenPart& part, const ReadOptions& options, Loaded& loaded, Grid& grid) {
+    ExodusFile& file = part.file;
+    const auto is_read = [&](Association association, const std::string& name, std::size_t variable) {
+        return wanted(options, association, name) && !part.why_without(association, variable);
+    };
     if (file.times().empty()) return {};
     for (std::size_t i = 0; i < file.point_variables().size(); ++i) {
         const std::string& name = file.point_variables()[i];
-        if (!wanted(options, Association::point, name)) continue;
+        if (!is_read(Association::point, name, i)) continue;
         auto taken = take_variable(Association::point, name, file.point_variable(i, loaded.step), loaded.info,
                                    grid.point_fields);
         if (!taken) return taken;
     }
     for (std::size_t i = 0; i < file.cell_variables().size(); ++i) {
         const std::string& name = file.cell_variables()[i];
-        if (!wanted(options, Association::cell, name)) continue;
+        if (!is_read(Association::cell, name, i)) continue;
         std::size_t blocks_without = 0;
         auto values = file.cell_variable(i, loaded.step, blocks_without);
         if (values && blocks_without > 0)
@@ -109,10 +141,13 @@ std::vector<BlockInfo> blocks_of(const ExodusFile& file) {
 }
 
 /// Opens a part, once it is known to be whole.
-Result<ExodusFile> open_part(const std::string& part, const ReadOptions& options) {
+Result<OpenPart> open_part(const std::string& part, const ReadOptions& options) {
     if (auto complete = check_hdf5_length(part); !complete) return complete.error();
-    if (auto names = check_hdf5_names(part, options.allow_outside); !names) return names.error();
-    return ExodusFile::open(part);
+    auto broken = check_hdf5_names(part, options.allow_outside);
+    if (!broken) return broken.error();
+    auto file = ExodusFile::open(part);
+    if (!file) return file.error();
+    return OpenPart{*std::move(file), *std::move(broken)};
 }
 
 /// What all parts hold.
@@ -127,7 +162,8 @@ Result<FileInfo> describe_parts(const std::vector<std::string>& parts, const Rea
             return broken(parts[i], fmt::format("this part has {} time steps, the first one {}", info.times.size(),
                                                 all.times.size()));
         for (FieldInfo& field : info.fields) announce(all, std::move(field));
-        for (const BlockInfo& block : blocks_of(*file)) announce_block(all, block);
+        for (LeftOut& item : info.left_out) leave_out(all, std::move(item));
+        for (const BlockInfo& block : blocks_of(file->file)) announce_block(all, block);
     }
     return all;
 }
@@ -172,15 +208,15 @@ struct PartRead {
     bool stays_open = false; ///< may do so, until its cells are read
 };
 
-Result<Piece> read_piece(const std::shared_ptr<ExodusFile>& opened, const PartRead& part, const ReadOptions& options,
+Result<Piece> read_piece(const std::shared_ptr<OpenPart>& opened, const PartRead& part, const ReadOptions& options,
                          Loaded& loaded) {
-    ExodusFile& file = *opened;
+    ExodusFile& file = opened->file;
     Piece piece;
     piece.name = part.path;
     auto points = file.coordinates();
     if (!points) return points.error();
     piece.grid.points = std::move(*points);
-    if (part.stays_open && may_be_left(file, options)) piece.unread = unread_exodus_cells(opened, part.path);
+    if (part.stays_open && may_be_left(file, options)) piece.unread = unread_exodus_cells({opened, &file}, part.path);
     if (!piece.unread) {
         auto cells = read_exodus_cells(file, part.path);
         if (!cells) return cells.error();
@@ -188,7 +224,7 @@ Result<Piece> read_piece(const std::shared_ptr<ExodusFile>& opened, const PartRe
     }
     say_what_is_read(file, loaded);
     if (auto read = read_side_sets(file, options, loaded, piece.grid); !read) return read.error();
-    if (auto read = read_fields(file, options, loaded, piece.grid); !read) return read.error();
+    if (auto read = read_fields(*opened, options, loaded, piece.grid); !read) return read.error();
     if (!part.with_ids) return piece;
     auto point_ids = file.point_ids();
     if (!point_ids) return point_ids.error();
@@ -199,9 +235,9 @@ Result<Piece> read_piece(const std::shared_ptr<ExodusFile>& opened, const PartRe
     return piece;
 }
 
-Result<Piece> read_chosen(const std::shared_ptr<ExodusFile>& opened, const PartRead& part, const ReadOptions& options,
+Result<Piece> read_chosen(const std::shared_ptr<OpenPart>& opened, const PartRead& part, const ReadOptions& options,
                           const std::vector<bool>& chosen, Loaded& loaded) {
-    ExodusFile& file = *opened;
+    ExodusFile& file = opened->file;
     const std::vector<bool> here = chosen_here(file, loaded.info, chosen);
     const auto sets = here.begin() + static_cast<std::ptrdiff_t>(file.blocks().size());
     const bool all_blocks = std::find(sets, here.end(), true) != here.end();
@@ -236,7 +272,7 @@ Result<Loaded> load_exodus(const std::string& path, const ReadOptions& options, 
         const PartRead part{(*parts)[i], parts->size() > 1, parts->size() <= most_open};
         auto opened = open_part(part.path, options);
         if (!opened) return opened.error();
-        const auto file = std::make_shared<ExodusFile>(*std::move(opened));
+        const auto file = std::make_shared<OpenPart>(*std::move(opened));
         auto piece = options.blocks.empty() ? read_piece(file, part, options, loaded)
                                             : read_chosen(file, part, options, *chosen, loaded);
         if (!piece) return piece.error();

@@ -2,6 +2,7 @@
 #include "io/confined/hdf5/hdf5_walk.hpp"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -42,6 +43,13 @@ std::vector<std::string> parts_of(std::string_view path) {
     return parts;
 }
 
+/// Variables of Exodus that are no part of the mesh.
+bool is_extra_of_exodus(const std::string& name) {
+    return std::ranges::any_of(
+        std::array{"vals_", "name_", "qa_records", "info_records", "dist_fact", "node_ns", "elem_ss", "side_ss"},
+        [&](const char* begin) { return name.starts_with(begin); });
+}
+
 /// What a grid lacks without an object that cannot be opened; nothing where it would be another grid: without its
 /// ghost cells, or with values elsewhere.
 std::optional<LeftOut> field_at(const std::string& path, bool in_solution) {
@@ -55,6 +63,7 @@ std::optional<LeftOut> field_at(const std::string& path, bool in_solution) {
         const bool of_array = parts.back().starts_with(' ') && parts.size() > 1; // " data", " link"
         return LeftOut{"field", of_array ? parts[parts.size() - 2] : parts.back(), reason};
     }
+    if (parts.size() == 1 && is_extra_of_exodus(parts[0])) return LeftOut{"array", parts[0], reason};
     if (parts.size() < 2 || parts.back().starts_with("vtkGhost")) return std::nullopt;
     const std::string& group = parts[parts.size() - 2];
     if (group == "PointData") return LeftOut{"point field", parts.back(), reason};

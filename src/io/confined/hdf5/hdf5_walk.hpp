@@ -14,7 +14,7 @@ namespace isotet::io::confined {
 /// itself; no data set may be put together of others, elsewhere. Files of other kinds pass.
 ///
 /// Returns  what HDF5 cannot open, or links to nothing, and a grid can lack: arrays of VTKHDF, fields of MED, solutions of
-///          CGNS
+///          CGNS, variables of Exodus
 ///
 /// Cost     O(objects), at most a million
 /// Errors   invalid_data: the name that breaks a rule; the file, a group or another object cannot be opened
