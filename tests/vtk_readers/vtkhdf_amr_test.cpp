@@ -138,6 +138,20 @@ TEST(ReadVtkHdfAmr, WhatDoesNotFitIsAnErrorThatSaysSo) {
     expect_error([](HdfAmrFile& file) { file.boxes.levels.clear(); }, "\"Level0/AMRBox\" is not there");
 }
 
+TEST(ReadVtkHdfAmr, ListsArraysThatAreNoTables) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("a.vtkhdf");
+    HdfAmrFile().write(path);
+    Hdf5Writer(path, {}).data<double>("/VTKHDF/Level0/CellData/single", {1}, {});
+    const auto result = read(path);
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(result->grid.cell_fields.size(), 1u);
+    for (const auto& left_out : {result->info.left_out, inspect(path).value().left_out}) {
+        ASSERT_EQ(left_out.size(), 1u);
+        EXPECT_EQ(left_out[0].name, "single");
+    }
+}
+
 TEST(ReadVtkHdfAmr, TheFilesInDataAreTheSameGrid) {
     const std::string folder = (source_folder() / "data/amr").string() + "/";
     const auto xml = read(folder + "sphere_amr.vth"), hdf = read(folder + "sphere_amr.vtkhdf");

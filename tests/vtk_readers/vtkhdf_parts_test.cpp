@@ -259,6 +259,7 @@ TEST_F(ReadVtkhdfParts, PlacesThePointsOfImages) {
     EXPECT_EQ(result->grid.cell_fields[0].values.at(15, 0), 15);
     ASSERT_EQ(result->info.left_out.size(), 1u);
     EXPECT_EQ(result->info.left_out[0].name, "short");
+    EXPECT_EQ(inspect(folder_.file("a.vtkhdf")).value().left_out.size(), 1u);
 }
 
 TEST_F(ReadVtkhdfParts, ReadsTheStepOfAnImageThatIsAskedFor) {

@@ -63,8 +63,9 @@ Result<void> HdfAmr::announce_all(FileInfo& info) {
         for (const auto association : {Association::point, Association::cell})
             for (const std::string& name : data_sets_of(path_, group(level) + "/" + data_of(association))) {
                 const auto shape = rows_.shape(group(level) + "/" + data_of(association) + "/" + name);
-                if (shape && !vtk_xml::is_ghost_array(name))
-                    announce(info, {name, association, shape->type, shape->columns});
+                if (vtk_xml::is_ghost_array(name)) continue;
+                if (shape && !shape->is_single) announce(info, {name, association, shape->type, shape->columns});
+                else leave_out(info, {kind_of_field(association), name, no_table_of_numbers});
             }
     amr::announce_point_values(info);
     if (steps_.missing) leave_out(info, *steps_.missing);
@@ -129,13 +130,13 @@ Result<void> HdfAmr::load_fields(std::size_t level, const amr::Level& boxes, Ass
         const bool ghost = vtk_xml::is_ghost_array(name);
         if (ghost ? of_points : !wanted(options, association, name)) continue;
         const std::string full = fmt::format("{}/{}/{}", group(level), data_of(association), name);
-        if (!rows_.shape(full)) continue;
+        if (const auto shape = rows_.shape(full); !shape || shape->is_single) continue;
         const auto first = place_of_step(level, fmt::format("{}Offsets/{}", data_of(association), name), loaded.step);
         if (!first) return first.error();
         auto values = rows_.read(full, *first, rows);
         if (!values && (ghost || values.error().code != ErrorCode::invalid_data)) return values.error();
         if (!values) {
-            leave_out(loaded.info, {of_points ? "point field" : "cell field", name, values.error().message});
+            leave_out(loaded.info, {kind_of_field(association), name, values.error().message});
             continue;
         }
         std::uint64_t place = 0;

@@ -22,10 +22,6 @@
 namespace isotet::io::confined {
 namespace {
 
-const char* kind_of_field(Association association) {
-    return association == Association::point ? "point field" : "cell field";
-}
-
 const char* data_group_of(Association association) {
     return association == Association::point ? "PointData" : "CellData";
 }
@@ -65,7 +61,7 @@ Result<void> HdfGrid::announce_all(FileInfo& info) const {
             const auto shape = rows_.shape(group_ + data_group_of(association) + "/" + name);
             if (vtk_xml::is_ghost_array(name)) continue;
             if (shape && !shape->is_single) announce(info, {name, association, shape->type, shape->columns});
-            else leave_out(info, {kind_of_field(association), name, "it is no table of numbers of 1, 2, 4 or 8 bytes"});
+            else leave_out(info, {kind_of_field(association), name, no_table_of_numbers});
         }
     if (steps_.missing) leave_out(info, *steps_.missing);
     if (has_steps()) info.times = steps_.times;

@@ -80,6 +80,7 @@ void HdfImage::announce(FileInfo& info) const {
             if (vtk_xml::is_ghost_array(name) || (association == Association::cell && is_flat())) continue;
             const auto field = read_field(association, name, 0, Depth::description);
             if (field) io::announce(info, {name, association, field->type(), field->components()});
+            else leave_out(info, {kind_of_field(association), name, field.error().message});
         }
 }
 
@@ -91,7 +92,7 @@ Result<void> HdfImage::load_fields(Association association, const ReadOptions& o
         const bool is_ghost = vtk_xml::is_ghost_array(name);
         if (is_ghost ? of_points : !wanted(options, association, name)) continue;
         auto values = read_field(association, name, loaded.step, Depth::arrays);
-        if (!values) leave_out(loaded.info, {of_points ? "point field" : "cell field", name, values.error().message});
+        if (!values) leave_out(loaded.info, {kind_of_field(association), name, values.error().message});
         else if (is_ghost) vtk_xml::mark_left_out(*values, name, piece.left_out);
         else fields.push_back({name, *std::move(values)});
     }

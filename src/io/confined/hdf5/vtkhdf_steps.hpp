@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// The time steps of a grid in a VTKHDF file.
+// What the kinds of grids of VTKHDF share: their time steps, and words of messages.
 #pragma once
 
 #include <optional>
@@ -9,6 +9,13 @@
 #include <isotet/read.hpp>
 
 namespace isotet::io::confined {
+
+/// As LeftOut has it.
+inline const char* kind_of_field(Association association) {
+    return association == Association::point ? "point field" : "cell field";
+}
+
+constexpr const char* no_table_of_numbers = "it is no table of numbers of 1, 2, 4 or 8 bytes";
 
 struct HdfSteps {
     std::vector<double> times;      ///< empty: the grid has no steps
