@@ -99,6 +99,14 @@ TEST_F(IndexFiles, BlocksHaveTheTimeThatTheIndexStates) {
     EXPECT_EQ(info->times, std::vector<double>{0.125});
 }
 
+TEST_F(IndexFiles, PvdMayHaveBlanksAroundTimes) {
+    const auto info = inspect(
+        folder_.write("case/run.pvd", pvd({{" 0", "parts/a.vtu"}, {"\t2.5\n", "parts/a.vtu"}, {"1 ", "parts/a.vtu"}})));
+    ASSERT_TRUE(info) << info.error().message;
+    EXPECT_EQ(info->times, (std::vector<double>{0, 1, 2.5}));
+    EXPECT_TRUE(inspect(folder_.write("case/run.pvd", pvd({{" ", "parts/a.vtu"}})))) << "as one without a time";
+}
+
 TEST_F(IndexFiles, PvdSortsItsTimes) {
     const std::string path =
         folder_.write("case/run.pvd", pvd({{"2.5", "parts/a.vtu"}, {"1", "parts/a.vtu"}, {"2.5", "parts/a.vtu"}}));
@@ -191,7 +199,7 @@ TEST_F(Collections, SeriesTakeTheLastFileOfATime) {
 
 TEST_F(Collections, SeriesTakeTimesThatAreTexts) {
     const std::string path = folder_.write("run.vtu.series", R"({"file-series-version": "1.0", "files": [
-        {"name": "t1.vtu", "time": "0.5"}, {"name": "t2.vtu", "time": "1e1"}]})");
+        {"name": "t1.vtu", "time": "0.5"}, {"name": "t2.vtu", "time": " 1e1 "}]})");
     EXPECT_EQ(inspect(path).value().times, (std::vector<double>{0.5, 10}));
     EXPECT_NE(inspect(folder_.write("x.vtu.series", R"({"files": [{"name": "t1.vtu", "time": "1 s"}]})"))
                   .error()

@@ -133,6 +133,13 @@ private:
     }
 };
 
+/// Without space at its ends.
+inline std::string_view without_blanks(std::string_view text) noexcept {
+    while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+    while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
+    return text;
+}
+
 /// The number that the whole word is, by the rules of TextScanner.
 template <class Number>
 bool parse_number(std::string_view word, Number& value) {

@@ -18,13 +18,6 @@ namespace {
 constexpr std::size_t max_components = 1U << 20U;
 constexpr std::size_t tail_bytes = 4096;
 
-/// Around numbers; files of some programs have them.
-std::string_view without_blanks(std::string_view text) {
-    constexpr std::string_view blanks = " \t\r\n";
-    text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
-    return text.substr(0, text.find_last_not_of(blanks) + 1);
-}
-
 struct TypeName {
     std::string_view name;
     ScalarType type;
@@ -106,7 +99,7 @@ Error wrong(std::string_view name, std::string_view what) {
 Result<void> place_appended(const Document& document, const pugi::xml_node& element, DataArray& array) {
     const std::string_view stated = element.attribute("offset").value();
     std::uint64_t offset = 0;
-    if (!parse_number(stated, offset))
+    if (!parse_number(without_blanks(stated), offset))
         return wrong(array.name, fmt::format("its offset is {}, not a number", in_quotes(stated)));
     if (offset > document.appended.size())
         return wrong(array.name, fmt::format("offset {} lies behind the appended data, which has {} bytes", offset,

@@ -35,17 +35,17 @@ Result<std::vector<Entry>> entries(const std::string& path) {
     std::vector<Entry> entries;
     for (const auto& found : document.select_nodes("/VTKFile/Collection/DataSet")) {
         const pugi::xml_node node = found.node();
-        const pugi::xml_attribute stated = node.attribute("timestep"), part = node.attribute("part");
+        const std::string_view time = without_blanks(node.attribute("timestep").value());
+        const pugi::xml_attribute part = node.attribute("part");
         Entry entry{0,
                     node.attribute("group").as_string(),
                     part.as_string(),
                     node.attribute("name").as_string(),
                     node.attribute("file").as_string(),
                     part && *part.value(),
-                    stated && *stated.value()};
-        if (stated && *stated.value() && (!parse_number(stated.value(), entry.time) || entry.time != entry.time))
-            return broken(path,
-                          fmt::format("a data set has timestep \"{}\", which is no number", escaped(stated.value())));
+                    !time.empty()};
+        if (entry.has_time && (!parse_number(time, entry.time) || entry.time != entry.time))
+            return broken(path, fmt::format("a data set has timestep \"{}\", which is no number", escaped(time)));
         entries.push_back(std::move(entry));
     }
     if (entries.empty()) return broken(path, "the collection has no data sets");

@@ -25,7 +25,7 @@ std::optional<double> time_of(const Json& file) {
     if (time == file.end()) return std::nullopt;
     if (time->is_number()) return time->get<double>();
     double value = 0;
-    if (!time->is_string() || !parse_number(std::string_view(time->get_ref<const std::string&>()), value)) return {};
+    if (!time->is_string() || !parse_number(without_blanks(time->get_ref<const std::string&>()), value)) return {};
     return value;
 }
 
