@@ -447,6 +447,17 @@ TEST(ReadLegacyStructured, TakesAnExtentInPlaceOfDimensions) {
         EXPECT_NE(error_in_legacy(head + broken + "ORIGIN 0 0 0\n").find("EXTENT is not three pairs"),
                   std::string::npos)
             << broken;
+    const std::string grid = "# vtk DataFile Version 5.1\nx\nASCII\nDATASET ";
+    const std::string axes = "X_COORDINATES 2 float\n0 1\nY_COORDINATES 2 float\n0 1\nZ_COORDINATES 2 float\n0 1\n";
+    EXPECT_EQ(error_in_legacy(grid + "RECTILINEAR_GRID\nEXTENT 2 4 0 1 0 1\n" + axes),
+              "there are 2 coordinates along axis x, but EXTENT is of 3 x 2 x 2");
+    EXPECT_EQ(error_in_legacy(grid + "RECTILINEAR_GRID\nDIMENSIONS 2 2 3\n" + axes),
+              "there are 2 coordinates along axis z, but DIMENSIONS are 2 x 2 x 3");
+    EXPECT_EQ(error_in_legacy(grid + "STRUCTURED_GRID\nEXTENT 0 1 0 0 0 0\nPOINTS 1 float\n0 0 0\n"),
+              "there are 1 points, but EXTENT is of 2 x 1 x 1");
+    EXPECT_NE(error_in_legacy(grid + "STRUCTURED_POINTS\nEXTENT 0 99999999 0 99999999 0 99999999\n")
+                  .find("EXTENT is of 100000000 x 100000000 x 100000000"),
+              std::string::npos);
 }
 
 TEST(ReadLegacy, PassesOverArraysWithoutValues) {

@@ -134,6 +134,7 @@ private:
     /// In place of DIMENSIONS: the first and the last index along each axis.
     Result<void> read_extent() {
         constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max();
+        file_.size_keyword = "EXTENT";
         for (std::size_t axis = 0; axis < 3; ++axis) {
             std::int64_t first = 0, last = 0;
             if (!scanner_.number(first) || !scanner_.number(last) || first < -most || last > most || last < first - 1)

@@ -53,6 +53,7 @@ struct LegacyFile {
     std::uint64_t cell_type_count = 0;
     std::array<std::uint64_t, 3> dimensions{};
     std::array<std::int64_t, 3> first_index{}; ///< of EXTENT: the origin has the index 0
+    std::string_view size_keyword = "DIMENSIONS"; ///< or EXTENT, whose points `dimensions` counts
     std::array<double, 3> origin{0, 0, 0}, spacing{1, 1, 1};
     std::array<Array, 3> coordinates; ///< of a rectilinear grid
     std::vector<Attribute> point_data, cell_data;

@@ -68,12 +68,18 @@ Result<Cells> cells_of(const LegacyFile& file) {
     return cells;
 }
 
+/// What the file says of its size.
+std::string stated_size(const LegacyFile& file) {
+    const auto& [x, y, z] = file.dimensions;
+    return fmt::format("{} {} {} x {} x {}", file.size_keyword, file.size_keyword == "EXTENT" ? "is of" : "are", x, y,
+                       z);
+}
+
 Result<Array> structured_points(const LegacyFile& file, const GridSize& size) {
     const std::uint64_t count = size.x * size.y * size.z;
     if (file.dataset == "structured_grid") {
         if (file.points.tuples() == count) return file.points;
-        return invalid_data(fmt::format("there are {} points, but DIMENSIONS are {} x {} x {}", file.points.tuples(),
-                                        size.x, size.y, size.z));
+        return invalid_data(fmt::format("there are {} points, but {}", file.points.tuples(), stated_size(file)));
     }
     if (file.dataset == "structured_points") {
         const auto& s = file.spacing;
@@ -84,8 +90,8 @@ Result<Array> structured_points(const LegacyFile& file, const GridSize& size) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const Array& along = file.coordinates[axis];
         if (along.tuples() != file.dimensions[axis])
-            return invalid_data(fmt::format("there are {} coordinates along axis {}, but DIMENSIONS say {}",
-                                            along.tuples(), "xyz"[axis], file.dimensions[axis]));
+            return invalid_data(fmt::format("there are {} coordinates along axis {}, but {}", along.tuples(),
+                                            "xyz"[axis], stated_size(file)));
         for (std::size_t i = 0; i < along.tuples(); ++i) ticks[axis].push_back(along.at(i));
     }
     return points_of(size, ticks);
@@ -95,7 +101,7 @@ Result<void> take_structured(const LegacyFile& file, Piece& piece, std::vector<s
     const GridSize size{file.dimensions[0], file.dimensions[1], file.dimensions[2]};
     constexpr std::uint64_t most = std::uint64_t{1} << 48;
     if (size.x * size.y > most / std::max<std::uint64_t>(size.z, 1))
-        return invalid_data(fmt::format("DIMENSIONS are {} x {} x {}: too many points", size.x, size.y, size.z));
+        return invalid_data(stated_size(file) + ": too many points");
     auto points = structured_points(file, size);
     if (!points) return points.error();
     auto cells = vtk_xml::hexahedra_of(size, notes);
@@ -184,7 +190,7 @@ Result<Loaded> load_legacy(const ByteSource& source, const ReadOptions& options,
     if (!step) return step.error();
     Piece piece;
     const bool structured = file->dataset != "unstructured_grid";
-    // If no field is as long as DIMENSIONS say, the file may be much smaller than such a grid.
+    // If no field is as long as the size says, the file may be much smaller than such a grid.
     if (structured && loaded.info.fields.empty() && !loaded.info.left_out.empty()) {
         const LeftOut& first = loaded.info.left_out.front();
         return invalid_data(fmt::format("{} {} cannot be read: {}", first.what, in_quotes(first.name), first.reason));
