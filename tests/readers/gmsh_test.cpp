@@ -210,7 +210,7 @@ TEST(ReadGmshFields, ThatAreBrokenAreLeftOutAlone) {
     broken(data_section("ElementNodeData", "T", 1, "1 5 1 2 3 4 5"),
            "point field T: $ElementNodeData: 'T' has values at 5 nodes of element 1, which has 4");
     broken("$NodeData\n0\n$EndNodeData\n",
-           "section $NodeData: $NodeData: has a broken list of tags at line 1 (its end)");
+           "section $NodeData: $NodeData: has a broken list of tags at line 2 (the end)");
 }
 
 TEST(ReadGmshSteps, AreByStepNumberWhereTimesRepeat) {
@@ -242,6 +242,20 @@ TEST(ReadGmshFields, ThatNobodyWantsAreNotRead) {
     EXPECT_EQ(result.grid.point_fields[0].name, "flow");
     EXPECT_TRUE(result.grid.cell_fields.empty());
     EXPECT_EQ(result.info.fields.size(), 5U);
+}
+
+TEST(ReadGmshFields, WithoutANameHaveThatOfTheSection) {
+    for (const char* tags : {"0\n", "1\n\"\"\n"}) {
+        const std::string rest = tags + std::string("0\n3\n0\n1\n1\n1 0.5\n");
+        const ReadResult result =
+            io::parse_gmsh(tets + "$NodeData\n" + rest + "$EndNodeData\n$ElementData\n" + rest + "$EndElementData\n",
+                           {}, {})
+                .value();
+        EXPECT_TRUE(result.info.left_out.empty());
+        expect_values(result.grid.point_fields, "NodeData", {0.5, nan, nan, nan, nan});
+        ASSERT_EQ(result.grid.cell_fields.size(), 1U);
+        EXPECT_EQ(result.grid.cell_fields[0].name, "ElementData");
+    }
 }
 
 TEST(ReadGmshFields, MayComeInPartsOfOneStep) {

@@ -21,7 +21,7 @@ std::string_view unquoted(std::string_view line) {
 
 bool read_tags(TextScanner& scanner, DataSection& data) {
     std::int32_t count = 0;
-    if (!scanner.number(count) || count < 1) return false;
+    if (!scanner.number(count) || count < 0) return false;
     for (std::int32_t i = 0; i < count; ++i) {
         const std::string_view line = scanner.line();
         if (line.empty()) return false;
@@ -58,6 +58,7 @@ Result<DataSection> header_of(const Section& section, DataKind kind) {
     data.kind = kind;
     TextScanner scanner(section.body);
     if (!read_tags(scanner, data)) return broken(section, "has a broken list of tags at " + scanner.where());
+    if (data.name.empty()) data.name = section.name; // Gmsh takes data without a name, too
     // Gmsh knows 1, 3 and 9; a limit keeps a broken file from asking for more memory than there is.
     constexpr std::int32_t max_components = 64;
     if (data.components < 1 || data.components > max_components || data.count < 0) {
