@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -43,9 +44,27 @@ Result<Value> in_file(const std::string& path, Result<Value> result) {
 
 int by_content_or_name(bool content, bool name) { return content ? 2 : name ? 1 : 0; }
 
-/// The file of the same name with another extension.
+std::string in_case(std::string text, int (*change)(int)) {
+    for (char& c : text) c = static_cast<char>(change(static_cast<unsigned char>(c)));
+    return text;
+}
+
+bool is_there(const std::string& path) {
+    struct stat status{};
+    return ::stat(path.c_str(), &status) == 0;
+}
+
+/// The file of the same name with another extension, in lower case, or else in upper case.
 std::string beside(const std::string& path, const char* extension) {
-    return std::filesystem::path(path).replace_extension(extension).string();
+    const std::filesystem::path own(path);
+    if (in_case(own.extension().string(), std::tolower) == extension) return path;
+    const auto named = [&](const std::string& end) {
+        return std::filesystem::path(own).replace_extension(end).string();
+    };
+    if (const std::string upper = named(in_case(extension, std::toupper));
+        !is_there(named(extension)) && is_there(upper))
+        return upper;
+    return named(extension);
 }
 
 /// A file that is read because it has the name of `path`, with another extension: links must not lead it out of the folder.
@@ -62,11 +81,6 @@ Result<void> check_companion(const std::string& path, const std::string& compani
                  fmt::format("{} is a link to {}: only files below the folder of {} are read, unless --allow-outside "
                              "(ReadOptions::allow_outside) is given",
                              escaped(companion), escaped(file.string()), escaped(path))};
-}
-
-bool is_there(const std::string& path) {
-    struct stat status{};
-    return ::stat(path.c_str(), &status) == 0;
 }
 
 /// Enough for what a file says before its first points.
@@ -185,8 +199,15 @@ int recognizes_tetgen(std::string_view, std::string_view extension) {
 template <class Value, class Parse>
 Result<Value> with_nodes_and_elements(const std::string& path, const ReadOptions& options, const Progress& progress,
                                       std::size_t most, const Parse& parse) {
-    for (const char* extension : {".node", ".ele"})
-        if (auto allowed = check_companion(path, beside(path, extension), options); !allowed) return allowed.error();
+    for (const char* extension : {".node", ".ele"}) {
+        const std::string file = beside(path, extension);
+        if (auto allowed = check_companion(path, file, options); !allowed) return allowed.error();
+        if (file != path && !is_there(file))
+            return Error{ErrorCode::file,
+                         fmt::format("{}: its other file {} is not there: TetGen has points in a .node "
+                                     "file, tets in an .ele file of the same name",
+                                     escaped(path), escaped(file))};
+    }
     const auto nodes = WholeFile::read(beside(path, ".node"), progress, most);
     if (!nodes) return nodes.error();
     const auto elements = WholeFile::read(beside(path, ".ele"), progress, most);

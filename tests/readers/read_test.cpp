@@ -58,6 +58,13 @@ TEST_F(ReadFile, IsRecognizedByItsNameWhereTheContentSaysNothing) {
     write("a.ele", elements);
     EXPECT_EQ(format_of(path("a.node")), "tetgen");
     EXPECT_EQ(format_of(path("a.ele")), "tetgen");
+    write("B.NODE", nodes);
+    write("B.ELE", elements);
+    EXPECT_EQ(format_of(path("B.NODE")), "tetgen");
+    EXPECT_EQ(format_of(path("B.ELE")), "tetgen");
+    for (const auto& [there, missing] : {std::pair("c.node", "c.ele"), {"d.ele", "d.node"}})
+        EXPECT_NE(format_of(write(there, nodes)).find(std::string(missing) + " is not there: TetGen has points"),
+                  std::string::npos);
     EXPECT_EQ(read(path("a.ele")).value().grid.cells.count(), 1U);
 }
 

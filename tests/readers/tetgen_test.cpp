@@ -1,4 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <cstring>
+
 #include <gtest/gtest.h>
 
 #include "io/tetgen/read_tetgen.hpp"
@@ -65,6 +67,22 @@ TEST(ReadTetgen, KeepsTetsOfTenNodesAsQuadraticOnes) {
 
 TEST(ReadTetgen, PassesOverColumnsThatTheHeaderDoesNotAnnounce) {
     EXPECT_EQ(read_text("1 3 0 0\n0 1 2 3 99\n", "0 4 0\n").grid.points.tuples(), 1U);
+    EXPECT_EQ(read_text("1 3 0 0 points\n0 1 2 3\n", "0 4 0 7\n").grid.points.tuples(), 1U);
+    EXPECT_EQ(tetgen_error("1 3 x\n0 1 2 3\n", "0 4 0\n"), "the .node file has a broken first line at line 1 ('x')");
+}
+
+TEST(ReadTetgen, TakesCommasAndTabsBetweenNumbers) {
+    for (const char* between : {", ", ",", "\t", " , "}) {
+        std::string point_text = "# 4 points\n4,3,0,1\n0,0,0,0,7\n1,1,0,0,7\n2,0,1,0,7\n3,0,0,1,8\n",
+                    tet_text = "1,4,0\n0,3,2,1,0\n";
+        for (std::string* text : {&point_text, &tet_text})
+            for (std::size_t at = 0; (at = text->find(',', at)) != std::string::npos; at += std::strlen(between))
+                text->replace(at, 1, between);
+        const Grid grid = read_text(point_text, tet_text).grid;
+        EXPECT_EQ(values_of(grid.points), (std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}));
+        EXPECT_EQ(values_of(grid.cells.connectivity), (std::vector<double>{3, 2, 1, 0}));
+        EXPECT_EQ(values_of(find(grid.point_fields, "boundary_marker")->values), (std::vector<double>{7, 7, 7, 8}));
+    }
 }
 
 TEST(ReadTetgen, ReadsOnlyTheFieldsThatAreWanted) {
@@ -81,6 +99,7 @@ TEST(ReadTetgen, NotesALastLineWithoutEnd) {
     const ReadResult result = read_text(sample_nodes, sample_tets.substr(0, sample_tets.size() - 2));
     ASSERT_EQ(result.notes.size(), 1U);
     EXPECT_NE(result.notes[0].find(".ele"), std::string::npos);
+    EXPECT_TRUE(read_text(sample_nodes + " ", sample_tets + "# made by a program").notes.empty());
 }
 
 TEST(ReadTetgenErrors, NameTheValueAndTheRule) {

@@ -26,10 +26,22 @@ constexpr std::string_view marker_name = "boundary_marker";
 
 std::string attribute_name(std::string_view stem, std::int64_t index) { return fmt::format("{}_{}", stem, index); }
 
+/// TetGen takes commas between numbers for blanks.
+std::string with_blanks(std::string_view text) {
+    std::string blanks;
+    if (text.find(',') == std::string_view::npos) return blanks;
+    blanks = text;
+    std::ranges::replace(blanks, ',', ' ');
+    return blanks;
+}
+
 /// One of the two files: records of one line each, after a header line.
 class RecordFile {
 public:
-    RecordFile(std::string_view name, std::string_view text) : name_(name), scanner_(text, '#') {}
+    RecordFile(std::string_view name, std::string_view text)
+        : name_(name), blanks_(with_blanks(text)), scanner_(blanks_.empty() ? text : blanks_, '#') {}
+    RecordFile(const RecordFile&) = delete;
+    RecordFile& operator=(const RecordFile&) = delete;
 
     Error broken(const std::string& message) const {
         return {ErrorCode::invalid_data, fmt::format("the {} file {}", name_, message)};
@@ -62,6 +74,7 @@ public:
 
 private:
     std::string_view name_;
+    std::string blanks_; ///< the text, where it has commas
     TextScanner scanner_;
     bool started_ = false;
 };
@@ -75,10 +88,10 @@ struct NodeHeader {
 Result<NodeHeader> read_header(RecordFile& file, NodeHeader header) {
     TextScanner& line = file.next_record();
     if (!line.number_of_line(header.count)) return file.broken("has no number of points at " + line.where());
-    // What is not there has its default.
-    (void)(line.number_of_line(header.dimension) && line.number_of_line(header.attributes) &&
-           line.number_of_line(header.markers));
-    if (!line.at_line_end()) return file.broken("has a broken first line at " + line.where());
+    // What is not there has its default; what is behind is passed over, as in records.
+    const bool all = line.number_of_line(header.dimension) && line.number_of_line(header.attributes) &&
+                     line.number_of_line(header.markers);
+    if (!all && !line.at_line_end()) return file.broken("has a broken first line at " + line.where());
     if (header.dimension != 3)
         return file.broken(fmt::format("says dimension {}, but 3 is the rule", header.dimension));
     if (header.attributes < 0 || header.attributes > max_attributes || header.markers < 0 || header.markers > 1) {
@@ -97,8 +110,8 @@ struct ElementHeader {
 Result<ElementHeader> read_header(RecordFile& file, ElementHeader header) {
     TextScanner& line = file.next_record();
     if (!line.number_of_line(header.count)) return file.broken("has no number of tets at " + line.where());
-    (void)(line.number_of_line(header.nodes) && line.number_of_line(header.attributes));
-    if (!line.at_line_end()) return file.broken("has a broken first line at " + line.where());
+    const bool all = line.number_of_line(header.nodes) && line.number_of_line(header.attributes);
+    if (!all && !line.at_line_end()) return file.broken("has a broken first line at " + line.where());
     if (header.nodes != 4 && header.nodes != 10) {
         return file.broken(fmt::format("says {} nodes a tet, but 4 or 10 is the rule", header.nodes));
     }
@@ -285,7 +298,7 @@ Result<ReadResult> parse_tetgen(std::string_view nodes, std::string_view element
         return read.error();
     }
     for (const auto& [name, text] : {std::pair(".node", nodes), std::pair(".ele", elements)}) {
-        if (text.ends_with('\n')) continue;
+        if (text.empty() || is_space(text.back()) || text.substr(text.rfind('\n') + 1).find('#') != text.npos) continue;
         result.notes.push_back(
             fmt::format("the {} file does not end with a line end: its last number may be cut short", name));
     }
