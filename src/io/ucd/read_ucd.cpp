@@ -23,26 +23,14 @@
 #include "io/pieces/loaded.hpp"
 #include "io/pieces/number_map.hpp"
 #include "io/reader.hpp"
+#include "io/ucd/read_binary_ucd.hpp"
+#include "io/ucd/ucd_elements.hpp"
 
 namespace isotet::io {
 namespace {
 
-struct Element {
-    std::string_view name;
-    std::uint8_t type;
-    int corners;
-    std::array<int, 8> order; ///< of VTK's corners among UCD's: UCD has the apex and the upper face first
-};
-constexpr Element elements[] = {
-    {"pt", 1, 1, {0}},
-    {"line", 3, 2, {0, 1}},
-    {"tri", 5, 3, {0, 1, 2}},
-    {"quad", 9, 4, {0, 1, 2, 3}},
-    {"tet", 10, 4, {0, 1, 2, 3}},
-    {"pyr", 14, 5, {1, 2, 3, 4, 0}},
-    {"prism", 13, 6, {3, 4, 5, 0, 1, 2}},
-    {"hex", 12, 8, {4, 5, 6, 7, 0, 1, 2, 3}},
-};
+using ucd::Element;
+using ucd::elements;
 
 struct Counts {
     std::uint64_t points = 0, cells = 0, point_values = 0, cell_values = 0, model_values = 0;
@@ -83,7 +71,6 @@ private:
                fail(fmt::format("{} {} announced, but the file is shorter", count, what));
     }
     bool header() {
-        if (scanner_.rest().starts_with("\x07")) return fail("a binary UCD file, which is not read: write it as ascii");
         return next(counts_.points, "number of points") && next(counts_.cells, "number of cells") &&
                next(counts_.point_values, "number of point values") &&
                next(counts_.cell_values, "number of cell values") &&
@@ -249,7 +236,7 @@ private:
 } // namespace
 
 bool looks_like_ucd(std::string_view head) {
-    if (head.starts_with("\x07")) return true; // binary, which is told
+    if (head.starts_with(ucd::binary_mark)) return true;
     TextScanner scanner(head, '#');
     std::uint64_t number = 0;
     if (scanner.at_end()) return false;
@@ -259,12 +246,14 @@ bool looks_like_ucd(std::string_view head) {
 }
 
 Result<FileInfo> inspect_ucd(std::string_view text, const Progress& progress) {
-    auto result = UcdReader(text, {}, progress, Depth::description).run();
+    auto result = text.starts_with(ucd::binary_mark) ? ucd::read_binary(text, {}, progress, Depth::description)
+                                                     : UcdReader(text, {}, progress, Depth::description).run();
     if (!result) return result.error();
     return std::move(result->info);
 }
 
 Result<ReadResult> parse_ucd(std::string_view text, const ReadOptions& options, const Progress& progress) {
+    if (text.starts_with(ucd::binary_mark)) return ucd::read_binary(text, options, progress, Depth::arrays);
     return UcdReader(text, options, progress, Depth::arrays).run();
 }
 

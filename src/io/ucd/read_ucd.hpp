@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// AVS UCD, ascii.
+// AVS UCD, ascii and binary.
 #pragma once
 
 #include <string_view>
@@ -16,9 +16,10 @@ bool looks_like_ucd(std::string_view head);
 /// Tells the fields; looks through the whole file.
 Result<FileInfo> inspect_ucd(std::string_view text, const Progress& progress);
 
-/// Reads all cells, and their materials as a cell field; fields become float64.
+/// Reads all cells, and their materials as a cell field; fields become float64, those of binary files
+/// float32.
 ///
-/// Errors   invalid_data: a rule of the format broken, with place, value and rule; a binary file
+/// Errors   invalid_data: a rule of the format broken, with place, value and rule
 Result<ReadResult> parse_ucd(std::string_view text, const ReadOptions& options, const Progress& progress);
 
 } // namespace isotet::io
