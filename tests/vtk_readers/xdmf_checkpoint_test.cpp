@@ -68,6 +68,14 @@ TEST_F(ReadCheckpoint, DegreeOneIsAFieldOfPoints) {
     EXPECT_EQ(first(vectors->grid.point_fields), (Values{1, 10, 2, 20, 3, 30, 4, 40, 5, 50}));
 }
 
+TEST_F(ReadCheckpoint, FamiliesHaveSeveralNames) {
+    for (const char* family : {"CG", "lagrange", "P", "p", "Q", "DG", "Discontinuous Lagrange", "dp", "DQ"}) {
+        const auto result = read_function({family, "1", "4 3 2 1 4 2 3 0", "50 20 30 40 10", "0 4 8"});
+        ASSERT_TRUE(result) << family << ": " << result.error().message;
+        EXPECT_EQ(first(result->grid.point_fields), (Values{10, 40, 30, 20, 50})) << family;
+    }
+}
+
 TEST_F(ReadCheckpoint, DiscontinuousFunctionsHaveMeansWhereTheyJump) {
     const auto continuous = read_function({"DG", "1", "0 1 2 3 4 5 6 7", "1 2 3 4 1 3 2 5", "0 4 8"});
     ASSERT_TRUE(continuous) << continuous.error().message;

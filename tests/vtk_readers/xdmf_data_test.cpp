@@ -102,6 +102,18 @@ TEST_F(ReadXdmfData, TakesSlabsAndPlacesOfAnything) {
               std::string::npos);
 }
 
+TEST_F(ReadXdmfData, TakesOtherSpellings) {
+    for (const char* format : {"HDF", "hdf", "HDF5", "hdf5"}) {
+        const std::string data = "Dimensions='4 10' Format='" + std::string(format) + "'";
+        EXPECT_EQ(values_of(slab("2 1 1 2 1 5", xdmf_item(data, "heavy.h5:/steps"))), (Values{21, 23, 25, 27, 29}));
+        EXPECT_EQ(values_of(xdmf_item("Dimensions='5' Format='" + std::string(format) + "'", "heavy.h5:/a|b")),
+                  (Values{5, 4, 3, 2, 1}));
+    }
+    EXPECT_EQ(values_of("<DataItem ItemType='Coordinate'>" + numbers("4 3 2 1 0") + numbers("0 1 2 3 4", "5") +
+                        "</DataItem>"),
+              (Values{4, 3, 2, 1, 0}));
+}
+
 TEST_F(ReadXdmfData, EvaluatesFunctions) {
     const std::string p = numbers("1 2 3 4 5"), q = numbers("10 20 30 40 50");
     EXPECT_EQ(values_of(function("$0 + $1", p + q)), (Values{11, 22, 33, 44, 55}));

@@ -121,6 +121,23 @@ TEST_F(ReadXdmfSeries, IncludesFilesBelowItsFolder) {
     EXPECT_NE(error_of("<xi:include href='circle.xdmf'/>").find("without end"), std::string::npos);
 }
 
+TEST_F(ReadXdmfSeries, FindsDataBesideTheFileThatIsIncludedOrTheFirstOne) {
+    std::filesystem::create_directories(folder_.file("mesh"));
+    const auto write = [&](const std::string& name, double above) {
+        Hdf5Writer file(folder_.file(name));
+        file.data<double>("/points", {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, above, 0, 0, -1}, {5, 3});
+    };
+    const std::string points =
+        "<Geometry>" + xdmf_item("Format='HDF' Dimensions='5 3'", "points.h5:/points") + "</Geometry>";
+    folder_.write("mesh/mesh.xdmf", xdmf_document(xdmf_grid("mesh", points + xdmf_tets())));
+    const std::string domain = "<xi:include href='mesh/mesh.xdmf'/>";
+    EXPECT_NE(error_of(domain).find("mesh.xdmf names \"points.h5\", which is not there"), std::string::npos);
+    write("points.h5", 7);
+    EXPECT_EQ(read_domain(domain).value().grid.points.at(3, 2), 7);
+    write("mesh/points.h5", 9);
+    EXPECT_EQ(read_domain(domain).value().grid.points.at(3, 2), 9);
+}
+
 TEST_F(ReadXdmfSeries, IncludesThatLeadNowhereAreErrors) {
     const auto message = [&](const std::string& include) { return error_of(xdmf_mesh() + xdmf_grid("g", include)); };
     for (const char* nothing :
@@ -170,6 +187,8 @@ TEST_F(ReadXdmfSeries, ReadsAllDomains) {
     ASSERT_TRUE(result) << result.error().message;
     EXPECT_EQ(result->grid.cells.count(), 2u);
     EXPECT_EQ(result->grid.point_fields.size(), 2u);
+    EXPECT_EQ(result->notes,
+              std::vector<std::string>{"the grids of all 2 domains are read: other programs read those of the first"});
 }
 
 TEST_F(ReadXdmfSeries, OtherMeshesAreBlocks) {

@@ -121,6 +121,24 @@ TEST_F(ReadXdmf, JoinsSpatialCollections) {
     EXPECT_EQ(result->grid.cells.count(), 3u) << "the tet that both have counts once";
 }
 
+/// As VTK 9.7: type 33, with the nodes in the order of the file.
+TEST_F(ReadXdmf, ReadsHexahedraOf24Nodes) {
+    std::string coordinates, nodes;
+    for (int i = 0; i < 24; ++i) {
+        coordinates += std::to_string(i % 3) + " " + std::to_string(i / 3 % 3) + " " + std::to_string(i / 9) + " ";
+        nodes += " " + std::to_string(i);
+    }
+    const std::string geometry = "<Geometry><DataItem Dimensions=\"24 3\">" + coordinates + "</DataItem></Geometry>";
+    for (const auto& [name, code] : {std::pair("Hexahedron_24", ""), {"Hex_24", ""}, {"Mixed", "49"}}) {
+        const auto result = read_domain(grid(geometry + "<Topology TopologyType=\"" + name +
+                                             "\" NumberOfElements=\"1\"><DataItem NumberType=\"Int\">" + code + nodes +
+                                             "</DataItem></Topology>"));
+        ASSERT_TRUE(result) << result.error().message;
+        EXPECT_EQ(result->grid.cells.types.at(0), 33) << name;
+        for (std::size_t i = 0; i < 24; ++i) EXPECT_EQ(result->grid.cells.connectivity.at(i), double(i)) << name;
+    }
+}
+
 TEST_F(ReadXdmf, ReadsMixedTopologies) {
     const std::string mixed =
         "<Topology TopologyType=\"Mixed\" NumberOfElements=\"3\"><DataItem Format=\"XML\" NumberType=\"Int\" "

@@ -42,6 +42,9 @@ public:
         if (auto announced = announce_blocks(); !announced) return announced.error();
         if (auto read = read_blocks(); !read) return read.error();
         if (depth_ == Depth::arrays || !options_.step) announce_other_steps();
+        if (const std::size_t domains = file_.document.domains().size(); domains > 1)
+            loaded_.notes.push_back(
+                fmt::format("the grids of all {} domains are read: other programs read those of the first", domains));
         return std::move(loaded_);
     }
 

@@ -23,10 +23,11 @@ constexpr XdmfElement xdmf_elements[] = {
     {"Triangle_6", 36, 22, 6},      {"Quadrilateral_8", 37, 23, 8},
     {"Tetrahedron_10", 38, 24, 10}, {"Pyramid_13", 39, 27, 13},
     {"Wedge_15", 40, 26, 15},       {"Wedge_18", 41, 32, 18},
-    {"Hexahedron_20", 48, 25, 20},  {"Hexahedron_27", 50, 29, 27},
-    {"Tri_6", 36, 22, 6},           {"Quad_8", 37, 23, 8},
-    {"Quad_9", 35, 28, 9},          {"Tet_10", 38, 24, 10},
-    {"Hex_20", 48, 25, 20},         {"Hex_27", 50, 29, 27},
+    {"Hexahedron_20", 48, 25, 20},  {"Hexahedron_24", 49, 33, 24},
+    {"Hexahedron_27", 50, 29, 27},  {"Tri_6", 36, 22, 6},
+    {"Quad_8", 37, 23, 8},          {"Quad_9", 35, 28, 9},
+    {"Tet_10", 38, 24, 10},         {"Hex_20", 48, 25, 20},
+    {"Hex_24", 49, 33, 24},         {"Hex_27", 50, 29, 27},
 };
 
 Error wrong_cells(std::string what) { return {ErrorCode::invalid_data, std::move(what)}; }

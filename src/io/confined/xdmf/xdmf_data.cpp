@@ -97,9 +97,11 @@ std::vector<std::uint64_t> places_of(const Box& box, const std::vector<std::uint
     return places;
 }
 
+bool is_hdf(std::string_view format) { return same_word(format, "HDF") || same_word(format, "HDF5"); }
+
 bool is_heavy(pugi::xml_node item) {
     return same_word(item.attribute("ItemType").as_string("Uniform"), "Uniform") &&
-           same_word(item.attribute("Format").as_string("XML"), "HDF");
+           is_hdf(item.attribute("Format").as_string());
 }
 
 } // namespace
@@ -117,6 +119,14 @@ Error XdmfData::failed(pugi::xml_node item, std::string_view what) const {
     return broken(document_.file_of(item), what);
 }
 
+/// Beside the file that the item is in, else beside the one that was opened: some programs copy a mesh from a subfolder.
+Result<std::string> XdmfData::file_named(pugi::xml_node item, std::string_view name) const {
+    auto beside = named_file(document_.file_of(item), name, allow_outside_);
+    if (beside || beside.error().code != ErrorCode::file) return beside;
+    auto beside_first = named_file(document_.first_file(), name, allow_outside_);
+    return beside_first ? std::move(beside_first) : std::move(beside);
+}
+
 Result<ShapedValues> XdmfData::read_nested(pugi::xml_node stated, Depth depth, int level) const {
     const pugi::xml_node item = document_.resolve(stated);
     if (!item) return failed(stated, "a DataItem is missing, or refers to nothing");
@@ -127,7 +137,8 @@ Result<ShapedValues> XdmfData::read_nested(pugi::xml_node stated, Depth depth, i
     const std::string_view kind = item.attribute("ItemType").as_string("Uniform");
     if (same_word(kind, "Uniform")) return read_uniform(item, depth);
     if (same_word(kind, "HyperSlab")) return read_slab(item, depth, level + 1);
-    if (same_word(kind, "Coordinates")) return read_coordinates(item, depth, level + 1);
+    if (same_word(kind, "Coordinates") || same_word(kind, "Coordinate"))
+        return read_coordinates(item, depth, level + 1);
     if (same_word(kind, "Function")) return read_function(item, depth, level + 1);
     return failed(item, fmt::format("a DataItem of type \"{}\" is not read: Uniform, HyperSlab, Coordinates and "
                                     "Function are",
@@ -137,8 +148,10 @@ Result<ShapedValues> XdmfData::read_nested(pugi::xml_node stated, Depth depth, i
 Result<ShapedValues> XdmfData::read_uniform(pugi::xml_node item, Depth depth) const {
     const std::string_view format = item.attribute("Format").as_string("XML");
     const auto dimensions = stated_dimensions(item);
-    if (same_word(format, "HDF")) {
-        auto values = read_heavy(document_.file_of(item), text_of(item), {}, depth, allow_outside_);
+    if (is_hdf(format)) {
+        auto values = read_heavy(
+            document_.file_of(item), text_of(item), [&](std::string_view name) { return file_named(item, name); }, {},
+            depth);
         if (!values || !dimensions) return values;
         const ShapedValues expected{*dimensions, Array()};
         if (expected.count() != values->count())
@@ -200,7 +213,7 @@ Result<Array> XdmfData::read_binary(pugi::xml_node item, ScalarType type, std::u
     if (const std::string_view packed = item.attribute("Compression").as_string("Raw"); !same_word(packed, "Raw"))
         return failed(item,
                       fmt::format("a binary DataItem with compression \"{}\" is not read: Raw is", escaped(packed)));
-    auto path = named_file(document_.file_of(item), text_of(item), allow_outside_);
+    auto path = file_named(item, text_of(item));
     if (!path) return path.error();
     auto file = MappedFile::open(*path);
     if (!file) return file.error();
@@ -247,7 +260,9 @@ Result<ShapedValues> XdmfData::read_slab(pugi::xml_node item, Depth depth, int l
     const auto begin = numbers->begin();
     const Box box{{begin, begin + third}, {begin + third, begin + 2 * third}, {begin + 2 * third, numbers->end()}};
     if (is_heavy(source) && text_of(source).find('|') == std::string::npos) {
-        auto part = read_heavy(document_.file_of(source), text_of(source), box, depth, allow_outside_);
+        auto part = read_heavy(
+            document_.file_of(source), text_of(source), [&](std::string_view name) { return file_named(source, name); },
+            box, depth);
         if (part || !stated_dimensions(source)) return part;
     } // or the dimensions that are stated are not those of the data set
     auto whole = read_nested(source, depth, level);

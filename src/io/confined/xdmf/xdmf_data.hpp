@@ -38,6 +38,7 @@ private:
     Result<ShapedValues> read_xml(pugi::xml_node item, ScalarType type, Depth depth) const;
     Result<Array> read_binary(pugi::xml_node item, ScalarType type, std::uint64_t count) const;
     Result<std::vector<std::uint64_t>> read_places(pugi::xml_node item, int level) const;
+    Result<std::string> file_named(pugi::xml_node item, std::string_view name) const;
     Error failed(pugi::xml_node item, std::string_view what) const;
 
     const XdmfDocument& document_;

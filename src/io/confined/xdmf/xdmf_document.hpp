@@ -42,6 +42,8 @@ public:
 
     /// The file that an element is in: names in it are relative to its folder.
     const std::string& file_of(pugi::xml_node node) const;
+    /// The one that was opened.
+    const std::string& first_file() const { return files_.front()->path; }
 
 private:
     struct File {

@@ -44,8 +44,9 @@ unsigned degree_of(pugi::xml_node attribute) { return attribute.attribute("Eleme
 
 const ElementOfFunction* element_of(pugi::xml_node attribute) {
     const std::string_view family = attribute.attribute("ElementFamily").as_string();
-    const bool known = std::ranges::any_of(std::array{"CG", "DG", "Q", "DQ"},
-                                           [&](const char* name) { return same_word(family, name); });
+    const bool known =
+        std::ranges::any_of(std::array{"CG", "Lagrange", "P", "Q", "DG", "Discontinuous Lagrange", "DP", "DQ"},
+                            [&](const char* name) { return same_word(family, name); });
     for (const ElementOfFunction& element : elements_of_functions)
         if (known && element.degree == degree_of(attribute) &&
             same_word(element.cell, attribute.attribute("ElementCell").as_string()))

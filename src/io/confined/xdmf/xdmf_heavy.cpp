@@ -9,7 +9,6 @@
 #include <fmt/core.h>
 
 #include "io/files/escape.hpp"
-#include "io/files/index_file.hpp"
 #include "io/files/text_scanner.hpp"
 #include "io/pieces/loaded.hpp"
 
@@ -50,8 +49,7 @@ std::optional<Box> box_of(std::string_view text) {
 }
 
 std::optional<HeavyPart> part_of(std::string_view text) {
-    while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-    while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
+    text = without_blanks(text);
     const auto colon = text.rfind(":/") != std::string_view::npos ? text.rfind(":/") : text.rfind(':');
     if (colon == std::string_view::npos || colon + 1 == text.size()) return std::nullopt;
     return HeavyPart{std::string(text.substr(0, colon)), std::string(text.substr(colon + 1)), {}};
@@ -111,8 +109,8 @@ ShapedValues one_after_another(const std::vector<ShapedValues>& parts) {
 
 } // namespace
 
-Result<ShapedValues> read_heavy(const std::string& index, std::string_view text, const Box& box, Depth depth,
-                                bool allow_outside) {
+Result<ShapedValues> read_heavy(const std::string& index, std::string_view text, const FindHeavyFile& find,
+                                const Box& box, Depth depth) {
     auto parts = parts_of(text);
     if (!parts)
         return broken(index, fmt::format("\"{}\" does not name a file and a data set", escaped(text.substr(0, 80))));
@@ -120,7 +118,7 @@ Result<ShapedValues> read_heavy(const std::string& index, std::string_view text,
         return broken(index, "a part of several data sets, one after another, is not read");
     std::vector<ShapedValues> values;
     for (HeavyPart& part : *parts) {
-        const auto file = named_file(index, part.file, allow_outside);
+        const auto file = find(part.file);
         if (!file) return file.error();
         const bool whole = part.box.count.empty();
         if (!whole && !box.count.empty()) return broken(index, "a HyperSlab of a part of a data set is not read");
