@@ -36,6 +36,9 @@ ISOTET_API Result<Surface> boundary_of(const PackedGrid& packed, const std::vect
 /// once too often stands there once. Positions
 /// are the grid's, in its type; both edge ends of a vertex are its point.
 ///
+/// A grid of flat cells alone is its own boundary: its cells as triangles, in their order, with source_cells. Quadratic cells
+/// are split at their nodes, those of a higher degree taken by their corners.
+///
 /// Guarantees   the same bytes for any thread count; a point's faces are missed with probability 2^-64 (see Method)
 /// Cost         O(n), as survey() with faces; faster than boundary_of() a packed grid
 /// Errors       invalid_data as survey(); out_of_memory; cancelled

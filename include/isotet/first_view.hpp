@@ -15,7 +15,7 @@ namespace isotet {
 
 enum class FirstDraw : std::uint8_t {
     isosurfaces,
-    field_on_boundary,   ///< the field jumps from cell to cell, or the grid is one cell thick
+    field_on_boundary,   ///< the field jumps from cell to cell, or the grid is one cell thick or of flat cells
     regions_on_boundary, ///< there are only numbers of regions, materials and so on
     boundary             ///< no field varies
 };

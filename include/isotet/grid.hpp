@@ -100,7 +100,7 @@ struct GridReport {
     std::size_t inverted_tets = 0;          ///< tets whose sign is not that of most, repeated ones counted
     std::size_t flat_tets = 0;              ///< tets of volume exactly zero, repeated ones counted
     std::size_t unused_points = 0;          ///< points that no tet uses
-    std::array<double, 3> lower{}, upper{}; ///< bounds of the used points
+    std::array<double, 3> lower{}, upper{}; ///< bounds of the used points; without tets, of all
 
     // Counted only with SurveyOptions::faces.
     std::size_t repeated_tets = 0;    ///< tets with the same four corners as an earlier one; packing keeps the first
@@ -124,8 +124,8 @@ struct SurveyOptions {
 ///              and point is hashed, too: 17 bytes a point, and up to 32 bytes a tet beside the boundary, or a quarter
 ///              of the free memory where that is less (then in several passes over the cells)
 /// Errors       invalid_data: point number out of range, array of the wrong length or type, wrong number of corners,
-///              offsets that fall, a coordinate that is not finite or is 2^91 or more where a cell uses the point,
-///              nothing left that can be contoured; out_of_memory; cancelled
+///              offsets that fall, a coordinate that is not finite or is 2^91 or more where a cell uses the point;
+///              out_of_memory; cancelled
 /// Threads      safe from many threads on one grid
 ISOTET_API Result<GridReport> survey(const Grid& grid, const SurveyOptions& options = {}, const Run& run = {});
 

@@ -21,6 +21,10 @@ ISOTET_API std::map<std::uint8_t, std::uint64_t> count_cells_by_type(const Cells
 /// True for the types of which isotet makes tets: tetrahedron, voxel, hexahedron, wedge and pyramid.
 ISOTET_API bool is_contoured(std::uint8_t cell_type) noexcept;
 
+/// Whether there are triangles, polygons or quadrilaterals, and no cells with a volume: a shell, a surface, a result in two
+/// dimensions. It has no isosurface; its cells are what boundary_of() gives. Cost: one pass over the types
+ISOTET_API bool has_only_flat_cells(const Cells& cells);
+
 /// Points that have the coordinates of another point. Topology goes by point numbers, so surfaces are open there, until
 /// merge_points() joins them.
 struct CoincidentPoints {

@@ -18,6 +18,7 @@
 #include "base/parallel.hpp"
 #include "grid/boundary_faces.hpp"
 #include "grid/faces.hpp"
+#include "grid/sheet.hpp"
 
 namespace isotet {
 
@@ -78,6 +79,7 @@ Result<Surface> boundary_of_grid(const Grid& grid, const Progress& progress) {
 
 Result<Surface> boundary_of(const Grid& grid, const Run& run) {
     return core::carry_out("finding the boundary", run, [&](const Progress& progress) -> Result<Surface> {
+        if (has_only_flat_cells(grid.cells)) return core::sheet_of(grid, progress);
         if (!has_cells_to_linearize(grid.cells)) return core::boundary_of_grid(grid, progress);
         const auto linear =
             linearize({grid.points, grid.cells, {}, {}}, {}, {.threads = core::threads_here(), .progress = {}});

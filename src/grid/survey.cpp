@@ -1,6 +1,8 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // survey() and split(): what a grid holds, without packing it.
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include <isotet/grid_counts.hpp>
 #include <isotet/linear_cells.hpp>
@@ -12,6 +14,7 @@
 #include "grid/points/duplicate_points.hpp"
 #include "grid/renumber.hpp"
 #include "grid/tet_survey.hpp"
+#include "numbers/bounds.hpp"
 
 namespace isotet {
 
@@ -21,6 +24,19 @@ namespace {
 
 Error cancelled() { return {ErrorCode::cancelled, "checking the grid was cancelled"}; }
 
+/// Of a grid without tets: the box around all points that are finite.
+GridReport with_bounds_of_all(GridReport report, const Array& points) {
+    Bounds bounds;
+    const PointReader reader(points);
+    for (std::size_t i = 0; i < points.tuples(); ++i)
+        if (const Point point = reader[i]; std::ranges::all_of(point, [](double x) { return std::isfinite(x); }))
+            bounds.add(point);
+    if (bounds.lower[0] > bounds.upper[0]) return report;
+    report.lower = bounds.lower;
+    report.upper = bounds.upper;
+    return report;
+}
+
 Result<GridReport> survey(const Grid& grid, const SurveyOptions& options, const Progress& progress) {
     auto cells = CellReader::open(grid);
     if (!cells) return cells.error();
@@ -28,7 +44,6 @@ Result<GridReport> survey(const Grid& grid, const SurveyOptions& options, const 
     progress("check", 0.1);
     const TetSurvey tets = survey_tets(grid, *cells, progress);
     if (progress.cancelled()) return cancelled();
-    if (tets.tets == 0) return nothing_to_contour(grid, *cells);
     GridReport report;
     report.points = grid.points.tuples();
     report.cells = cells->count();
@@ -43,6 +58,7 @@ Result<GridReport> survey(const Grid& grid, const SurveyOptions& options, const 
     report.unused_points = tets.unused;
     report.lower = tets.lower;
     report.upper = tets.upper;
+    if (tets.tets == 0) return with_bounds_of_all(std::move(report), grid.points);
     if (options.faces) {
         progress("check", 0.4);
         report.duplicate_points = count_duplicates(PointReader(grid.points), tets.used, progress);

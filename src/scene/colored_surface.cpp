@@ -61,6 +61,10 @@ SurfaceColors carried_colors(const Surface& surface, const ColorField& field) {
 namespace isotet {
 
 Result<std::vector<std::uint64_t>> boundary_cells(const Surface& boundary, const Grid& grid, const Run& run) {
+    if (!boundary.source_cells.empty()) {
+        const auto known = boundary.source_cells.as<std::int64_t>();
+        return std::vector<std::uint64_t>(known.begin(), known.end());
+    }
     const auto ends = boundary.edge_ends.as<std::int64_t>();
     std::unordered_map<scene::Face, std::size_t, scene::FaceHash> faces(boundary.triangle_count());
     boundary.triangles.visit([&](auto corners) {

@@ -15,6 +15,7 @@
 #include <isotet/color_field.hpp>
 #include <isotet/component_groups.hpp>
 #include <isotet/field_statistics.hpp>
+#include <isotet/grid_counts.hpp>
 #include <isotet/linear_cells.hpp>
 #include <isotet/memory.hpp>
 
@@ -260,6 +261,7 @@ Result<void> GridView::pack(const std::string& field, const Run& run) {
     const Grid grid = grid_;
     const std::size_t step = step_;
     lock.unlock();
+    if (has_only_flat_cells(grid.cells)) return {};
     Result<PointField> contoured = find_field(grid, field, {}, run);
     if (!contoured) return contoured.error();
     ContourOptions options;

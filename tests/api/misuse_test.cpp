@@ -36,6 +36,15 @@ void expect_bad_grid(const Grid& grid, const std::string& message) {
     expect_error(split(grid), ErrorCode::invalid_data, message);
 }
 
+void expect_nothing_to_contour(const Grid& grid, const std::string& message) {
+    expect_error(pack(grid, field_of(std::vector<float>(grid.points.tuples(), 0))), ErrorCode::invalid_data, message);
+    expect_error(split(grid), ErrorCode::invalid_data, message);
+    const Result<GridReport> report = survey(grid);
+    ASSERT_TRUE(report) << report.error().message;
+    EXPECT_EQ(report->tets, 0u);
+    EXPECT_EQ(report->cells, grid.cells.count());
+}
+
 TEST(TinyGrids, AreRefusedAndNeverPutAtTheOrigin) {
     const auto is_taken = [](const Grid& grid, Precision precision) {
         PackOptions packing;
@@ -167,16 +176,16 @@ TEST(Pack, RefusesCoordinatesThatAreNotFiniteWhereACellUsesThePoint) {
 }
 
 TEST(Pack, RefusesGridsWithNothingToContour) {
-    expect_bad_grid(tet_grid({}, {}),
-                    "the grid with 0 points has no cell that can be contoured (no cells at all); tetrahedra, "
-                    "hexahedra, voxels, wedges and pyramids can");
+    expect_nothing_to_contour(tet_grid({}, {}),
+                              "the grid with 0 points has no cell that can be contoured (no cells at all); tetrahedra, "
+                              "hexahedra, voxels, wedges and pyramids can");
     Grid grid = one_tet();
     grid.cells.connectivity = Array::own(std::vector<std::int64_t>{0, 1, 2, 0, 1, 2, 3, 1, 2, 3});
     grid.cells.offsets = Array::own(std::vector<std::int64_t>{0, 3, 7, 10});
     grid.cells.types = Array::own(std::vector<std::uint8_t>{5, 9, 5});
-    expect_bad_grid(grid,
-                    "the grid with 5 points has no cell that can be contoured (2 x triangle, 1 x quad); tetrahedra, "
-                    "hexahedra, voxels, wedges and pyramids can");
+    expect_nothing_to_contour(grid,
+                              "the grid with 5 points has no cell that can be contoured (2 x triangle, 1 x quad); "
+                              "tetrahedra, hexahedra, voxels, wedges and pyramids can");
     EXPECT_FALSE(pack(tet_grid(unit, {{0, 1, 2, 2}}), some_field())) << "only a collapsed tet";
 }
 

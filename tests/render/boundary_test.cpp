@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // The boundary of a packed grid: closed, as large as it must be, facing outwards, the same for any number of threads.
 // No device.
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstddef>
@@ -14,6 +15,7 @@
 #include <isotet/check.hpp>
 #include <isotet/make.hpp>
 #include <isotet/pack.hpp>
+#include <isotet/surface.hpp>
 
 namespace isotet::test {
 namespace {
@@ -39,6 +41,85 @@ TEST(Boundary, OfADoublePackingIsDouble) {
     const Surface surface = boundary_of_made("kuhn", 4, Precision::float64);
     EXPECT_EQ(surface.positions.type(), ScalarType::float64);
     EXPECT_EQ(surface.triangle_count(), 6u * 4 * 4 * 2);
+}
+
+/// Every kind of flat cell with a field of the place: area and centre are those of the shapes.
+TEST(Boundary, OfFlatCellsIsTheCells) {
+    struct Shape {
+        std::uint8_t type;
+        std::vector<std::array<double, 2>> nodes;
+        double area;
+        std::size_t triangles;
+    };
+    const std::vector<std::array<double, 2>> triangle{{0, 0}, {2, 0}, {0, 2}}, square{{0, 0}, {2, 0}, {2, 2}, {0, 2}};
+    const auto with = [](std::vector<std::array<double, 2>> nodes, const std::vector<std::array<double, 2>>& more) {
+        nodes.insert(nodes.end(), more.begin(), more.end());
+        return nodes;
+    };
+    const std::vector<std::array<double, 2>> triangle_middles{{1, 0}, {1, 1}, {0, 1}},
+        square_middles{{1, 0}, {2, 1}, {1, 2}, {0, 1}};
+    const std::vector<Shape> shapes{
+        {5, triangle, 2, 1},
+        {6, {{0, 0}, {1, 0}, {0, 1}, {1, 1}, {0, 2}}, 1.5, 3},
+        {7, {{0, 0}, {2, 0}, {3, 1}, {2, 2}, {0, 2}}, 5, 3},
+        {8, {{0, 0}, {2, 0}, {0, 2}, {2, 2}}, 4, 2},
+        {9, square, 4, 2},
+        {22, with(triangle, triangle_middles), 2, 4},
+        {34, with(with(triangle, triangle_middles), {{0.5, 0.5}}), 2, 6},
+        {23, with(square, square_middles), 4, 6},
+        {28, with(with(square, square_middles), {{1, 1}}), 4, 8},
+        {30, with(square, {{1, 0}, {1, 2}}), 4, 4},
+        {36, with(square, square_middles), 4, 6},
+        {69, with(triangle, triangle_middles), 2, 1},
+        {70, with(with(square, square_middles), {{1, 1}}), 4, 2},
+        {76, with(triangle, triangle_middles), 2, 1},
+        {77, square, 4, 2},
+    };
+    for (const Shape& shape : shapes) {
+        std::vector<double> points{9, 9, 9}; // that no cell uses
+        std::vector<std::int64_t> corners;
+        for (const auto& [x, y] : shape.nodes) {
+            corners.push_back(static_cast<std::int64_t>(points.size() / 3));
+            points.insert(points.end(), {x, y, 0});
+        }
+        Grid grid;
+        grid.points = Array::own(std::move(points), 3);
+        // A line and a vertex are passed over.
+        corners.insert(corners.end(), {1, 2, 1});
+        const auto nodes = static_cast<std::int64_t>(shape.nodes.size());
+        grid.cells.connectivity = Array::own(std::move(corners));
+        grid.cells.offsets = Array::own(std::vector<std::int64_t>{0, nodes, nodes + 2, nodes + 3});
+        grid.cells.types = Array::own(std::vector<std::uint8_t>{shape.type, 3, 1});
+        const Result<Surface> surface = boundary_of(grid);
+        ASSERT_TRUE(surface) << int{shape.type} << ": " << surface.error().message;
+        EXPECT_EQ(surface->triangle_count(), shape.triangles) << int{shape.type};
+        EXPECT_NEAR(area(*surface), shape.area, 1e-12) << int{shape.type};
+        const Array normals = face_normals(*surface).value();
+        for (std::size_t i = 0; i < surface->triangle_count(); ++i) {
+            EXPECT_EQ(normals.at(i, 2), 1) << int{shape.type} << ", triangle " << i;
+            EXPECT_EQ(surface->source_cells.at(i), 0);
+        }
+        for (std::size_t v = 0; v < surface->vertex_count(); ++v) {
+            const auto point = static_cast<std::size_t>(surface->edge_ends.at(v, 0));
+            EXPECT_GT(point, 0u);
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                EXPECT_EQ(surface->positions.at(v, axis), grid.points.at(point, axis));
+        }
+    }
+}
+
+TEST(Boundary, RefusesBrokenFlatCells) {
+    Grid grid;
+    grid.points = Array::own(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}, 3);
+    grid.cells.offsets = Array::own(std::vector<std::int64_t>{0, 3});
+    for (const auto& [type, last] : {std::pair<std::uint8_t, std::int64_t>{5, 3}, {5, -1}, {9, 2}, {22, 2}}) {
+        grid.cells.types = Array::own(std::vector<std::uint8_t>{type});
+        grid.cells.connectivity = Array::own(std::vector<std::int64_t>{0, 1, last});
+        const Result<Surface> surface = boundary_of(grid);
+        ASSERT_FALSE(surface) << int{type} << ' ' << last;
+        EXPECT_EQ(surface.error().code, ErrorCode::invalid_data);
+        EXPECT_NE(surface.error().message.find("cells[0]"), std::string::npos) << surface.error().message;
+    }
 }
 
 TEST(Boundary, CanBeCancelled) {

@@ -156,6 +156,33 @@ TEST_F(GridViewTest, TheBoundaryIsColouredAndStandsAlone) {
     EXPECT_EQ(frame(message)["surfaces"].size(), 2);
 }
 
+/// A shell has no isosurface and needs no packing; fields of its points and cells colour it.
+TEST(GridViewFlatCells, AreColouredByFieldsOfPointsAndCells) {
+    Grid grid;
+    grid.points = Array::own(std::vector<float>{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 2, 0.5F, 0}, 3);
+    grid.cells.connectivity = Array::own(std::vector<std::int64_t>{0, 1, 2, 3, 1, 4, 2});
+    grid.cells.offsets = Array::own(std::vector<std::int64_t>{0, 4, 7});
+    grid.cells.types = Array::own(std::vector<std::uint8_t>{9, 5});
+    grid.point_fields = {{"T", Array::own(std::vector<float>{1, 2, 3, 4, 5})}};
+    grid.cell_fields = {{"part", Array::own(std::vector<std::int32_t>{1, 2})}};
+    const auto view = GridView::create(grid).value();
+    EXPECT_TRUE(view->pack("T", {}));
+    ASSERT_TRUE(view->find_boundary({}));
+    for (const char* field : {"T", "part"}) {
+        EXPECT_TRUE(view->chart(field, {})) << field;
+        ShowMessage message = show(1, {});
+        message.state.field = message.state.color_by = field;
+        message.state.colored_boundary = true;
+        message.state.boundary = 1;
+        std::vector<std::string> known;
+        const Result<Frame> frame = view->frame(message, 0, known, {});
+        ASSERT_TRUE(frame) << frame.error().message;
+        const Json head = head_of(frame->bytes);
+        ASSERT_EQ(head["surfaces"].size(), 1u) << field;
+        EXPECT_EQ(head["surfaces"][0]["triangles"], 3) << field;
+    }
+}
+
 TEST_F(GridViewTest, AnotherFieldIsFollowedDirectlyAndPacked) {
     ShowMessage message = show(1, {0.2});
     message.state.field = "gyroid";

@@ -5,11 +5,14 @@
 #include <cmath>
 #include <limits>
 
+#include <isotet/grid_counts.hpp>
+
 #include "base/buffer.hpp"
 #include "base/parallel.hpp"
 #include "grid/fields/incidence.hpp"
 #include "grid/fields/running_mean.hpp"
 #include "grid/orientation.hpp"
+#include "grid/patches.hpp"
 #include "grid/renumber.hpp"
 
 namespace isotet::core {
@@ -22,10 +25,12 @@ constexpr double left_out = -1; // a volume that no cell has
 Buffer<double> volumes_of(const Grid& grid, const CellReader& cells, const Array& values, Scalar scalar,
                           std::span<const double> known) {
     const PointReader points(grid.points);
+    const bool only_flat = has_only_flat_cells(grid.cells);
     Buffer<double> volumes(cells.count());
     parallel_each(cells.count(), grain, [&](std::size_t cell) {
         if (std::isnan(scalar_at(values, scalar, cell))) volumes[cell] = left_out;
-        else volumes[cell] = known.empty() ? six_volumes_of(cells, points, cell) : known[cell];
+        else if (!known.empty()) volumes[cell] = known[cell];
+        else volumes[cell] = only_flat && is_flat_cell(cells.type(cell)) ? 0 : six_volumes_of(cells, points, cell);
     });
     return volumes;
 }

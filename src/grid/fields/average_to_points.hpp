@@ -14,7 +14,7 @@ namespace isotet::core {
 
 /// At each point the mean of the values of the contoured cells around it, weighted by their volumes (the sum over the
 /// cell's tets, each taken as positive; where all are zero, all cells weigh the same). Cells whose value is NaN are
-/// left out; a point without a cell left is NaN.
+/// left out; a point without a cell left is NaN. In a grid of flat cells alone these are averaged, and weigh the same.
 ///
 /// `grid`, `cells`   checked (check_cells); a tuple of `values` for each cell
 /// `volumes`         empty, or of each cell, negative where it is left out: then cells need not be contoured ones

@@ -7,6 +7,7 @@
 
 #include <isotet/component_groups.hpp>
 #include <isotet/field_statistics.hpp>
+#include <isotet/grid_counts.hpp>
 
 #include "grid/fields/cell_corners_sample.hpp"
 #include "grid/fields/name_kind.hpp"
@@ -215,7 +216,8 @@ FirstView first_view(const Grid& grid, const std::vector<FieldInfo>& fields) {
     Judge judge(grid);
     std::vector<FirstCandidate> candidates = first_candidates(fields);
     add_named_as_regions(fields, candidates);
-    const FirstDraw surfaces = judge.is_one_cell_thick() ? FirstDraw::field_on_boundary : FirstDraw::isosurfaces;
+    const bool has_no_surfaces = has_only_flat_cells(grid.cells) || judge.is_one_cell_thick();
+    const FirstDraw surfaces = has_no_surfaces ? FirstDraw::field_on_boundary : FirstDraw::isosurfaces;
     const FirstCandidate* best = nullptr;
     const FirstCandidate* rough = nullptr;
     double most = 0;
