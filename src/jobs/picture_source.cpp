@@ -2,6 +2,7 @@
 #include "jobs/picture_source.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -67,6 +68,22 @@ Array stretched(const Array& points, const std::vector<double>& factors) {
     });
 }
 
+/// Formats of corner-point grids: reservoirs of kilometres, some metres high.
+bool is_of_reservoirs(const std::string& format) { return format == "grdecl"; }
+
+/// Where a grid is 50 times as wide as high or more, factors that make it about four times as wide as high: 1, 2 or 5 times
+/// a power of ten for z. Else none.
+std::vector<double> default_stretch(const Array& points) {
+    constexpr double flat = 50, seen = 4;
+    const auto ranges = statistics_of(points);
+    if (!ranges || ranges->size() != 3 || (*ranges)[0].lower > (*ranges)[0].upper) return {};
+    const auto extent = [&](std::size_t axis) { return (*ranges)[axis].upper - (*ranges)[axis].lower; };
+    const double width = std::max(extent(0), extent(1)), height = extent(2);
+    if (!(height > 0) || width < flat * height) return {};
+    const double most = width / height / seen, power = std::pow(10, std::floor(std::log10(most)));
+    return {1, 1, (most < 2 * power ? 1 : most < 5 * power ? 2 : 5) * power};
+}
+
 } // namespace
 
 struct PictureSource::Contents {
@@ -119,6 +136,11 @@ Result<PictureSource> PictureSource::open(const DrawJob& job, Caller& caller) {
 bool PictureSource::wants_surfaces() const {
     return asks_for_field(job_) ||
            (job_.slices.empty() && (job_.boundary_color_by.empty() || !job_.field.name.empty()));
+}
+
+/// Whether heights of the grid are stretched where it is flat, which nobody asked for.
+bool PictureSource::may_stretch() const {
+    return job_.stretch.empty() && !surface_ && is_of_reservoirs(source_->info().format);
 }
 
 /// The field that is needed by name: contoured, or else coloured by; empty: it is to be chosen.
@@ -194,6 +216,7 @@ Result<DrawInput> PictureSource::take_surface(const std::optional<Device>& devic
     }
     DrawInput input;
     input.is_surface = true;
+    input.stretch = job_.stretch;
     input.format = surface_format_;
     input.read_seconds = surface_seconds_;
     Contents contents;
@@ -337,7 +360,7 @@ std::optional<ReadActiveCells> PictureSource::active_cells(const Contents& conte
     options.expected_isovalues = job_.isovalues;
     options.normals = job_.shade_by == ShadeBy::gradient ? Normals::gradient : Normals::none;
     if (draws_more || decided_later || job_.isovalues.size() > most_isovalues || !job_.stretch.empty() ||
-        field.neighbours || !read.cell->empty() || !Contour::can_do_with_active_cells(options))
+        may_stretch() || field.neighbours || !read.cell->empty() || !Contour::can_do_with_active_cells(options))
         return std::nullopt;
     ReadActiveCells active{field.name, job_.isovalues, {}};
     active.bounds = true;
@@ -569,6 +592,13 @@ Result<DrawInput> PictureSource::read(std::size_t which, const std::optional<Dev
         options.field = *contents->field;
     }
     options.grid = contents->grid;
+    if (may_stretch()) {
+        job_.stretch = default_stretch(options.grid.points);
+        if (!job_.stretch.empty())
+            caller.note(fmt::format("heights are drawn {} times as large; `scale` 1,1,1 draws them as they are",
+                                    shortest(job_.stretch[2])));
+    }
+    input.stretch = job_.stretch;
     options.all_cells = contents->all_cells;
     options.bounds = contents->bounds;
     options.packed = std::move(contents->packed);

@@ -40,6 +40,7 @@ private:
     explicit PictureSource(const DrawJob& job) : job_(job) {}
     Result<DrawInput> take_surface(const std::optional<Device>& device, Caller& caller);
     bool wants_surfaces() const;
+    bool may_stretch() const;
     std::string needed_field() const;
     Result<void> choose_steps_and_view(Caller& caller);
     Result<void> take_first_view(bool& contours, std::string& field, std::string& color, Contents& contents,

@@ -99,9 +99,9 @@ Annotation annotation_of(const DrawJob& job, const DrawInput& input) {
     if (input.time) add("t = " + rounded(*input.time));
     if (input.step) add(fmt::format("step {}", *input.step));
     for (const Plane& plane : job.slices) add(plane_text(plane));
-    if (!job.stretch.empty())
-        add(fmt::format("axes × {}, {}, {}", shortest(job.stretch[0]), shortest(job.stretch[1]),
-                        shortest(job.stretch[2])));
+    if (!input.stretch.empty())
+        add(fmt::format("axes × {}, {}, {}", shortest(input.stretch[0]), shortest(input.stretch[1]),
+                        shortest(input.stretch[2])));
     if (!input.is_surface) add(counted(input.cells, "cell"));
     if (all > 0) add(job.method.draw ? counted(all, "tet") + " drawn" : counted(all, "triangle"));
     // The camera follows when it is known.

@@ -49,6 +49,30 @@ TEST_F(Render, DrawsASurfaceFromAFile) {
     EXPECT_TRUE(is_one_error(run, "is a surface: it has no isovalues"));
 }
 
+TEST_F(Render, StretchesHeightsOfFlatReservoirs) {
+    put_content(path("flat.grdecl"), R"(SPECGRID
+ 2 1 1 1 F /
+COORD
+ 0 0 100 0 0 200  1000 0 100 1000 0 200  2000 0 100 2000 0 200
+ 0 1000 100 0 1000 200  1000 1000 100 1000 1000 200  2000 1000 100 2000 1000 200 /
+ZCORN
+ 8*100 8*110 /
+PORO
+ 0.1 0.2 /
+)");
+    const auto draw = [&](const std::string& out, const std::vector<std::string>& more) {
+        std::vector<std::string> words = command(path("flat.grdecl"), out, more);
+        words.insert(words.end(), {"--boundary-color-by", "PORO"});
+        return isotet(words).err;
+    };
+    EXPECT_NE(draw("a.png", {}).find("heights are drawn 50 times as large; --scale 1,1,1 draws them as they are"),
+              std::string::npos);
+    EXPECT_EQ(draw("b.png", {"--scale", "1,1,50"}).find("heights are drawn"), std::string::npos);
+    EXPECT_EQ(draw("c.png", {"--scale", "1,1,1"}).find("heights are drawn"), std::string::npos);
+    EXPECT_TRUE(content(path("a.png")) == content(path("b.png")));
+    EXPECT_FALSE(content(path("a.png")) == content(path("c.png")));
+}
+
 TEST_F(Render, ColoursAndSaysWhatTheColoursMean) {
     auto words = command("make:kuhn:8:sphere,gyroid", "a.png",
                          {"-f", "sphere", "-i", "0.5", "--color-by", "gyroid", "--colormap", "cool-warm"});

@@ -56,7 +56,7 @@ struct DrawJob {
     bool parallel = false;
     std::string unit; ///< of coordinates, beside a scale bar; empty: none
     bool scale_bar = false;
-    std::vector<double> stretch; ///< of x, y and z; or none
+    std::vector<double> stretch; ///< of x, y and z; none: that of z where a reservoir is flat (default_stretch())
     std::vector<Plane> clips, slices;
     std::optional<SolidSide> solid; ///< in place of isosurfaces: solids on this side of them
     std::optional<PartChoice> keep; ///< of each isosurface or solid only these parts; nothing: all
@@ -101,6 +101,7 @@ struct DrawInput {
     std::vector<double> sweep = {};   ///< DrawJob::sweep, with its shares
     std::optional<ColorField> colors; ///< of whatever is coloured
     std::optional<VolumeLook> volume;
+    std::vector<double> stretch = {}; ///< of x, y and z; or none
     std::uint64_t cells = 0;          ///< of the grid
     double read_seconds = 0;
     std::optional<IsosurfaceScene> scene; ///< always there
