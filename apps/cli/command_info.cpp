@@ -135,7 +135,7 @@ std::string first_table(const FirstView& first) {
         case FirstDraw::isosurfaces: return fmt::format("isosurfaces of {}: {}", first.field, text_of(first.reason));
         case FirstDraw::field_on_boundary:
             return fmt::format("the boundary, coloured by {}: {}", first.field,
-                               first.rough ? "it jumps from cell to cell" : "the grid is one cell thick");
+                               first.rough ? "it jumps from cell to cell" : "the grid is one cell thick, or flat");
         case FirstDraw::regions_on_boundary:
             return fmt::format("the boundary, coloured by {}: no field varies, but regions do", first.field);
         case FirstDraw::boundary: break;
@@ -180,11 +180,13 @@ Json json_of(const std::vector<RegionName>& regions) {
     return list;
 }
 
+Json json_of(const BlockInfo& block) {
+    return {{"number", block.number}, {"name", json_text(block.name)}, {"kind", block.kind}, {"cells", block.cells}};
+}
+
 Json json_of(const std::vector<BlockInfo>& blocks) {
     Json list = Json::array();
-    for (const BlockInfo& block : blocks)
-        list.push_back(
-            {{"number", block.number}, {"name", json_text(block.name)}, {"kind", block.kind}, {"cells", block.cells}});
+    for (const BlockInfo& block : blocks) list.push_back(json_of(block));
     return list;
 }
 
@@ -241,6 +243,21 @@ std::string field_table(const std::vector<FieldSummary>& fields) {
     return table.text();
 }
 
+/// Of blocks that were looked into: what cells they have, and their fields.
+std::string each_block_table(const GridSummary& found) {
+    std::string text;
+    for (std::size_t i = 0; i < found.blocks.size(); ++i) {
+        const BlockInfo& block = found.file.blocks[i];
+        Table cells = facts();
+        cells.row({"", ""});
+        cells.row({fmt::format("{} {}", block.kind, block.number), block.name.empty() ? "-" : block.name});
+        for (const auto& [type, count] : found.blocks[i].cells_by_type)
+            cells.row({"", fmt::format("{} {}", grouped(count), name_of_cell_type(type))});
+        text += cells.text() + field_table(found.blocks[i].fields);
+    }
+    return text;
+}
+
 std::string vector_table(const std::vector<VectorSummary>& vectors) {
     using enum Table::Align;
     Table table({left, left, left, left});
@@ -283,6 +300,22 @@ Json json_of(const std::vector<FieldSummary>& fields) {
     return list;
 }
 
+Json by_type(const auto& counts) {
+    Json report = Json::object();
+    for (const auto& [type, count] : counts) report[name_of_cell_type(type)] = count;
+    return report;
+}
+
+/// With --each-block: with what was found in them.
+Json blocks_of(const GridSummary& found) {
+    Json list = json_of(found.file.blocks);
+    for (std::size_t i = 0; i < found.blocks.size(); ++i) {
+        list[i]["cells_by_type"] = by_type(found.blocks[i].cells_by_type);
+        list[i]["fields"] = json_of(found.blocks[i].fields);
+    }
+    return list;
+}
+
 Json json_of(const GridSummary& found, const std::string& path) {
     const GridReport& grid = found.report;
     Json report = json_report("info");
@@ -290,9 +323,7 @@ Json json_of(const GridSummary& found, const std::string& path) {
     report["format"] = found.file.format;
     report["points"] = grid.points;
     report["cells"] = grid.cells;
-    Json by_type = Json::object();
-    for (const auto& [type, count] : grid.cells_by_type) by_type[name_of_cell_type(type)] = count;
-    report["cells_by_type"] = std::move(by_type);
+    report["cells_by_type"] = by_type(grid.cells_by_type);
     report["cells_left_out"] = grid.cells_left_out;
     report["tets"] = grid.tets;
     report["collapsed_tets"] = grid.collapsed_tets;
@@ -348,7 +379,7 @@ Result<TableAndJson> report_on(const InfoJob& job, Console& console) {
     if (job.heads) return report_heads(path, *found);
     Json report = json_of(*found, path);
     report["curved"] = json_of(found->curved);
-    report["blocks"] = json_of(found->file.blocks);
+    report["blocks"] = blocks_of(*found);
     report["regions"] = json_of(found->file.regions);
     report["fields"] = json_of(found->fields);
     report["vectors"] = json_of(found->vectors);
@@ -356,7 +387,8 @@ Result<TableAndJson> report_on(const InfoJob& job, Console& console) {
     if (found->chart) report["chart"] = cli::json_of(*found->chart);
     return TableAndJson{grid_table(*found, path) + curved_table(found->curved) + block_table(found->file) +
                             region_table(found->file) + field_table(found->fields) + vector_table(found->vectors) +
-                            first_table(found->first) + (found->chart ? chart_table(*found->chart) : ""),
+                            first_table(found->first) + each_block_table(*found) +
+                            (found->chart ? chart_table(*found->chart) : ""),
                         std::move(report)};
 }
 

@@ -227,11 +227,14 @@ void add_info(const Command& program, InfoCommand& info) {
     const Option all_steps =
         command.add_flag("--all-steps", info.all_steps, "Ranges of fields over all time steps, each of which is read");
     for (const char* name : {"--time", "--step"}) all_steps.excludes(command.option(name));
+    const Option each_block = command.add_flag("--each-block", info.each_block,
+                                               "Also cell types and ranges of each block, which is read by itself");
     command
         .add_flag("--heads", info.heads,
                   "Only what the file announces, without reading values: fields, cells, time steps, blocks")
         .excludes(survey)
         .excludes(chart)
+        .excludes(each_block)
         .excludes(all_steps);
     add_field(command, info.field, "The field of the chart; default: the one that is shown first").needs(chart);
     add_common(command, info.common);

@@ -12,6 +12,7 @@
 
 #include <isotet/contour.hpp>
 #include <isotet/expression.hpp>
+#include <isotet/first_view.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/grid_counts.hpp>
 #include <isotet/hanging_points.hpp>
@@ -36,6 +37,32 @@ FileInfo info_of(const MakeOptions& made) {
         const ScalarType type = name == "integer" ? ScalarType::int32 : ScalarType::float32;
         info.fields.push_back({name, Association::point, type, 1});
     }
+    return info;
+}
+
+/// Its triangles as cells.
+Grid grid_of(const Surface& surface) {
+    Grid grid;
+    grid.points = surface.positions;
+    grid.cells.connectivity = surface.triangles.visit([]<class Number>(std::span<const Number> corners) {
+        return Array::own(std::vector(corners.begin(), corners.end()));
+    });
+    constexpr std::uint8_t triangle = 5;
+    std::vector<std::uint64_t> offsets(surface.triangle_count() + 1);
+    for (std::size_t i = 0; i < offsets.size(); ++i) offsets[i] = 3 * i;
+    grid.cells.offsets = Array::own(std::move(offsets));
+    grid.cells.types = Array::own(std::vector<std::uint8_t>(surface.triangle_count(), triangle));
+    grid.point_fields = surface.point_fields;
+    grid.cell_fields = surface.cell_fields;
+    return grid;
+}
+
+FileInfo info_of(const SurfaceFile& file, const Grid& grid, const std::string& path) {
+    FileInfo info;
+    info.format = file.format;
+    info.cells = grid.cells.count();
+    info.files = {path};
+    info.fields = describe_fields(grid);
     return info;
 }
 
@@ -222,9 +249,11 @@ Result<GridSource> GridSource::open(const GridOptions& options, Caller& caller) 
         if (info.error().code != ErrorCode::file || !kinds.surface || kinds.grid || !options.format.empty() ||
             !std::filesystem::exists(options.file))
             return info.error();
-        return Error{ErrorCode::file, fmt::format("{} is a surface, not a grid: isotet check measures it, isotet "
-                                                  "render draws it",
-                                                  options.file)};
+        Result<SurfaceFile> surface = read_surface(options.file, {}, caller.run());
+        if (!surface) return surface.error();
+        source.surface_ = std::make_shared<const Grid>(grid_of(surface->surface));
+        info = info_of(*surface, *source.surface_, options.file);
+        caller.notes(surface->notes);
     }
     source.info_ = *std::move(info);
     source.info_.files.insert(source.info_.files.end(), options.other_inputs.begin(), options.other_inputs.end());
@@ -254,7 +283,7 @@ Result<void> GridSource::look_at(std::size_t step, const Run& run) {
 }
 
 Result<void> GridSource::look_at_steps(const std::vector<std::size_t>& steps, Caller& caller) {
-    if (made_ || info_.times.size() < 2) return {};
+    if (made_ || surface_ || info_.times.size() < 2) return {};
     if (steps.size() > 1) closing_ = std::make_shared<KnownClosing>();
     std::vector<FieldInfo> fields;
     std::vector<LeftOut> left_out;
@@ -367,6 +396,13 @@ Result<ReadResult> GridSource::read_unclosed(const FieldsToRead& fields, std::si
         result.grid = *std::move(grid);
         return result;
     }
+    if (surface_) {
+        ReadResult result;
+        result.grid = *surface_;
+        leave(result.grid.point_fields, fields.point);
+        leave(result.grid.cell_fields, fields.cell);
+        return result;
+    }
     ReadOptions options = read_options_;
     if (cells == CellsToRead::some && is_packed_file() && !options_.merge_points && options_.displace.empty())
         options.some_cells = FieldSample::max_cells;
@@ -407,7 +443,7 @@ Result<ReadResult> GridSource::read_some(const FieldsToRead& fields, std::size_t
 
 Result<ReadResult> GridSource::read_active(const FieldsToRead& fields, std::size_t step, const ReadActiveCells& active,
                                            Caller& caller) const {
-    if (made_ || options_.merge_points || (kept_ && kept_->is_there())) {
+    if (made_ || surface_ || options_.merge_points || (kept_ && kept_->is_there())) {
         Result<Grid> grid = read(fields, step, caller);
         if (!grid) return grid.error();
         ReadResult result;
@@ -452,6 +488,14 @@ Result<Grid> GridSource::read_the_rest(const FieldsToRead& fields, std::size_t s
     Result<ClosedGrid> all = close_hanging_points(result->grid, run);
     if (!all) return all.error();
     return std::move(all->grid);
+}
+
+Result<Grid> GridSource::read_block(const BlockInfo& block, std::size_t step, Caller& caller) const {
+    ReadOptions options = read_options_;
+    options.blocks = {std::to_string(block.number)};
+    Result<ReadResult> result = read_file({}, step, std::move(options), caller.run());
+    if (!result) return result.error();
+    return std::move(result->grid);
 }
 
 Result<ReadResult> GridSource::read_file(const FieldsToRead& fields, std::size_t step, ReadOptions options,

@@ -98,6 +98,19 @@ Result<void> add_other_steps(GridSource& source, GridSummary& summary, Caller& c
     return {};
 }
 
+Result<void> add_blocks(const GridSource& source, GridSummary& summary, Caller& caller) {
+    if (summary.file.blocks.empty()) return Error{ErrorCode::invalid_argument, "`each_block`: the file has no blocks"};
+    for (const BlockInfo& block : summary.file.blocks) {
+        if (caller.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
+        const Result<Grid> grid = source.read_block(block, summary.step, caller);
+        if (!grid) return grid.error();
+        Result<std::vector<FieldSummary>> fields = summarize(*grid, caller.run());
+        if (!fields) return fields.error();
+        summary.blocks.push_back({count_cells_by_type(grid->cells), *std::move(fields)});
+    }
+    return {};
+}
+
 /// Vectors that are stored as three scalars.
 std::vector<VectorSummary> vectors_of(const std::vector<FieldInfo>& fields) {
     std::vector<VectorSummary> vectors;
@@ -208,6 +221,8 @@ Result<GridSummary> look_into(const InfoJob& job, Caller& caller) {
     summary.chart = *std::move(chart);
     if (job.all_steps)
         if (auto added = add_other_steps(*source, summary, caller); !added) return added.error();
+    if (job.each_block)
+        if (auto added = add_blocks(*source, summary, caller); !added) return added.error();
     return summary;
 }
 

@@ -133,11 +133,62 @@ TEST_F(Program, InfoListsBlocksAndBlockChoosesOne) {
     EXPECT_NE(isotet({"info", "make:kuhn:3", "--block", "1"}).status, 0);
 }
 
-TEST_F(Program, InfoOfASurfaceNamesTheCommandsForSurfaces) {
-    EXPECT_EQ(isotet({"extract", "make:kuhn:4:sphere", path("s.vtp"), "-i", "0.5"}).status, 0);
-    const RunResult run = isotet({"info", path("s.vtp")});
-    EXPECT_EQ(run.status, 3);
-    EXPECT_TRUE(is_one_error(run, "is a surface, not a grid: isotet check measures it, isotet render draws it"));
+TEST_F(Program, InfoTellsCellsAndRangesOfEachBlock) {
+    const std::string file = (source_folder() / "data/exodus/mixed_blocks_hdf5.exo").string();
+    const json whole = json_of({"info", file, "--each-block"});
+    for (const std::size_t i : {std::size_t{0}, whole["blocks"].size() / 2, whole["blocks"].size() - 1}) {
+        const json& block = whole["blocks"][i];
+        const json alone = json_of({"info", file, "--block", std::to_string(block["number"].get<int>())});
+        EXPECT_EQ(block["cells_by_type"], alone["cells_by_type"]) << block["name"];
+        EXPECT_EQ(block["fields"], alone["fields"]) << block["name"];
+    }
+    EXPECT_FALSE(json_of({"info", file})["blocks"][0].contains("fields"));
+    EXPECT_NE(isotet({"info", file, "--each-block"}).out.find("\nelement block 1"), std::string::npos);
+    const RunResult none = isotet({"info", "make:kuhn:3", "--each-block"});
+    EXPECT_EQ(none.status, 2);
+    EXPECT_TRUE(is_one_error(none, "--each-block: the file has no blocks")) << none.err;
+}
+
+TEST_F(Program, InfoTellsWhatASurfaceHas) {
+    EXPECT_EQ(isotet({"extract", "make:kuhn:4:sphere", path("s.vtp"), "-i", "0.5", "--with", "sphere"}).status, 0);
+    const json surface = json_of({"check", path("s.vtp")});
+    const json report = json_of({"info", path("s.vtp"), "--survey"});
+    EXPECT_EQ(report["format"], "vtp");
+    EXPECT_EQ(report["points"], surface["vertices"]);
+    EXPECT_EQ(report["cells_by_type"]["triangle"], surface["triangles"]);
+    EXPECT_EQ(report["tets"], 0);
+    EXPECT_EQ(report["fields"][0]["name"], "sphere");
+}
+
+TEST_F(Program, FlatCellsAreToldAndDrawnAndHaveNoIsosurface) {
+    put_content(path("plate.vtk"), R"(# vtk DataFile Version 3.0
+plate
+ASCII
+DATASET UNSTRUCTURED_GRID
+POINTS 5 float
+0 0 0 2 0 0 2 1 0 0 1 0 3 0.5 0
+CELLS 2 9
+4 0 1 2 3
+3 1 4 2
+CELL_TYPES 2
+9 5
+POINT_DATA 5
+SCALARS T float 1
+LOOKUP_TABLE default
+1 2 4 3 7
+)");
+    const json report = json_of({"info", path("plate.vtk"), "--survey"});
+    EXPECT_EQ(report["cells_by_type"], (json{{"quad", 1}, {"triangle", 1}}));
+    EXPECT_EQ(report["bounds"]["upper"], json::array({3, 1, 0}));
+    EXPECT_EQ(report["fields"][0]["range"], json::array({json::array({1, 7})}));
+    EXPECT_EQ(report["first_view"]["draw"], "field_on_boundary");
+    EXPECT_EQ(report["first_view"]["field"], "T");
+    const RunResult picture = isotet({"render", path("plate.vtk"), path("plate.png")});
+    EXPECT_EQ(picture.status, 0) << picture.err;
+    EXPECT_NE(picture.out.find("boundary     3 faces"), std::string::npos) << picture.out;
+    const RunResult surface = isotet({"extract", path("plate.vtk"), path("s.vtp"), "-i", "2"});
+    EXPECT_EQ(surface.status, 3);
+    EXPECT_TRUE(is_one_error(surface, "no cell that can be contoured (1 x triangle, 1 x quad)")) << surface.err;
 }
 
 TEST_F(Program, BareFileIsInfo) {

@@ -104,6 +104,9 @@ public:
     /// The grid of which read_active() gave some cells. Nothing is noted again.
     Result<Grid> read_the_rest(const FieldsToRead& fields, std::size_t step, const Run& run) const;
 
+    /// One of info().blocks alone, with all fields, as it is in the file; nothing is noted.
+    Result<Grid> read_block(const BlockInfo& block, std::size_t step, Caller& caller) const;
+
 private:
     struct Kept;
     enum class CellsToRead : std::uint8_t { all, some };
@@ -118,6 +121,7 @@ private:
 
     GridOptions options_;
     std::optional<MakeOptions> made_;
+    std::shared_ptr<const Grid> surface_; ///< where the file is a surface: its triangles as cells
     FileInfo info_;
     std::optional<std::size_t> described_;                      ///< the step whose fields info_ has; nothing: of several
     std::map<std::size_t, std::vector<FieldInfo>> step_fields_; ///< of the steps that were looked at

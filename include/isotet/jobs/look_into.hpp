@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +24,7 @@ struct InfoJob {
     std::vector<std::string> other_outputs; ///< of the caller: no file of the grid may be one
     bool survey = false;                    ///< also what takes longer than reading
     bool all_steps = false;                 ///< ranges of fields over all time steps: each is read
+    bool each_block = false;                ///< cell types and ranges of each block, which is read by itself
     bool heads = false;                     ///< only what the file announces: no values are read, nothing is counted
     FieldChoice field;                      ///< of the chart; empty: that of first_view()
     std::optional<std::uint64_t> chart;     ///< steps; nothing: no chart
@@ -33,6 +35,12 @@ struct FieldSummary {
     Association association = Association::point;
     ScalarType type = ScalarType::float32;
     std::vector<ComponentStatistics> components;
+};
+
+/// One of FileInfo::blocks.
+struct BlockSummary {
+    std::map<std::uint8_t, std::uint64_t> cells_by_type; ///< VTK's number -> cells
+    std::vector<FieldSummary> fields;
 };
 
 /// Scalar fields that are the components of one vector or tensor.
@@ -70,14 +78,15 @@ struct GridSummary {
     HangingReport hanging;            ///< if so: which of them extraction closes
     std::size_t steps = 1;            ///< of `fields`: one, or all of the file
     std::vector<FieldSummary> fields;
+    std::vector<BlockSummary> blocks; ///< with InfoJob::each_block: one for each of `file`
     std::vector<VectorSummary> vectors;
     FirstView first; ///< what render and view show, and extract contours, where no field is named
     CurvedSummary curved;
     std::optional<FieldChart> chart;
 };
 
-/// Reads a step whole, with InfoJob::all_steps the others one by one, and counts; with InfoJob::heads in time by the number of fields, blocks and files, for formats
-/// that have such heads (docs/formats.md).
+/// Reads a step whole, with InfoJob::all_steps the others and with InfoJob::each_block its blocks one by one, and counts; with
+/// InfoJob::heads in time by the number of fields, blocks and files, for formats that have such heads (docs/formats.md).
 /// Errors   as of reading; invalid_argument: a step or field that there is not; invalid_data: nothing to chart
 Result<GridSummary> look_into(const InfoJob& job, Caller& caller);
 
