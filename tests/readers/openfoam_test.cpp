@@ -426,6 +426,17 @@ TEST_F(CollatedFoam, PlainFoldersGoFirst) {
     EXPECT_EQ(read_whole(folder_.file("")).cells.count(), 34u);
 }
 
+TEST_F(CollatedFoam, ANameAloneTakesNoTimeOrMemory) {
+    write_case(folder_, foam_case(box_, wave, {}));
+    std::filesystem::create_directories(folder_.file("processors1000000/constant"));
+    const auto result = read(folder_.file(""));
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(result->notes.front(), "1000000 processor folders were not read: the case's own folder is as complete");
+    std::filesystem::remove_all(folder_.file("constant"));
+    EXPECT_NE(read(folder_.file("")).error().message.find("a case has its mesh in constant/polyMesh"),
+              std::string::npos);
+}
+
 TEST_F(CollatedFoam, FoldersThatLackProcessorsAreErrors) {
     const FoamFiles files = collated(foam_case(box_, wave, {}, 4), {1, 1, 2}, true);
     for (const char* missing : {"processors4_0-0", "processors4_1-1", "processors4_2-3"}) {

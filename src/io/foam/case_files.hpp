@@ -40,6 +40,8 @@ public:
 
     /// Empty where there is no such folder. "" is the case's own.
     virtual FolderContent list(const std::string& folder) const = 0;
+    /// How many folders processor0, processor1 and so on there are that list("") does not name.
+    virtual std::size_t unlisted_processors() const { return 0; }
     /// True for anything but a folder of that name, or with ".gz".
     virtual bool has(const std::string& name) const = 0;
     /// Opens NAME, else NAME.gz.

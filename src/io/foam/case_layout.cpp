@@ -54,8 +54,11 @@ std::vector<std::string> regions_in(const CaseFiles& files, const std::string& p
     return regions;
 }
 
-/// processor0, processor1 and so on, without a gap.
-Result<std::vector<std::string>> processors_in(const CaseFiles& files) {
+std::string processor_folder(std::size_t number) { return fmt::format("processor{}/", number); }
+
+/// How many folders processor0, processor1 and so on there are, without a gap.
+Result<std::size_t> processors_in(const CaseFiles& files) {
+    if (const std::size_t count = files.unlisted_processors(); count > 0) return count;
     std::vector<std::size_t> numbers;
     for (const std::string& name : files.list("").folders) {
         constexpr std::string_view begin = "processor";
@@ -65,14 +68,11 @@ Result<std::vector<std::string>> processors_in(const CaseFiles& files) {
         if (error == std::errc{} && rest == name.data() + name.size()) numbers.push_back(number);
     }
     std::ranges::sort(numbers);
-    std::vector<std::string> prefixes;
-    for (const std::size_t number : numbers) {
-        if (number != prefixes.size())
-            return broken(files.path_of(fmt::format("processor{}", prefixes.size())),
-                          fmt::format("is not there, but processor{} is", number));
-        prefixes.push_back(fmt::format("processor{}/", number));
-    }
-    return prefixes;
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+        if (numbers[i] != i)
+            return broken(files.path_of(fmt::format("processor{}", i)),
+                          fmt::format("is not there, but processor{} is", numbers[i]));
+    return numbers.size();
 }
 
 } // namespace
@@ -84,15 +84,16 @@ Result<CaseLayout> layout_of(const CaseFiles& files) {
     layout.prefixes = {""};
     layout.times = times_in(files, "");
     layout.regions = regions_in(files, "", layout.times);
-    if (!processors->empty()) {
-        auto times = times_in(files, processors->front());
+    if (*processors > 0) {
+        auto times = times_in(files, processor_folder(0));
         const bool later = !times.empty() && (layout.times.empty() || times.back().first > layout.times.back().first);
-        auto regions = regions_in(files, processors->front(), times);
+        auto regions = regions_in(files, processor_folder(0), times);
         if ((layout.regions.empty() || later) && !regions.empty()) {
-            layout = {std::move(*processors), std::move(times), std::move(regions), {}};
+            layout = {{}, std::move(times), std::move(regions), {}};
+            for (std::size_t i = 0; i < *processors; ++i) layout.prefixes.push_back(processor_folder(i));
         } else {
-            layout.notes.push_back(fmt::format(
-                "{} processor folders were not read: the case's own folder is as complete", processors->size()));
+            layout.notes.push_back(
+                fmt::format("{} processor folders were not read: the case's own folder is as complete", *processors));
         }
     }
     if (layout.regions.empty())

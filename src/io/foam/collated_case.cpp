@@ -102,11 +102,8 @@ CollatedCase::Place CollatedCase::collated(const std::string& name) const {
 
 FolderContent CollatedCase::list(const std::string& folder) const {
     FolderContent content = files_.list(collated(folder).name);
-    if (!folder.empty()) return content;
-    std::erase_if(content.folders, [](const std::string& name) { return parse_folder(name).has_value(); });
-    const std::size_t count = groups_.back().first + groups_.back().count;
-    for (std::size_t i = 0; i < count; ++i) content.folders.push_back(fmt::format("{}{}", plain, i));
-    std::ranges::sort(content.folders);
+    if (folder.empty())
+        std::erase_if(content.folders, [](const std::string& name) { return parse_folder(name).has_value(); });
     return content;
 }
 

@@ -28,6 +28,7 @@ public:
     static Result<std::unique_ptr<const CollatedCase>> over(const CaseFiles& files);
 
     FolderContent list(const std::string& folder) const override;
+    std::size_t unlisted_processors() const override { return groups_.back().first + groups_.back().count; }
     bool has(const std::string& name) const override { return files_.has(collated(name).name); }
     /// Errors   invalid_data: not as many blocks as there are processors, a block that is cut short
     Result<CaseText> open(const std::string& name, std::size_t most) const override;
