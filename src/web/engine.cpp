@@ -178,7 +178,9 @@ Result<Json> Engine::take(const Json& message) {
         grid_.point_fields.push_back({name, *values});
     }
     given_.clear();
-    if (const Result<GridReport> report = survey(grid_, {.faces = false}); !report) return report.error();
+    const Result<GridReport> report = survey(grid_, {.faces = false});
+    if (!report) return report.error();
+    if (report->tets == 0) return bad_message("no cell has a volume: there is nothing to contour");
     return description();
 }
 

@@ -34,13 +34,16 @@ std::optional<CellPlaces> CellPlaces::make(std::span<const std::uint8_t> types) 
     core::parallel_each(places.before_.size(), 64, [&](std::size_t i) {
         const std::uint64_t end = std::min<std::uint64_t>(types.size(), (i + 1) * stride);
         std::uint64_t corners = 0;
+        bool all_known = true, all_same = true;
         for (std::uint64_t cell = i * stride; cell < end; ++cell) {
             const std::uint64_t own = core::fixed_corners_of(types[cell]);
-            if (own == 0) known = false;
-            if (types[cell] != types.front()) uniform = false;
+            all_known &= own != 0;
+            all_same &= types[cell] == types.front();
             corners += own;
         }
         places.before_[i] = corners;
+        if (!all_known) known.store(false, std::memory_order_relaxed);
+        if (!all_same) uniform.store(false, std::memory_order_relaxed);
     });
     if (!known) return std::nullopt;
     if (uniform) return CellPlaces(static_cast<CellType>(types.front()), types.size());
