@@ -230,8 +230,15 @@ void add_opacity(const Command& command, RenderCommand& render) {
         "LENGTH",
         "Length over which one value of a volume has its opacity; default: a tenth of the diagonal of the grid's box");
     command.add_numbers("--dirac", render.dirac, "V[,W...]",
-                        "Draw isosurfaces by rays through the volume, opaque, without extracting them; its opacity is "
-                        "only drawn where --opacity is given");
+                        "Draw isosurfaces, at numbers or shares such as 50%v or p95, by rays through the volume, opaque, "
+                        "without extracting them; its opacity is only drawn where --opacity is given",
+                        {[&render](std::string_view word) {
+                             const std::optional<IsovalueShare> share = parse_share(word);
+                             if (share) render.dirac_shares.push_back(*share);
+                             return share.has_value();
+                         },
+                         "finite numbers, or shares such as 90%v or p95",
+                         {}});
 }
 
 /// Of the first two numbers each may be a share.

@@ -39,7 +39,7 @@ std::string name_of_picture(const DrawJob& job) {
 Result<void> show_frame(const DrawJob& job, DrawInput& input, const std::vector<double>& isovalues, const Run& run) {
     if (!input.volume || job.sweep.empty()) return input.scene->show(isovalues, run);
     const FieldReport& field = input.scene->report().field;
-    if (job.dirac.empty())
+    if (!draws_dirac(job))
         input.volume->opacity = opacity_of(OpacityPreset::peaks, {field.lower, field.upper}, isovalues);
     else input.volume->isosurfaces = isovalues;
     input.scene->set_volume(*input.volume);
@@ -48,7 +48,7 @@ Result<void> show_frame(const DrawJob& job, DrawInput& input, const std::vector<
 
 /// Isovalues that are all outside the range of the field were not meant. Solids and volumes show something there, too.
 Result<void> check_that_some_meet(const DrawJob& job, const DrawInput& input, const std::vector<double>& isovalues) {
-    const bool is_asked = !job.isovalues.empty() && job.sweep.empty() && !job.solid && !job.volume && job.dirac.empty();
+    const bool is_asked = !job.isovalues.empty() && job.sweep.empty() && !job.solid && !draws_volume(job);
     const auto is_empty = [](const ShownSurface& surface) { return surface.triangles == 0; };
     if (!is_asked || job.allow_empty || job.all_steps || !std::ranges::all_of(input.scene->surfaces(), is_empty))
         return {};

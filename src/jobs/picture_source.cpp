@@ -519,8 +519,13 @@ Result<void> PictureSource::take_volume(Contents& contents, Caller& caller) {
     const Result<ColorScale> scale = color_scale(std::span(&field.values, 1), *options, caller.run());
     if (!scale) return scale.error();
     VolumeLook look{*scale, {}, job_.opacity_length, job_.dirac};
+    if (!job_.dirac_shares.empty()) {
+        const auto found = isovalues_at(contents.grid, field, job_.dirac_shares, caller.run());
+        if (!found) return found.error();
+        look.isosurfaces.insert(look.isosurfaces.end(), found->begin(), found->end());
+    }
     if (volume_opacity_) look.opacity = *volume_opacity_;
-    else if (job_.volume_opacity || job_.dirac.empty()) {
+    else if (job_.volume_opacity || !draws_dirac(job_)) {
         const Result<ValueRange> range = typical_range_of_steps(field, caller);
         if (!range) return range.error();
         if (!(range->lower <= range->upper))

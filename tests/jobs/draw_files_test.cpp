@@ -3,6 +3,7 @@
 #include <isotet/jobs/pack_file.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -194,6 +195,24 @@ TEST(DrawFiles, NotesIsovaluesWithoutASurface) {
     job.dirac = {0.5, 9};
     ASSERT_TRUE(draw_files(job, of_rays));
     EXPECT_EQ(of_rays.noted, listener.noted);
+}
+
+TEST(DrawFiles, RaysMeetIsosurfacesAtShares) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    DrawJob job = small_picture("make:kuhn:6:sphere", folder.file("a.png"));
+    job.field.name = "sphere";
+    job.dirac_shares = {{IsovalueShare::Of::volume, 20}};
+    const DrawReport report = draw_files(job, listener).value();
+    ASSERT_EQ(report.input.volume->isosurfaces.size(), 1u);
+    const double isovalue = report.input.volume->isosurfaces[0];
+    const double radius = std::cbrt(0.2 * 8 * 3 / (4 * 3.14159265358979));
+    EXPECT_NEAR(isovalue, radius, 0.05);
+    job.dirac_shares.clear();
+    job.dirac = {isovalue};
+    job.out = folder.file("b.png");
+    ASSERT_TRUE(draw_files(job, listener));
+    EXPECT_TRUE(test::content_of(folder.file("a.png")) == test::content_of(folder.file("b.png")));
 }
 
 TEST(DrawFiles, NotesSlicesThatMissTheGrid) {

@@ -70,6 +70,7 @@ struct DrawJob {
     std::optional<OpacityText> volume_opacity; ///< nothing: a ramp, and with `dirac` none
     std::optional<double> opacity_length;      ///< that it is of; nothing: a tenth of the diagonal of the grid's box
     std::vector<double> dirac;                 ///< isovalues of surfaces that rays meet; asks for a volume, too
+    std::vector<IsovalueShare> dirac_shares;   ///< more of these: of each time step its own
     bool plain = false;                      ///< no text
     std::string color_by;                    ///< a field; empty: each isovalue has its colour
     ColorScale scale;                        ///< the map, the logarithm and the colour for no data
@@ -107,8 +108,11 @@ struct DrawInput {
     std::optional<IsosurfaceScene> scene; ///< always there
 };
 
+/// Whether rays meet isosurfaces.
+inline bool draws_dirac(const DrawJob& job) { return !job.dirac.empty() || !job.dirac_shares.empty(); }
+
 /// Whether the field is drawn as a volume.
-inline bool draws_volume(const DrawJob& job) { return job.volume || !job.dirac.empty(); }
+inline bool draws_volume(const DrawJob& job) { return job.volume || draws_dirac(job); }
 
 /// Pictures that were drawn and written.
 struct PictureNumbers {
