@@ -24,7 +24,7 @@ inline constexpr std::array<std::uint8_t, 24> kuhn{0, 1, 3, 7, 0, 2, 6, 7, 0, 4,
                                                    0, 3, 2, 7, 0, 5, 1, 7, 0, 6, 4, 7};
 inline constexpr std::array<std::uint8_t, 8> hex{0, 1, 3, 2, 4, 5, 7, 6};
 /// Cut along the planes x = y; the triangles, below and above, are cut as `kuhn` cuts them.
-inline constexpr std::array<std::uint8_t, 12> wedge{0, 3, 1, 4, 7, 5, 0, 2, 3, 4, 6, 7};
+inline constexpr std::array<std::uint8_t, 12> wedge{0, 1, 3, 4, 5, 7, 0, 3, 2, 4, 7, 6};
 /// Each face of the cube with the centre: -z, +z, -y, +y, -x, +x.
 inline constexpr std::array<std::uint8_t, 30> pyramid{0, 1, 3, 2, 8, 4, 6, 7, 5, 8, 0, 4, 5, 1, 8,
                                                       2, 3, 7, 6, 8, 0, 2, 6, 4, 8, 1, 5, 7, 3, 8};

@@ -26,7 +26,7 @@ struct Octahedron {
     std::vector<std::vector<int>> faces; ///< corners in order around
 };
 
-/// All corners with this product with `normal`, each a neighbour of the one before.
+/// All corners with this product with `normal`, each a neighbour of the one before, counter-clockwise seen from outside.
 std::vector<int> face_of(const std::vector<Place>& corners, const Place& normal, int product) {
     std::vector<int> left, face;
     for (int i = 0; i < static_cast<int>(corner_count); ++i)
@@ -47,6 +47,16 @@ std::vector<int> face_of(const std::vector<Place>& corners, const Place& normal,
         left.erase(next);
         next = std::ranges::find_if(left, [&](int corner) { return adjacent(face.back(), corner); });
     }
+    const auto edge = [&](std::size_t from, std::size_t axis) {
+        return corners[static_cast<std::size_t>(face[from + 1])][axis] -
+               corners[static_cast<std::size_t>(face[from])][axis];
+    };
+    int turn = 0;
+    for (std::size_t x = 0; x < 3; ++x) {
+        const std::size_t y = (x + 1) % 3, z = (x + 2) % 3;
+        turn += normal[x] * (edge(0, y) * edge(1, z) - edge(0, z) * edge(1, y));
+    }
+    if (turn < 0) std::reverse(face.begin(), face.end());
     return face;
 }
 

@@ -65,12 +65,12 @@ double volume(const Grid& grid, std::uint64_t p, std::uint64_t q, std::uint64_t 
            6;
 }
 
-// VTK's faces of a cell, counter-clockwise seen from outside.
+// VTK's faces of a cell, counter-clockwise seen from outside; of a wedge those of VTK since 9.2, and of Gmsh and Exodus.
 std::vector<std::vector<std::size_t>> faces_of(int type) {
     switch (type) {
     case 10: return {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {0, 2, 1}};
     case 12: return {{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}};
-    case 13: return {{0, 1, 2}, {3, 5, 4}, {0, 3, 4, 1}, {1, 4, 5, 2}, {2, 5, 3, 0}};
+    case 13: return {{0, 2, 1}, {3, 4, 5}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}};
     default: return {{0, 3, 2, 1}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
     }
 }
@@ -203,6 +203,30 @@ TEST(MakeGrid, HasAsManyPointsAndCellsAsTheShapeSays) {
         const Grid grid = made(shape, 6);
         EXPECT_EQ(grid.points.tuples(), expected.at(shape)[0]) << shape;
         EXPECT_EQ(grid.cells.count(), expected.at(shape)[1]) << shape;
+    }
+}
+
+TEST(MakeGrid, HasPolyhedraWithFacesThatLookOutwards) {
+    const Grid grid = made("kelvin", 3);
+    const auto faces = grid.cells.faces.as<std::int32_t>();
+    const auto starts = grid.cells.face_offsets.as<std::int64_t>();
+    for (std::size_t cell = 0; cell < grid.cells.count(); ++cell) {
+        auto at = static_cast<std::size_t>(starts[cell]);
+        double sum = 0;
+        const auto count = static_cast<std::size_t>(faces[at++]);
+        const auto apex = static_cast<std::uint64_t>(faces[at + 1]);
+        for (std::size_t face = 0; face < count; ++face) {
+            const auto corners = faces.subspan(at + 1, static_cast<std::size_t>(faces[at]));
+            at += corners.size() + 1;
+            for (std::size_t i = 2; i < corners.size(); ++i) {
+                const double part = volume(grid, apex, static_cast<std::uint64_t>(corners[0]),
+                                           static_cast<std::uint64_t>(corners[i - 1]),
+                                           static_cast<std::uint64_t>(corners[i]));
+                EXPECT_GT(part, -1e-9) << "cell " << cell << ", face " << face;
+                sum += part;
+            }
+        }
+        EXPECT_GT(sum, 0) << cell;
     }
 }
 
