@@ -65,19 +65,18 @@ Array joined_of_cells(std::span<const Array> heads, const Array& source, const s
     });
 }
 
-/// Means of the vertices around apexes behind the other vertices.
-Array with_means(Array values, const Cap& cap) {
+/// Values at apexes behind those at the other vertices.
+Array with_apexes(Array values, const Cap& cap, const Array& source) {
     if (cap.apexes.empty()) return values;
     const std::size_t components = values.components();
     return values.visit([&](auto typed) {
         using Value = std::remove_cvref_t<decltype(typed[0])>;
-        return joined<Value>(std::span<const Array>(&values, 1), components, cap.apexes.size(),
-                             [&](std::size_t i, std::size_t k) {
-                                 double sum = 0;
-                                 for (const std::uint32_t vertex : cap.apexes[i].around)
-                                     sum += static_cast<double>(typed[vertex * components + k]);
-                                 return sum / static_cast<double>(cap.apexes[i].around.size());
-                             });
+        return joined<Value>(
+            std::span<const Array>(&values, 1), components, cap.apexes.size(), [&](std::size_t i, std::size_t k) {
+                return cap.apexes[i].value(
+                    [&](std::uint32_t vertex) { return static_cast<double>(typed[vertex * components + k]); },
+                    [&](std::uint64_t point) { return source.at(point, k); });
+            });
     });
 }
 
@@ -214,7 +213,8 @@ Surface assemble(std::span<const Shell> shells, const Cap& cap, const ContourInp
     for (const Field& field : input.point_fields) {
         const auto heads = arrays_of(shells, [&](const Surface& s) { return values_of(s.point_fields, field.name); });
         out.point_fields.push_back(
-            {field.name, with_means(joined_of_points(heads, field.values, cap.points, options.precision), cap)});
+            {field.name,
+             with_apexes(joined_of_points(heads, field.values, cap.points, options.precision), cap, field.values)});
     }
     for (const Field& field : input.cell_fields) {
         const auto heads = arrays_of(shells, [&](const Surface& s) { return values_of(s.cell_fields, field.name); });

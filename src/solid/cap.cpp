@@ -30,6 +30,7 @@ struct RawTriangle {
 struct RawApex {
     Place3 position{};
     std::vector<Corner> around;
+    std::array<double, 4> shift{};
     std::uint32_t face = 0;
 };
 
@@ -223,20 +224,26 @@ private:
         const std::vector<Polygon> parts = polygons_of(face, sides, origin, nullptr);
         std::vector<double> volumes(parts.size());
         share_difference(left, parts, volumes);
+        std::array<Place3, 4> corners;
+        for (std::size_t k = 0; k < 4; ++k) corners[k] = place_of_point(face.places[k]);
         std::size_t next = 0;
         for_parts(sides, [&](std::span<const PartVertex> part) {
             std::array<Corner, 16> polygon;
             const std::size_t count = corners_of(face, part, polygon);
-            Place3 apex = apex_of(parts[next], volumes[next]);
+            const Polygon& here = parts[next];
+            Place3 apex = apex_of(here, volumes[next]), from_mean;
             ++next;
             if (count < 3) return;
-            for (std::size_t axis = 0; axis < 3; ++axis) apex[axis] += origin[axis];
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                from_mean[axis] = apex[axis] - here.mean[axis];
+                apex[axis] += origin[axis];
+            }
+            std::vector<Corner> around;
+            for (const PartVertex& vertex : part) around.push_back(corner_of(face, vertex));
             const Corner number = out.apexes.size() | apex_bit;
             for (std::size_t k = 0; k < count; ++k)
                 out.triangles.push_back({{polygon[k], polygon[(k + 1) % count], number}, number_of(face)});
-            out.apexes.push_back({apex,
-                                  {polygon.begin(), polygon.begin() + static_cast<std::ptrdiff_t>(count)},
-                                  number_of(face)});
+            out.apexes.push_back({apex, std::move(around), weights_of(corners, from_mean), number_of(face)});
         });
     }
 
@@ -316,9 +323,13 @@ Cap make_cap(const BoundaryFaces& boundary, const Array& points, const Array& va
     }
     cap.apexes.resize(raw.apexes.size());
     core::parallel_each(raw.apexes.size(), 1 << 12, [&](std::size_t i) {
-        cap.apexes[i].position = raw.apexes[i].position;
-        cap.apexes[i].face = raw.apexes[i].face;
-        for (const Corner corner : raw.apexes[i].around) cap.apexes[i].around.push_back(vertex_of(corner));
+        Apex& apex = cap.apexes[i];
+        apex.position = raw.apexes[i].position;
+        apex.shift = raw.apexes[i].shift;
+        apex.face = raw.apexes[i].face;
+        const BoundaryFace& face = boundary.faces[apex.face];
+        for (std::size_t k = 0; k < 4; ++k) apex.corners[k] = boundary.points[face.places[k]];
+        for (const Corner corner : raw.apexes[i].around) apex.around.push_back(vertex_of(corner));
     });
     return cap;
 }

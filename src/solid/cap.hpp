@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -35,8 +36,20 @@ struct Cuts {
 /// A vertex inside a part of a face that is not flat (warped_face.hpp).
 struct Apex {
     std::array<double, 3> position{};
-    std::vector<std::uint32_t> around; ///< vertices of the part: their mean is what it carries
-    std::uint32_t face = 0;            ///< of the boundary; the parts of one follow each other, as for_parts() has them
+    std::vector<std::uint32_t> around;      ///< vertices of the part, those at ties twice
+    std::array<std::uint64_t, 4> corners{}; ///< points of the grid: the whole face
+    std::array<double, 4> shift{}; ///< the position is the mean of those around and the sum of these times the corners
+    std::uint32_t face = 0;        ///< of the boundary; the parts of one follow each other, as for_parts() has them
+
+    /// What it carries: linear fields stay linear. The mean alone where a corner has no value.
+    /// `of_vertex(v)`, `of_point(p)`   values, as double
+    template <class OfVertex, class OfPoint>
+    double value(const OfVertex& of_vertex, const OfPoint& of_point) const {
+        double sum = 0, more = 0;
+        for (const std::uint32_t vertex : around) sum += of_vertex(vertex);
+        for (std::size_t k = 0; k < corners.size(); ++k) more += shift[k] * of_point(corners[k]);
+        return sum / static_cast<double>(around.size()) + (std::isfinite(more) ? more : 0);
+    }
 };
 
 struct Cap {

@@ -223,12 +223,10 @@ public:
     To of_vertex(bool of_upper, std::uint32_t vertex, std::size_t k) const {
         return levels_[of_upper]->as<To>()[vertex * components_ + k];
     }
-    /// The mean of the vertices around an apex, in the order of the cap.
     double of_apex(std::uint64_t apex, std::size_t k) const {
-        double sum = 0;
-        for (const std::uint32_t vertex : input_.cap.apexes[apex].around)
-            sum += static_cast<double>(of_solid(vertex, k));
-        return sum / static_cast<double>(input_.cap.apexes[apex].around.size());
+        return input_.cap.apexes[apex].value(
+            [&](std::uint32_t vertex) { return static_cast<double>(of_solid(vertex, k)); },
+            [&](std::uint64_t point) { return grid_.at(point, k); });
     }
 
 private:
@@ -252,7 +250,7 @@ template <class To, class From>
 struct ValueFiller {
     const ValueReader<To>& reader;
     const From* grid;
-    const Cap* places_of_apexes; ///< null: apexes have means
+    const Cap* places_of_apexes; ///< null: values, not positions
     To* out;
 
     void point(std::size_t i, std::uint64_t point) const {

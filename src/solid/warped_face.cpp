@@ -13,6 +13,10 @@ namespace {
 
 double scalar_product(const Place3& a, const Place3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
+double triple_product(const Place3& a, const Place3& b, const Place3& c) {
+    return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
+}
+
 } // namespace
 
 Polygon polygon_of(std::span<const Place3> corners) {
@@ -48,6 +52,20 @@ Place3 apex_of(const Polygon& polygon, double volume) {
     const double along = 3 * (volume - polygon.volume) / square;
     Place3 out = polygon.mean;
     for (std::size_t axis = 0; axis < 3; ++axis) out[axis] += along * polygon.area[axis];
+    return out;
+}
+
+std::array<double, 4> weights_of(std::span<const Place3, 4> corners, const Place3& vector) {
+    std::array<Place3, 3> edges;
+    for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t axis = 0; axis < 3; ++axis) edges[k][axis] = corners[k + 1][axis] - corners[0][axis];
+    const double determinant = triple_product(edges[0], edges[1], edges[2]);
+    std::array<double, 4> out{};
+    if (determinant == 0) return out;
+    out[1] = triple_product(vector, edges[1], edges[2]) / determinant;
+    out[2] = triple_product(edges[0], vector, edges[2]) / determinant;
+    out[3] = triple_product(edges[0], edges[1], vector) / determinant;
+    out[0] = -(out[1] + out[2] + out[3]);
     return out;
 }
 

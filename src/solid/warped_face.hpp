@@ -36,6 +36,9 @@ double largest_coordinate(std::span<const Place3> places);
 /// From the mean so far along the area that triangles to this point, in place of the mean, enclose `volume`.
 Place3 apex_of(const Polygon& polygon, double volume);
 
+/// What the corners of a quadrilateral that is not flat weigh in a vector: their sum is 0. All 0 where it is flat.
+std::array<double, 4> weights_of(std::span<const Place3, 4> corners, const Place3& vector);
+
 /// What the parts of a face on each side enclose, made so that they add up to the whole.
 ///
 /// `whole`   what the triangles of the whole face enclose

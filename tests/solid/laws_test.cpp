@@ -153,6 +153,30 @@ TEST(Solid, HasNoNeedlesAtWarpedFaces) {
     }
 }
 
+/// Also at points inside cut faces that are not flat.
+TEST(Solid, CarriesLinearFieldsExactlyAtWarpedFaces) {
+    for (const char* shape : {"hex", "wedge", "pyramid", "mixed"}) {
+        const NastyGrid g = mixed_grid(350, {.shape = shape, .side = 4, .moved = 0.2, .wide = true});
+        const auto linear = [](const Array& points, std::size_t i) {
+            return points.at(i, 0) + 0.5 * points.at(i, 1) - 0.25 * points.at(i, 2) + 0.1;
+        };
+        std::vector<double> values(g.grid.points.tuples());
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = linear(g.grid.points, i);
+        const ContourInput input{g.grid, g.field, {{"linear", Array::own(std::move(values))}}, {}};
+        ContourOptions options;
+        options.precision = Precision::float64;
+        options.edge_ends = true;
+        const Solid solid = Solids::create(input, options).value().extract(SolidRange::above(0.1)).value();
+        std::size_t inside_faces = 0;
+        for (std::size_t i = 0; i < solid.surface.vertex_count(); ++i) {
+            inside_faces += solid.surface.edge_ends.at(i, 0) == -1;
+            ASSERT_NEAR(solid.surface.point_fields[0].values.at(i), linear(solid.surface.positions, i), 1e-9)
+                << shape << ", edge " << solid.surface.edge_ends.at(i, 0) << " " << solid.surface.edge_ends.at(i, 1);
+        }
+        EXPECT_GT(inside_faces, 3u) << shape;
+    }
+}
+
 TEST(Solid, OfCollapsedCellsIsClosed) {
     for (const std::uint32_t seed : Seeds(400, 8)) {
         Solids solids =
