@@ -83,8 +83,10 @@ ISOTET_API Result<FoundColors> find_colors(const Surface& surface, const std::st
 ISOTET_API Result<void> color_boundary(Surface& boundary, const Grid& grid, const ColorField& field,
                                        const Run& run = {});
 
-/// The same of a field of points that fits, without the grid's cells.
-ISOTET_API void color_boundary_by_points(Surface& boundary, const ColorField& field);
+/// The same of a field of points that fits. The grid's cells are needed only where the boundary has points that linearize() has
+/// made; the pass over them is then more.
+ISOTET_API Result<void> color_boundary_by_points(Surface& boundary, const Grid& grid, const ColorField& field,
+                                                 const Run& run = {});
 
 /// The same of a field of cells that fits, with boundary_cells().
 ISOTET_API void color_boundary_by_cells(Surface& boundary, const std::vector<std::uint64_t>& cells,

@@ -98,11 +98,23 @@ Result<std::vector<std::uint64_t>> boundary_cells(const Surface& boundary, const
     return cells;
 }
 
-void color_boundary_by_points(Surface& boundary, const ColorField& field) {
+Result<void> color_boundary_by_points(Surface& boundary, const Grid& grid, const ColorField& field, const Run& run) {
     const auto ends = boundary.edge_ends.as<std::int64_t>();
-    boundary.point_fields = {{field.name, scene::gathered(field.values, boundary.vertex_count(), [&](std::size_t i) {
+    const std::int64_t last = ends.empty() ? -1 : *std::ranges::max_element(ends);
+    Array values = field.values;
+    if (last >= static_cast<std::int64_t>(values.size())) { // points that linearize() has made
+        const Result<LinearGrid> linear = linearize({grid.points, grid.cells, {}, {}}, {}, run);
+        if (!linear) return linear.error();
+        Result<Array> longer = linear->extend(values, run);
+        if (!longer) return longer.error();
+        values = *std::move(longer);
+        if (last >= static_cast<std::int64_t>(values.size()))
+            return invalid_argument(fmt::format("the boundary has point {}, but the grid has {}", last, values.size()));
+    }
+    boundary.point_fields = {{field.name, scene::gathered(values, boundary.vertex_count(), [&](std::size_t i) {
                                   return static_cast<std::size_t>(ends[2 * i]);
                               })}};
+    return {};
 }
 
 void color_boundary_by_cells(Surface& boundary, const std::vector<std::uint64_t>& cells, const ColorField& field) {
@@ -115,10 +127,7 @@ Result<void> color_boundary(Surface& boundary, const Grid& grid, const ColorFiel
     if (field.values.size() != needed)
         return invalid_argument(fmt::format("{} values shall colour a grid of {} {}", field.values.size(), needed,
                                             of_points ? "points" : "cells"));
-    if (of_points) {
-        color_boundary_by_points(boundary, field);
-        return {};
-    }
+    if (of_points) return color_boundary_by_points(boundary, grid, field, run);
     const Result<std::vector<std::uint64_t>> cells = boundary_cells(boundary, grid, run);
     if (!cells) return cells.error();
     color_boundary_by_cells(boundary, *cells, field);

@@ -314,7 +314,8 @@ Result<void> GridView::add_slices(const ViewState& state, const std::vector<std:
 Result<Surface> GridView::colored_boundary(Surface boundary, std::uint64_t number, const ColorField& colors,
                                            const Run& run) {
     if (colors.association == Association::point) {
-        color_boundary_by_points(boundary, colors);
+        if (Result<void> colored = color_boundary_by_points(boundary, grid_, colors, run); !colored)
+            return colored.error();
         return boundary;
     }
     if (Result<void> here = need_cells(run); !here) return here.error();

@@ -13,9 +13,12 @@
 
 #include <isotet/boundary.hpp>
 #include <isotet/check.hpp>
+#include <isotet/color_field.hpp>
 #include <isotet/make.hpp>
 #include <isotet/pack.hpp>
 #include <isotet/surface.hpp>
+
+#include "linear/curved_grid.hpp"
 
 namespace isotet::test {
 namespace {
@@ -106,6 +109,25 @@ TEST(Boundary, OfFlatCellsIsTheCells) {
                 EXPECT_EQ(surface->positions.at(v, axis), grid.points.at(point, axis));
         }
     }
+}
+
+/// Faces of quadratic cells have points that the grid does not have.
+TEST(Boundary, OfQuadraticCellsHasColoursAtAllItsPoints) {
+    std::size_t made = 0;
+    for (const unsigned seed : {1u, 2u, 3u}) {
+        const CurvedGrid curved =
+            curved_grid({.side = 3, .seed = seed, .field = [](const At& p) { return p[0] + 2 * p[1] - p[2]; }});
+        Surface boundary = boundary_of(curved.grid).value();
+        const ColorField field{"p", curved.field.values, Association::point, {}};
+        ASSERT_TRUE(color_boundary(boundary, curved.grid, field));
+        const Array& values = boundary.point_fields.at(0).values;
+        for (std::size_t i = 0; i < boundary.vertex_count(); ++i) {
+            made += static_cast<std::size_t>(boundary.edge_ends.at(i, 0)) >= curved.grid.points.tuples();
+            const Array& at = boundary.positions;
+            ASSERT_NEAR(values.at(i), at.at(i, 0) + 2 * at.at(i, 1) - at.at(i, 2), 1e-5);
+        }
+    }
+    EXPECT_GT(made, 10u);
 }
 
 TEST(Boundary, RefusesBrokenFlatCells) {
