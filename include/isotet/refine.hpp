@@ -31,6 +31,11 @@ struct RefineOptions {
     /// deviate by this times the least gradient of the field at its ends, but always by 10^-5 of the range. 0: not looked
     /// at. What of tolerance, relative_tolerance and distance is above 0 holds together.
     double distance = 0;
+    /// Other fields of the points, of floating numbers, any components: cells are bisected for them, too, where a component is
+    /// off by more than `carried_tolerance` of its range, but for them no edge to less than a quarter of a cell's. For cuts,
+    /// whose own field is made of the places: fields that they carry follow the cells' functions, too.
+    std::vector<Field> carried = {};
+    double carried_tolerance = 0.01;
 };
 
 /// Makes linear tets of all cells that linearize() handles, so fine that the field, linear in each tet, differs from the

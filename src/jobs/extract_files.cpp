@@ -299,6 +299,7 @@ Result<bool> ExtractRun::load(std::size_t step) {
     if (auto shares = find_shares(); !shares) return shares.error();
     coarse_tets_ = 0;
     ContourInput input{grid_, *std::move(field), std::move(fields->point), std::move(fields->cell)};
+    if (job_.field.shape && plan_.contour.refine) plan_.contour.refine->carried = input.point_fields;
     if (*cells_in_file)
         input.all_cells = [this, step, all = input](const Run& run) mutable -> Result<ContourInput> {
             caller_.detail(fmt::format("reading all cells of step {}", step));
@@ -645,7 +646,7 @@ Result<void> ExtractRun::find_parts_of(Surface& surface, SurfaceNumbers& numbers
 /// Edge ends that are points of refined cells mean something only with what these were refined by.
 std::vector<Field> ExtractRun::field_data_of(const Surface& surface) const {
     if (surface.edge_ends.empty() || !plan_.contour.refine || !numbers_.refinement.refined ||
-        numbers_.refinement.isovalues.empty())
+        numbers_.refinement.isovalues.empty() || !plan_.contour.refine->carried.empty())
         return {};
     RefineOptions options = *plan_.contour.refine;
     options.isovalues = numbers_.refinement.isovalues;

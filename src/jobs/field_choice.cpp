@@ -75,7 +75,8 @@ Result<void> add_carried(const GridSource& source, const std::string& name, Carr
     else if (const std::size_t comma = comma_between(name); comma != std::string::npos) {
         if (auto first = add_carried(source, name.substr(0, comma), carried); !first) return first;
         return add_carried(source, name.substr(comma + 1), carried);
-    } else if (!name.empty()) return source.no_such_field(name);
+    } else if (looks_like_expression(name)) return find_expression(source, name).error();
+    else if (!name.empty()) return source.no_such_field(name);
     return {};
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -30,6 +31,21 @@ constexpr std::optional<Place> halfway(const Place& a, const Place& b) {
     const Place sum{a[0] + b[0], a[1] + b[1], a[2] + b[2]};
     if ((sum[0] | sum[1] | sum[2]) & 1) return std::nullopt;
     return Place{sum[0] / 2, sum[1] / 2, sum[2] / 2};
+}
+
+/// How far a field's middle between two places is from the mean of both: a quarter of its second difference. On a face that
+/// tets share the same bits in both: values that weigh nothing there are not looked at.
+inline double deviation_between(const std::array<double, 10>& bezier, const Place& a, const Place& b) {
+    const auto from = steps_of(a), to = steps_of(b);
+    std::array<double, 4> step{};
+    for (std::size_t i = 0; i < 4; ++i) step[i] = (static_cast<double>(to[i]) - from[i]) / whole_weight;
+    double sum = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+        if (step[i] != 0) sum += bezier[i] * step[i] * step[i];
+    for (std::size_t e = 0; e < 6; ++e)
+        if (const double product = step[tet_edges[e][0]] * step[tet_edges[e][1]]; product != 0)
+            sum += 2 * bezier[4 + e] * product;
+    return std::abs(sum) / 4;
 }
 
 /// Of RefinedPoints::places.

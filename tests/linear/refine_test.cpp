@@ -6,6 +6,7 @@
 #include <isotet/check.hpp>
 #include <isotet/contour.hpp>
 #include <isotet/extract_direct.hpp>
+#include <isotet/make.hpp>
 #include <isotet/refine.hpp>
 
 #include "linear/curved_grid.hpp"
@@ -34,16 +35,19 @@ std::size_t single_faces(const LinearGrid& linear) {
     return single;
 }
 
-double volume_inside(const LinearGrid& linear) {
+/// `turned`   tets of wedges look the other way: their first triangle faces outwards
+double volume_inside(const LinearGrid& linear, bool turned = false) {
     const Array& p = linear.grid.points;
     double sum = 0;
     for (const auto& t : split(linear.grid).value().tets) {
         std::array<At, 3> e{};
         for (std::size_t i = 0; i < 3; ++i)
             for (std::size_t k = 0; k < 3; ++k) e[i][k] = p.at(t[i + 1], k) - p.at(t[0], k);
-        sum += (e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) - e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
-                e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0])) /
-               6;
+        const double part =
+            (e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) - e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
+             e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0])) /
+            6;
+        sum += turned ? std::abs(part) : part;
     }
     return sum;
 }
@@ -110,7 +114,7 @@ TEST(CurvedCells, ReproduceQuadraticFieldsAtTheirNodesInEveryKind) {
                     const At p{linear.grid.points.at(i, 0), linear.grid.points.at(i, 1), linear.grid.points.at(i, 2)};
                     ASSERT_NEAR(values.at(i), quadric(p), 1e-12) << shape;
                 }
-                ASSERT_NEAR(volume_inside(linear), 8, 1e-9) << shape;
+                ASSERT_NEAR(volume_inside(linear, shape == "wedge" || shape == "mixed"), 8, 1e-9) << shape;
             }
         }
 }
@@ -181,6 +185,104 @@ TEST(Refine, KeepsItsBoundAtRandomPlaces) {
     }
 }
 
+/// A plane needs no bisecting, but the wave that its cut carries does; neighbours agree on both.
+TEST(Refine, FollowsCarriedFieldsToo) {
+    for (const std::uint32_t seed : Seeds(1, 3)) {
+        const CurvedGrid made = curved_grid({.side = 3, .seed = seed, .shuffle = seed > 1, .field = wave});
+        std::vector<double> heights(made.grid.points.tuples());
+        for (std::size_t i = 0; i < heights.size(); ++i) heights[i] = made.grid.points.at(i, 2);
+        const PointField plane{"z", Array::own(std::move(heights)), false, {}};
+        RefineOptions options;
+        const LinearGrid alone = refine(made.grid, plane, options).value();
+        options.carried = {{"wave", made.field.values}};
+        const LinearGrid both = refine(made.grid, plane, options).value();
+        EXPECT_EQ(alone.refinement.tets, alone.refinement.quadratic_tets);
+        EXPECT_GT(both.refinement.tets, both.refinement.quadratic_tets);
+        expect_no_hole_inside(both);
+        const double before = field_bound(alone, made.field.values).value(),
+                     after = field_bound(both, made.field.values).value();
+        EXPECT_LT(after, before / 8);
+        options.isovalues = {0.137};
+        const LinearGrid some = refine(made.grid, plane, options).value();
+        EXPECT_LT(some.refinement.tets, both.refinement.tets);
+        EXPECT_EQ(triangles_of(surface_of(both, plane, 0.137)), triangles_of(surface_of(some, plane, 0.137)));
+    }
+}
+
+TEST(Refine, PassesOverCarriedValuesThatAreNotThere) {
+    const CurvedGrid made = curved_grid({.side = 3, .seed = 1, .field = wave});
+    std::vector<double> values(made.grid.points.tuples()), heights(values.size());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        values[i] = i % 11 == 3 ? NAN : made.field.values.at(i);
+        heights[i] = made.grid.points.at(i, 2);
+    }
+    const PointField plane{"z", Array::own(std::move(heights)), false, {}};
+    RefineOptions options;
+    options.carried = {{"wave", Array::own(std::move(values))},
+                       {"ids", Array::own(std::vector<std::int32_t>(made.grid.points.tuples(), 7))}};
+    const LinearGrid linear = refine(made.grid, plane, options).value();
+    EXPECT_GT(linear.refinement.tets, linear.refinement.quadratic_tets);
+    expect_no_hole_inside(linear);
+    options.carried[1].values = Array::own(std::vector<float>{1});
+    EXPECT_EQ(refine(made.grid, plane, options).error().code, ErrorCode::invalid_argument);
+}
+
+/// Of a triquadratic hexahedron the values at vertices of the cut are near the cell's own.
+TEST(Refine, FollowsTheCellsOwnFunctionsOfCarriedFields) {
+    const Grid grid = make_grid({.shape = "hex27", .side = 3, .fields = {"gyroid"}}).value();
+    std::vector<double> heights(grid.points.tuples());
+    for (std::size_t i = 0; i < heights.size(); ++i) heights[i] = grid.points.at(i, 2);
+    const PointField plane{"z", Array::own(std::move(heights)), false, {}};
+    RefineOptions options;
+    options.carried = {grid.point_fields[0]};
+    options.isovalues = {0.137};
+    const LinearGrid linear = refine(grid, plane, options).value();
+    const Surface cut = surface_of(linear, plane, 0.137);
+    ASSERT_GT(cut.triangle_count(), 100u);
+    // Each cube is one cell with nodes at thirds of the unit: the product of quadratic interpolants of its nodes.
+    const Array carried = linear.extend(grid.point_fields[0].values).value();
+    std::map<std::array<long, 3>, double> at_node;
+    const auto key = [](double x, double y, double z) {
+        return std::array{std::lround(3 * (x + 1)), std::lround(3 * (y + 1)), std::lround(3 * (z + 1))};
+    };
+    for (std::size_t i = 0; i < grid.points.tuples(); ++i)
+        at_node[key(grid.points.at(i, 0), grid.points.at(i, 1), grid.points.at(i, 2))] =
+            grid.point_fields[0].values.at(i);
+    const auto own = [&](const std::array<double, 3>& p) {
+        std::array<std::array<double, 3>, 3> weight{};
+        std::array<long, 3> first{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double along = 1.5 * (p[k] + 1);
+            const double cell = std::clamp(std::floor(along), 0.0, 2.0), x = along - cell;
+            first[k] = 2 * std::lround(cell);
+            weight[k] = {(1 - x) * (1 - 2 * x), 4 * x * (1 - x), x * (2 * x - 1)};
+        }
+        double sum = 0;
+        for (std::size_t a = 0; a < 3; ++a)
+            for (std::size_t b = 0; b < 3; ++b)
+                for (std::size_t c = 0; c < 3; ++c)
+                    sum += weight[0][a] * weight[1][b] * weight[2][c] *
+                           at_node.at({first[0] + static_cast<long>(a), first[1] + static_cast<long>(b),
+                                       first[2] + static_cast<long>(c)});
+        return sum;
+    };
+    double worst = 0;
+    for (std::size_t i = 0; i < linear.grid.points.tuples(); ++i)
+        worst = std::max(worst, std::abs(carried.at(i) - own({linear.grid.points.at(i, 0), linear.grid.points.at(i, 1),
+                                                              linear.grid.points.at(i, 2)})));
+    EXPECT_LT(worst, 0.15) << "at points";
+    for (const auto& tet : split(linear.grid).value().tets) {
+        std::array<double, 3> middle{};
+        double mean = 0;
+        for (const std::uint64_t corner : tet) {
+            mean += carried.at(corner) / 4;
+            for (std::size_t k = 0; k < 3; ++k) middle[k] += linear.grid.points.at(corner, k) / 4;
+        }
+        worst = std::max(worst, std::abs(mean - own(middle)));
+    }
+    EXPECT_LT(worst, 0.15) << "in tets; in those that the plane alone needs it is more than 1";
+}
+
 TEST(Refine, GivesTheSameSurfacePrunedAndUnpruned) {
     for (const unsigned seed : {1u, 2u}) {
         const CurvedGrid made =
@@ -221,8 +323,7 @@ TEST(Refine, LeavesOutCellsWhereTheFieldIsJustTheIsovalue) {
 TEST(Refine, OfWhatNoIsovalueMeetsIsAGridWithoutASurface) {
     const CurvedGrid made = curved_grid({.side = 2, .shuffle = true, .warp = bulge, .field = wave});
     for (const double isovalue : {-99.0, 99.0}) {
-        const LinearGrid linear =
-            refine(made.grid, made.field, {.tolerance = 0.05, .isovalues = {isovalue}}).value();
+        const LinearGrid linear = refine(made.grid, made.field, {.tolerance = 0.05, .isovalues = {isovalue}}).value();
         EXPECT_GT(linear.grid.cells.count(), 0u);
         EXPECT_EQ(surface_of(linear, made.field, isovalue).triangle_count(), 0u);
         ContourOptions options;

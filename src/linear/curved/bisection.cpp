@@ -26,10 +26,13 @@ double half(double a, double b) { return (a + b) / 2; }
 
 bool is_same(const Place& a, const Place& b) { return ((a[0] ^ b[0]) | (a[1] ^ b[1]) | (a[2] ^ b[2])) == 0; }
 
-/// True when the middle of two places is none of these steps.
-bool is_bent_too_fine(const Place& a, const Place& b) {
-    return (((a[0] + b[0]) | (a[1] + b[1]) | (a[2] + b[2])) & (2 * bend_step - 1)) != 0;
+/// True when the middle of two places is none of these steps, a power of two.
+bool is_finer_than(std::uint32_t step, const Place& a, const Place& b) {
+    return (((a[0] + b[0]) | (a[1] + b[1]) | (a[2] + b[2])) & (2 * step - 1)) != 0;
 }
+
+/// For carried fields to points in steps of 1/4.
+constexpr std::uint32_t carried_step = whole_weight / 4;
 
 /// The power of two below a number above 1, halved and rounded down twice: how often an edge is to be bisected whose
 /// deviation, squared, is so many times what it may be.
@@ -76,6 +79,15 @@ bool Bisector::is_met(const Part& part) const {
     return can_be_met(lower, upper);
 }
 
+/// The most of what carried fields deviate between two places, in what they may.
+double Bisector::carried_excess(const Place& a, const Place& b) const {
+    double most = 0;
+    if (carried_.empty() || is_finer_than(carried_step, a, b)) return most;
+    for (const auto& bezier : carried_)
+        if (const double excess = deviation_between(bezier, a, b); excess > most) most = excess; // not NaN
+    return most;
+}
+
 /// Marks an edge that deviates more than it may, with a grade by how much.
 void Bisector::judge(Edge& edge, const Corner& a, const Corner& b) {
     edge.grade = unmarked;
@@ -89,10 +101,11 @@ void Bisector::judge(Edge& edge, const Corner& a, const Corner& b) {
     if (rule_.nodes_only) return;
     const double excess =
         edge.bump * (rule_.deviations.empty() ? per_deviation_ : 1 / std::min(a.deviation, b.deviation));
-    double excess2 = excess * excess;
+    const double carried = carried_excess(a.place, b.place);
+    double excess2 = std::max(excess * excess, carried * carried);
     const double allowed2 = rule_.length > 0 ? rule_.length * rule_.length : rule_.bend * rule_.bend * length2;
     if (away2 > allowed2) {
-        if (rule_.length == 0 && is_bent_too_fine(a.place, b.place)) {
+        if (rule_.length == 0 && is_finer_than(bend_step, a.place, b.place)) {
             if (told_.bent.empty() || told_.bent.back() != index_) told_.bent.push_back(index_);
         } else excess2 = std::max(excess2, away2 / allowed2);
     }
@@ -273,6 +286,12 @@ Bisector::Part Bisector::part_of(std::uint32_t index) {
         const auto values = points_[k].of(tet);
         for (std::size_t i = 0; i < 4; ++i) part.corners[i].at[k] = values[i];
         for (std::size_t e = 0; e < 6; ++e) part.edges[e].bend[k] = bump(values, e);
+    }
+    carried_.clear();
+    for (const CarriedValues& carried : rule_.carried) {
+        if (carried.deviation <= 0) continue;
+        carried_.push_back(to_bezier(carried.values.of(tet)));
+        for (double& value : carried_.back()) value /= carried.deviation;
     }
     for (std::size_t i = 0; i < 4; ++i) {
         part.corners[i].place = corner_places[i];

@@ -19,6 +19,12 @@
 
 namespace isotet::linear {
 
+/// A field for which edges are bisected, too, down to a quarter of a tet's.
+struct CarriedValues {
+    NodeValues values;
+    double deviation = 0; ///< as BisectionRule::deviation; 0: it is constant, and not looked at
+};
+
 struct BisectionRule {
     bool nodes_only = false; ///< bisect just the edges that have nodes; fields are not looked at
     double deviation = 0;    ///< an edge is bisected where its middle is farther than this from the mean of its ends
@@ -27,6 +33,7 @@ struct BisectionRule {
     std::span<const double> deviations = {}; ///< empty, or one a point: at an edge the lesser of its ends' holds, too;
                                              ///< between points they are linear
     std::span<const double> isovalues;       ///< ascending; tets that none can meet are dropped; empty: none is
+    std::span<const CarriedValues> carried = {};
 };
 
 /// What has become of some quadratic tets.
@@ -90,6 +97,7 @@ private:
     bool can_be_met(double lower, double upper) const;
     bool is_met(const Part& part) const;
     static bool is_constant(const Part& part);
+    double carried_excess(const Place& a, const Place& b) const;
     void judge(Edge& edge, const Corner& a, const Corner& b);
     std::size_t first_marked(const Part& part);
     void divide(const Part& part);
@@ -105,6 +113,8 @@ private:
     BisectionLimits& limits_;
     const Progress& progress_;
     double per_deviation_;
+    std::vector<std::array<double, 10>>
+        carried_; ///< of the tet at hand: Bezier values over the deviation that is allowed
     std::uint32_t index_ = 0;
     std::uint64_t uncounted_ = 0;
     bool stopped_ = false;

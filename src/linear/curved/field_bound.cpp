@@ -64,17 +64,6 @@ private:
     std::uint64_t known_;
 };
 
-/// How far the field's middle between two places is from the mean of both: a quarter of its second difference.
-double deviation_between(const std::array<double, 10>& bezier, const Place& a, const Place& b) {
-    const auto from = steps_of(a), to = steps_of(b);
-    std::array<double, 4> step{};
-    for (std::size_t i = 0; i < 4; ++i) step[i] = (static_cast<double>(to[i]) - from[i]) / whole_weight;
-    double sum = 0;
-    for (std::size_t i = 0; i < 4; ++i) sum += bezier[i] * step[i] * step[i];
-    for (std::size_t e = 0; e < 6; ++e) sum += 2 * bezier[4 + e] * step[tet_edges[e][0]] * step[tet_edges[e][1]];
-    return std::abs(sum) / 4;
-}
-
 double largest_deviation(const LinearGrid& linear, const NodeValues& values, const Progress& progress) {
     const PlaceFinder finder(linear);
     const auto children = linear.refined.children.as<std::uint32_t>();

@@ -222,11 +222,11 @@ class LevelFinder {
 public:
     LevelFinder(const CellAtHand& hand, const Allowed& allowed) : hand_(hand), allowed_(allowed) {}
 
-    std::pair<int, OwnErrors> find(const OwnTet& tet, const OwnErrors& errors) {
+    std::pair<int, OwnErrors> find(const OwnTet& tet, const OwnErrors& errors, int most = max_level) {
         worst_ = tet;
         errors_ = errors;
         int level = 0;
-        const int most_levels = tet.bottom.empty() ? max_level : max_level_of_quotients;
+        const int most_levels = std::min(most, tet.bottom.empty() ? max_level : max_level_of_quotients);
         while (level < most_levels && allowed_.excess(errors_) > 1) {
             const OwnTet whole = std::move(worst_);
             most_ = -1;
@@ -597,15 +597,38 @@ private:
     std::vector<Node> numbers_;
 };
 
-Error following_cancelled() { return {ErrorCode::cancelled, "refining was cancelled"}; }
-
-
 void raise(std::uint8_t& level, int to) {
     std::atomic_ref shared(level);
     std::uint8_t seen = shared.load(std::memory_order_relaxed);
     while (seen < to && !shared.compare_exchange_weak(seen, static_cast<std::uint8_t>(to), std::memory_order_relaxed)) {
     }
 }
+
+/// Raises levels for carried fields.
+void follow_carried(const Grid& user, const LinearGrid& before, const QuadraticTets& tets,
+                    const std::vector<CellTets>& cells, const std::array<NodeValues, 3>& points,
+                    const CarriedValues& carried, std::vector<std::uint8_t>& levels, const Progress& progress) {
+    constexpr int most = 2;           // halves of halves
+    constexpr double share = 3.0 / 8; // of the error that is allowed
+    const double allowed = share * error_per_deviation * carried.deviation;
+    core::parallel_pieces(cells.size(), 64, progress, [&](std::size_t begin, std::size_t end) {
+        CellAtHand hand(user, before, tets, carried.values, points);
+        OwnTet own;
+        for (std::size_t c = begin; c < end; ++c) {
+            if (!hand.take(cells[c].cell) || !hand.is_finite() || hand.value_error_at_most() <= allowed) continue;
+            LevelFinder finder(hand, {allowed, 0, 1});
+            int level = 0;
+            for (std::size_t tet = cells[c].first; tet < cells[c].end; ++tet) {
+                hand.on_tet(tet, 1, own);
+                level = std::max(level, finder.find(own, hand.errors(own), most).first);
+            }
+            for (std::size_t tet = cells[c].first; level > 0 && tet < cells[c].end; ++tet)
+                for (std::size_t i = 0; i < 4; ++i) raise(levels[tets.tets[tet][i]], level);
+        }
+    });
+}
+
+Error following_cancelled() { return {ErrorCode::cancelled, "refining was cancelled"}; }
 
 } // namespace
 
@@ -661,7 +684,11 @@ Result<OwnBounds> follow_own_functions(const Grid& user, LinearGrid& before, Qua
                 for (std::size_t i = 0; i < 4; ++i) raise(levels[tets.tets[tet][i]], level);
         }
     });
+    for (const CarriedValues& carried : rule.carried)
+        follow_carried(user, before, tets, cells, points, carried, levels, progress);
     if (progress.cancelled()) return following_cancelled();
+    if (!rule.carried.empty() && std::ranges::any_of(levels, [](std::uint8_t level) { return level > 0; }))
+        differs = deep = true;
     OwnBounds bounds;
     if (!differs) return bounds;
     bounds.expected = expected.empty() ? 0 : *std::ranges::max_element(expected);

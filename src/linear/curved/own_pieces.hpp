@@ -11,6 +11,7 @@
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
 
+#include "linear/curved/bisection.hpp"
 #include "linear/curved/node_values.hpp"
 #include "linear/curved/quadratic.hpp"
 
@@ -21,6 +22,7 @@ struct OwnRule {
     double length = 0;                 ///< the same for places; 0: this share of a tet's longest edge:
     double share = 0.005;              ///<
     std::span<const double> isovalues; ///< ascending; tets that none can meet are dropped; empty: none is
+    std::span<const CarriedValues> carried = {}; ///< for which tets are bisected, too, to a quarter of their edges
 };
 
 /// How far quadratic tets are from the cells' own functions, proven.

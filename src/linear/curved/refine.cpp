@@ -42,10 +42,40 @@ double range_of(const QuadraticTets& tets, const NodeValues& values) {
     return lower <= upper ? upper - lower : 0;
 }
 
+/// Components of carried fields, with the arrays that they borrow.
+struct CarriedFields {
+    std::vector<Array> arrays;
+    std::vector<CarriedValues> values;
+};
+
+/// `known`   of all tets, where some of them are left; else empty
+Result<CarriedFields> carried_at_nodes(const RefineOptions& options, const LinearGrid& before,
+                                       const QuadraticTets& tets, const CarriedFields& known) {
+    CarriedFields out;
+    for (const Field& field : options.carried) {
+        if (!is_floating(field.values.type())) continue;
+        if (field.values.tuples() != before.user_points)
+            return invalid_argument(fmt::format("the carried field '{}' has {} tuples, but there are {} points",
+                                                field.name, field.values.tuples(), before.user_points));
+        auto extended = before.extend(field.values, {.threads = core::threads_here(), .progress = {}});
+        if (!extended) return extended.error();
+        out.arrays.push_back(*std::move(extended));
+        for (std::size_t k = 0; k < field.values.components(); ++k) {
+            NodeValues values(out.arrays.back(), tets.hidden, k);
+            const double allowed = known.arrays.empty()
+                                       ? options.carried_tolerance * range_of(tets, values) / error_per_deviation
+                                       : known.values[out.values.size()].deviation;
+            out.values.push_back({std::move(values), allowed});
+        }
+    }
+    return out;
+}
+
 Result<void> check_options(const RefineOptions& options) {
     for (const auto& [name, value] : {std::pair{"tolerance", options.tolerance},
                                       {"relative tolerance", options.relative_tolerance},
                                       {"distance", options.distance},
+                                      {"tolerance of carried fields", options.carried_tolerance},
                                       {"geometry tolerance", options.geometry_tolerance}})
         if (!std::isfinite(value) || value < 0)
             return invalid_argument(fmt::format("the {} is {}, but must be finite and not negative", name, value));
@@ -146,6 +176,7 @@ Result<LinearGrid> refined(const Grid& user, LinearGrid before, const Array* fie
     NodeValues values;
     std::vector<double> deviations;
     OwnBounds own;
+    CarriedFields carried;
     double tolerance = 0;
     if (field) {
         auto extended = before.extend(*field, {.threads = core::threads_here(), .progress = {}});
@@ -161,6 +192,10 @@ Result<LinearGrid> refined(const Grid& user, LinearGrid before, const Array* fie
         own_rule.value = share * (tolerance > 0 ? most_error : RefineOptions().relative_tolerance * range);
         own_rule.length = share * options.geometry_tolerance;
         own_rule.isovalues = isovalues;
+        auto fields = carried_at_nodes(options, before, *tets, {});
+        if (!fields) return fields.error();
+        carried = *std::move(fields);
+        own_rule.carried = carried.values;
         auto found = follow_own_functions(user, before, *tets, values, points, own_rule, progress);
         if (!found) return found.error();
         own = *std::move(found);
@@ -170,8 +205,13 @@ Result<LinearGrid> refined(const Grid& user, LinearGrid before, const Array* fie
             longer = *std::move(extended);
             values = NodeValues(longer, tets->hidden);
             for (std::size_t k = 0; k < 3; ++k) points[k] = NodeValues(before.grid.points, tets->hidden, k);
+            fields = carried_at_nodes(options, before, *tets, carried);
+            if (!fields) return fields.error();
+            carried = *std::move(fields);
         }
-        rule.deviation = (most_error - std::min(own.expected * reserve / share, reserve * most_error)) / error_per_deviation;
+        rule.carried = carried.values;
+        rule.deviation =
+            (most_error - std::min(own.expected * reserve / share, reserve * most_error)) / error_per_deviation;
         if (options.distance > 0) {
             constexpr double finest_for_distance = 1e-5; // of the range: where the field is flat, no distance is kept
             const double most = tolerance > 0 ? rule.deviation : std::numeric_limits<double>::infinity();
