@@ -69,15 +69,16 @@ struct Simplified {
 /// Leaves triangles out until `wanted` are left, or the next one would move the piece farther than `limit`.
 Simplified simplify(const Piece& piece, std::size_t wanted, double limit) {
     constexpr std::size_t stride = 3 * sizeof(float);
+    constexpr std::size_t least = 4; // closed pieces of fewer enclose nothing
     const auto scale =
         static_cast<double>(meshopt_simplifyScale(piece.positions.data(), piece.vertices.size(), stride));
     Simplified out;
     out.indices.resize(piece.indices.size());
     float reached = 0;
-    const std::size_t left = meshopt_simplify(out.indices.data(), piece.indices.data(), piece.indices.size(),
-                                              piece.positions.data(), piece.vertices.size(), stride, 3 * wanted,
-                                              static_cast<float>(scale > 0 ? std::min(limit / scale, 1.0) : 0),
-                                              meshopt_SimplifyLockBorder, &reached);
+    const std::size_t left = meshopt_simplify(
+        out.indices.data(), piece.indices.data(), piece.indices.size(), piece.positions.data(), piece.vertices.size(),
+        stride, 3 * std::max(wanted, least), static_cast<float>(scale > 0 ? std::min(limit / scale, 1.0) : 0),
+        meshopt_SimplifyLockBorder, &reached);
     out.indices.resize(left);
     out.error = static_cast<double>(reached) * scale;
     return out;

@@ -124,6 +124,19 @@ TEST(Reduce, IsTheSameOnAnyNumberOfThreads) {
               bytes_of(reduce(surface, {}, {.threads = 7}).value().surface));
 }
 
+/// However much may go, a closed surface does not vanish.
+TEST(Reduce, LeavesSomethingOfAClosedSurface) {
+    const Grid grid = made_grid("kuhn", 16, {"sphere"});
+    const Surface surface = contour(grid.points, grid.cells, grid.point_fields.at(0).values, 0.3).value();
+    const ReduceOptions nearly_all{.share = 0.9999}, any_error{.share = 0.9999, .error = 100};
+    for (const ReduceOptions& options : {nearly_all, any_error}) {
+        const ReducedSurface reduced = reduce(surface, options).value();
+        EXPECT_GE(reduced.surface.triangle_count(), 4u);
+        EXPECT_LT(reduced.surface.triangle_count(), 20u);
+        EXPECT_TRUE(closes(reduced.surface));
+    }
+}
+
 TEST(Reduce, OfNothingIsNothing) {
     const ReducedSurface reduced = reduce(Surface{}).value();
     EXPECT_EQ(reduced.surface.triangle_count(), 0u);
