@@ -105,7 +105,12 @@ class Browser:
         """Until it is true; what it was last is told where it is not."""
         end = time.monotonic() + limit
         while True:
-            last = self.value(expression)
+            try:
+                last = self.value(expression)
+            except RuntimeError as error:  # a page that is loaded again
+                if 'navigated' not in str(error):
+                    raise
+                last = None
             if last:
                 return last
             if time.monotonic() > end:
