@@ -5,10 +5,61 @@
 #include <cmath>
 #include <cstring>
 #include <iterator>
+#include <mutex>
+#include <span>
+#include <utility>
+
+#include <isotet/boundary.hpp>
+#include <isotet/color_field.hpp>
 
 #include "view/grid_view.hpp"
 
 namespace isotet::view {
+
+namespace {
+
+/// The tuples of these numbers; those of numbers beyond are the first.
+Array tuples_at(const Array& values, const std::vector<std::uint64_t>& numbers) {
+    const std::size_t components = values.components();
+    return values.visit([&]<class Scalar>(std::span<const Scalar> all) {
+        std::vector<Scalar> some(numbers.size() * components);
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+            const std::size_t from = numbers[i] < values.tuples() ? numbers[i] * components : 0;
+            std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(from), components,
+                        some.begin() + static_cast<std::ptrdiff_t>(i * components));
+        }
+        return Array::own(std::move(some), components);
+    });
+}
+
+} // namespace
+
+/// The boundary with all fields.
+Result<Surface> GridView::boundary_of_pick(const Run& run) {
+    std::unique_lock lock(boundary_mutex_);
+    const std::shared_ptr<const Surface> found = boundary_surface_;
+    const std::uint64_t number = boundary_number_;
+    lock.unlock();
+    if (!found) return Error{ErrorCode::cancelled, "the boundary is not there yet"}; // a page is told nothing
+    if (Result<void> here = need_cells(run); !here) return here.error();
+    Surface boundary = *found;
+    if (is_of_file()) { // its faces are cut in another way
+        Result<Surface> again = boundary_of(grid_, run);
+        if (!again) return again;
+        boundary = *std::move(again);
+    }
+    if (Result<void> cells = find_boundary_cells(boundary, number, run); !cells) return cells.error();
+    std::vector<std::uint64_t> points; // both ends of a vertex are its point
+    const auto ends = boundary.edge_ends.as<std::int64_t>();
+    for (std::size_t i = 0; i < ends.size(); i += 2) points.push_back(static_cast<std::uint64_t>(ends[i]));
+    for (const Field& field : grid_.point_fields)
+        if (field.values.tuples() > 0) boundary.point_fields.push_back({field.name, tuples_at(field.values, points)});
+    for (const Field& field : grid_.cell_fields)
+        if (field.values.tuples() > 0)
+            boundary.cell_fields.push_back({field.name, tuples_at(field.values, boundary_cells_)});
+    boundary.source_cells = Array::own(std::vector<std::int64_t>(boundary_cells_.begin(), boundary_cells_.end()));
+    return boundary;
+}
 
 /// A solid with all fields.
 Result<Surface> GridView::solid_of_pick(const PickMessage& message, const Run& run) {
@@ -34,6 +85,7 @@ Result<Surface> GridView::surface_of_pick(const PickMessage& message, const Run&
     with_all.source_cells = !packed || lean_->knows_cells();
     with_all.point_fields = grid_.point_fields;
     with_all.cell_fields = grid_.cell_fields;
+    if (message.boundary) return boundary_of_pick(run);
     const Plane* plane = message.slice ? &message.state.slices[*message.slice] : nullptr;
     if (message.state.solid && !plane) return solid_of_pick(message, run);
     if (packed && plane) return lean_->slice(grid_.points, *plane, with_all, run);
@@ -57,7 +109,7 @@ Result<Surface> GridView::surface_of_pick(const PickMessage& message, const Run&
 /// Without the parts that are left out; with their numbers where the page asks for these.
 Result<Surface> GridView::shown_surface(const PickMessage& message, const Run& run) {
     Result<Surface> surface = surface_of_pick(message, run);
-    if (!surface || message.slice) return surface;
+    if (!surface || message.slice || message.boundary) return surface;
     const bool is_solid = message.state.solid.has_value();
     if (message.parts || message.state.keep) {
         const Result<SurfaceParts> parts = find_parts(*surface, run);
@@ -88,14 +140,18 @@ Result<Picked> GridView::pick_along(const PickMessage& message, const Run& run) 
         std::array<double, 3> place = message.point;
         for (std::size_t axis = 0; axis < 3; ++axis) place[axis] += nearest * (*message.ray)[axis];
         first = nearest_on(*surface, place);
-        if (first && !one.slice) first->isovalue = one.state.isovalues.front();
+        if (first && !one.slice && !one.boundary) first->isovalue = one.state.isovalues.front();
         return {};
     };
     PickMessage one = message;
-    for (const double isovalue : message.state.isovalues) {
-        one.state.isovalues = {isovalue};
+    if (message.boundary) {
         if (Result<void> ok = look(one, message.state.clips); !ok) return ok.error();
-    }
+    } else
+        for (const double isovalue : message.state.isovalues) {
+            one.state.isovalues = {isovalue};
+            if (Result<void> ok = look(one, message.state.clips); !ok) return ok.error();
+        }
+    one.boundary = false;
     for (std::size_t i = 0; i < message.state.slices.size(); ++i) {
         one.slice = i;
         if (Result<void> ok = look(one, {}); !ok) return ok.error();

@@ -174,6 +174,8 @@ private:
     Result<Solid> solid_at(const ViewState& state, double isovalue, const Run& run);
     Result<Surface> whole_isosurface(const PartsMessage& message, double isovalue, const Run& run);
     Result<Surface> shown_surface(const PickMessage& message, const Run& run);
+    Result<Surface> boundary_of_pick(const Run& run);
+    Result<void> find_boundary_cells(const Surface& boundary, std::uint64_t number, const Run& run);
     Result<Surface> solid_of_pick(const PickMessage& message, const Run& run);
     Result<Picked> pick_along(const PickMessage& message, const Run& run);
     Result<Surface> surface_of_pick(const PickMessage& message, const Run& run);

@@ -310,6 +310,18 @@ Result<void> GridView::add_slices(const ViewState& state, const std::vector<std:
     return {};
 }
 
+/// The cell of each triangle.
+Result<void> GridView::find_boundary_cells(const Surface& boundary, std::uint64_t number, const Run& run) {
+    if (boundary_cells_of_ == number) return {};
+    const Result<DrawnGrid> drawn = is_of_file() ? DrawnGrid{grid_, false} : grid_with_joined_points(grid_, run);
+    if (!drawn) return drawn.error();
+    Result<std::vector<std::uint64_t>> cells = boundary_cells(boundary, drawn->grid, run);
+    if (!cells) return cells.error();
+    boundary_cells_ = *std::move(cells);
+    boundary_cells_of_ = number;
+    return {};
+}
+
 /// With the field that colours it.
 Result<Surface> GridView::colored_boundary(Surface boundary, std::uint64_t number, const ColorField& colors,
                                            const Run& run) {
@@ -324,14 +336,7 @@ Result<Surface> GridView::colored_boundary(Surface boundary, std::uint64_t numbe
         if (!found) return found;
         boundary = *std::move(found);
     }
-    if (boundary_cells_of_ != number) {
-        const Result<DrawnGrid> drawn = is_of_file() ? DrawnGrid{grid_, false} : grid_with_joined_points(grid_, run);
-        if (!drawn) return drawn.error();
-        Result<std::vector<std::uint64_t>> cells = boundary_cells(boundary, drawn->grid, run);
-        if (!cells) return cells.error();
-        boundary_cells_ = *std::move(cells);
-        boundary_cells_of_ = number;
-    }
+    if (Result<void> cells = find_boundary_cells(boundary, number, run); !cells) return cells.error();
     color_boundary_by_cells(boundary, boundary_cells_, colors);
     return boundary;
 }

@@ -94,7 +94,8 @@ Result<PageMessage> parse_pick(const Json& json) {
         const auto which = whole_number(*slice);
         if (!which || *which >= message.state.slices.size()) return wrong_message("\"slice\" is none of the state");
         message.slice = *which;
-    } else if (message.state.isovalues.empty()) return wrong_message("a pick takes an isovalue or a slice");
+    } else if (message_flag(json, "boundary")) message.boundary = true;
+    else if (message.state.isovalues.empty()) return wrong_message("a pick takes an isovalue or a slice");
     const auto point = three_numbers(find(json, "point"));
     if (!point) return wrong_message("\"point\" takes three numbers");
     message.point = *point;

@@ -77,11 +77,14 @@ struct PickMessage {
     ViewState state;                  ///< the first isovalue is that of the surface
     std::optional<std::size_t> slice; ///< which of the slices, instead of the isosurface
     std::array<double, 3> point{};
+    bool boundary = false;            ///< the grid's boundary, which stands alone
     std::optional<std::array<double, 3>> ray = {}; ///< from the point; of all surfaces and slices of the state
     bool parts = false;                            ///< the number of the surface's part goes with the values
 };
 
 /// {"do": "parts", "state": ..., "refined": true}: the connected parts of the first surface, when nothing else is to be done.
+/// {"do": "pick", "boundary": true, ...}: either of them, of the boundary.
+
 struct PartsMessage {
     ViewState state;      ///< with an isovalue
     bool refined = false; ///< curved cells are, as ShowMessage::refined
