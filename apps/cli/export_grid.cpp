@@ -136,7 +136,7 @@ Result<GridPage> GridPageMaker::page_with(std::vector<std::string> fields) {
     }
     options.state.isovalues = *isovalues_;
     options.state.color_by = command_.color_by;
-    options.notes = console_.noted();
+    options.notes = console_.noted_as_told();
     Result<std::string> html = view::grid_page(bytes_of(job.out), options);
     if (!html) return html.error();
     return GridPage{*std::move(packed), *std::move(html)};

@@ -113,7 +113,8 @@ Result<view::ViewerInput> read_view_input(const ViewStart& start, GridSource& so
     input.regions = read->info.regions.empty() ? source.info().regions : read->info.regions;
     input.times = source.info().times;
     if (input.times.size() > 1) input.state.step = step;
-    input.notes = console.noted();
+    if (is_of_reservoirs(source.info().format)) input.state.stretch = default_stretch(grid.points);
+    input.notes = console.noted_as_told();
     input.grid = std::move(read->grid);
     return input;
 }

@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "view/page_words.hpp"
+
 namespace isotet::view {
 
 namespace {
@@ -32,13 +34,15 @@ Json grid_json(const GridView& view, const std::string& file, const ViewerInput&
         fields.push_back({{"name", field.name}, {"cell", field.association == Association::cell}});
     Json grid = {{"say", "grid"},         {"file", file},          {"points", view.points()},
                  {"cells", view.cells()}, {"fields", std::move(fields)}, {"state", to_json(input.state)},
-                 {"notes", input.notes},  {"times", input.times},  {"refines", view.refines()}};
+                 {"notes", std::move(notes)},  {"times", input.times},  {"refines", view.refines()}};
     const Box& box = view.bounds();
     if (!box.empty()) {
         grid["lower"] = {box.lower[0], box.lower[1], box.lower[2]};
         grid["upper"] = {box.upper[0], box.upper[1], box.upper[2]};
     }
     return grid;
+    Json notes = Json::array();
+    for (const std::string& note : input.notes) notes.push_back(page_words(note));
 }
 
 } // namespace isotet::view

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "view/page_words.hpp"
+
 namespace isotet::view {
 
 namespace {
@@ -253,6 +255,8 @@ Json scale_json(const ColorScale& scale, const std::vector<std::string>& classes
 
 std::string frame_bytes(const FrameFacts& facts, const std::vector<FrameSurface>& surfaces) {
     Blocks blocks;
+    Json notes = Json::array();
+    for (const std::string& note : facts.notes) notes.push_back(page_words(note));
     Json head = {{"number", facts.number},
                  {"preview", facts.preview},
                  {"method", facts.method},
@@ -261,7 +265,7 @@ std::string frame_bytes(const FrameFacts& facts, const std::vector<FrameSurface>
                  {"wait_ms", milliseconds(facts.wait_seconds)},
                  {"step", facts.step},
                  {"field", facts.field},
-                 {"notes", facts.notes}};
+                 {"notes", std::move(notes)}};
     if (facts.range) head["range"] = {facts.range->lower, facts.range->upper};
     if (facts.field_bound) head["field_bound"] = *facts.field_bound;
     if (facts.scale) head["scale"] = scale_json(*facts.scale, facts.classes);
@@ -296,11 +300,11 @@ std::string progress_text(std::string_view step, double fraction) {
 }
 
 std::string refusal_text(std::uint64_t number, std::string_view sentence) {
-    return text_of({{"say", "refused"}, {"number", number}, {"sentence", sentence}});
+    return text_of({{"say", "refused"}, {"number", number}, {"sentence", page_words(sentence)}});
 }
 
 std::string error_text(std::string_view about, std::string_view sentence) {
-    return text_of({{"say", "error"}, {"about", about}, {"sentence", sentence}});
+    return text_of({{"say", "error"}, {"about", about}, {"sentence", page_words(sentence)}});
 }
 
 std::string picked_text(const Picked& picked) {

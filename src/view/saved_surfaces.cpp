@@ -15,6 +15,7 @@
 
 #include "view/messages.hpp"
 #include "view/page_file.hpp"
+#include "view/page_words.hpp"
 #include "view/saved_mesh.hpp"
 
 namespace isotet::view {
@@ -123,8 +124,9 @@ Result<CodedSurface> SurfaceSaver::coded(const FrameParts& parts, const FrameSur
                 {"triangles", surface.triangles},
                 {"color", color_text(surface.color)},
                 {"mesh", std::move(mesh)},
-                {"notes", parts.facts.notes}};
+                {"notes", Json::array()}};
     const FrameFacts& facts = parts.facts;
+    for (const std::string& note : facts.notes) out.told["notes"].push_back(page_words(note));
     if (facts.range) out.told["range"] = {facts.range->lower, facts.range->upper};
     if (facts.field_bound) out.told["field_bound"] = *facts.field_bound;
     if (facts.scale) out.told["scale"] = scale_json(*facts.scale, facts.classes);

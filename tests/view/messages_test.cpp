@@ -6,12 +6,23 @@
 
 #include "view/command_line.hpp"
 #include "view/messages.hpp"
+#include "view/page_words.hpp"
 #include "view/random_state.hpp"
 
 namespace isotet::test {
 namespace {
 
 using namespace view;
+
+TEST(PageWords, NameControlsOfThePage) {
+    EXPECT_EQ(view::page_words("no field was named: 'p' was taken (its name); `field` names another"),
+              "no field was named: 'p' was taken (its name); Field names another");
+    EXPECT_EQ(view::page_words("12 points coincide: `merge_points` 1e-6 joins them"),
+              "12 points coincide: isotet view --merge-points 1e-6 joins them");
+    EXPECT_EQ(view::page_words("a field '`step`' is one, it's `no option`, ` too ''"),
+              "a field '`step`' is one, it's `no option`, ` too ''");
+    EXPECT_EQ(view::page_words(""), "");
+}
 
 TEST(ParsePageMessage, TakesEveryKind) {
     EXPECT_EQ(std::get<HelloMessage>(*parse_page_message(R"({"do":"hello","token":"abc"})")).token, "abc");

@@ -1,0 +1,58 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "view/page_words.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <utility>
+
+namespace isotet::view {
+
+namespace {
+
+constexpr std::array<std::pair<std::string_view, std::string_view>, 11> controls{{{"field", "Field"},
+                                                                                  {"isovalue", "Isovalue"},
+                                                                                  {"step", "Time"},
+                                                                                  {"time", "Time"},
+                                                                                  {"color_by", "Colour by"},
+                                                                                  {"range", "Range"},
+                                                                                  {"boundary", "Boundary"},
+                                                                                  {"scale", "Heights"},
+                                                                                  {"solid", "Solid"},
+                                                                                  {"keep", "Keep"},
+                                                                                  {"opacity", "Opacity"}}};
+
+std::string control_of(std::string_view option) {
+    const auto* known = std::ranges::find(controls, option, &std::pair<std::string_view, std::string_view>::first);
+    if (known != controls.end()) return std::string(known->second);
+    std::string name(option);
+    std::ranges::replace(name, '_', '-');
+    return "isotet view --" + name;
+}
+
+/// The length of what stands between two equal marks at the beginning, with them; 0: there is no second one.
+std::size_t marked_length(std::string_view text) {
+    const std::size_t end = text.find(text.front(), 1);
+    return end == std::string_view::npos ? 0 : end + 1;
+}
+
+} // namespace
+
+std::string page_words(std::string_view sentence) {
+    std::string words;
+    while (!sentence.empty()) {
+        const char first = sentence.front();
+        const std::size_t length = first == '\'' || first == '`' ? marked_length(sentence) : 0;
+        const std::string_view inside = length > 2 ? sentence.substr(1, length - 2) : std::string_view();
+        const bool is_option = first == '`' && !inside.empty() && std::ranges::all_of(inside, [](char c) {
+            return (c >= 'a' && c <= 'z') || c == '_';
+        });
+        const std::size_t taken = std::max<std::size_t>(1, length);
+        if (is_option) words += control_of(inside);
+        else words += sentence.substr(0, taken);
+        sentence.remove_prefix(taken);
+    }
+    return words;
+}
+
+} // namespace isotet::view

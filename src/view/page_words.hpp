@@ -1,0 +1,14 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Sentences of the library in the words of the page.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace isotet::view {
+
+/// Options in backquotes (`merge_points`) become the page's control, such as Field, or else "isotet view --merge-points". What is
+/// 'quoted' stays.
+std::string page_words(std::string_view sentence);
+
+} // namespace isotet::view
