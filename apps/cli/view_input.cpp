@@ -12,16 +12,14 @@ namespace isotet::cli {
 namespace {
 
 /// What the page shows first where no field is named.
-void take_first_view(const FirstView& first, const ViewStart& start, view::ViewState& state, Console& console) {
-    state.field = first.field.empty() ? std::string("x") : first.field;
+void choose_first_view(const FirstView& first, const ViewStart& start, view::ViewState& state, Console& console) {
     const bool isovalues_are_given = !start.isovalues.empty() || !start.shares.empty();
-    if (first.draw != FirstDraw::isosurfaces && !isovalues_are_given) {
-        state.boundary = 1;
-        state.isosurfaces = start.isosurfaces_always;
-        if (!state.isosurfaces && start.color_by.empty()) state.color_by = first.field;
-        state.colored_boundary = !state.isosurfaces && !first.field.empty();
-    }
-    console.note(first.field.empty() ? std::string("no field varies: this is the grid") : note_of(first));
+    FirstView shown = first;
+    if (isovalues_are_given || start.isosurfaces_always) shown.draw = FirstDraw::isosurfaces;
+    view::take_first_view(shown, state);
+    console.note(first.field.empty()                    ? std::string("no field varies: this is the grid")
+                 : shown.draw == FirstDraw::isosurfaces ? note_of_field(first)
+                                                        : note_of(first));
 }
 
 /// Shares are those of all cells.
@@ -100,7 +98,7 @@ Result<view::ViewerInput> read_view_input(const ViewStart& start, GridSource& so
         input.cells = *read->cells_in_file;
     }
     input.state.field = start.field.name;
-    if (input.state.field.empty()) take_first_view(first_view(grid, fields), start, input.state, console);
+    if (input.state.field.empty()) choose_first_view(first_view(grid, fields), start, input.state, console);
     input.state.isovalues = start.isovalues;
     if (!start.isovalues.empty())
         if (const Result<PointField> field = find_field(grid, input.state.field, {}, run); field && !field->averaged)

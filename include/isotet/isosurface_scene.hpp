@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <isotet/camera.hpp>
@@ -105,6 +106,20 @@ ISOTET_API std::vector<SurfaceLook> looks_of(std::span<const double> isovalues, 
 /// Cost     a direct extraction
 /// Errors   as slice_field(), linearize() and extract_direct()
 ISOTET_API Result<Surface> slice_of(const Grid& grid, const Plane& plane, const ColorField* field, const Run& run = {});
+
+/// What exaggerates heights: points, and a plane through them, with their axes stretched by factors above 0. The points keep
+/// their type.
+/// Cost   one pass over the points
+ISOTET_API Array stretched(const Array& points, std::span<const double, 3> factors);
+ISOTET_API Plane stretched(const Plane& plane, std::span<const double, 3> factors);
+
+/// Formats of corner-point grids: reservoirs of kilometres, some metres high.
+ISOTET_API bool is_of_reservoirs(std::string_view format) noexcept;
+
+/// Where points reach 50 times as wide as high or more, factors that make it about four times: 1, 2 or 5 times a power of
+/// ten for z. Else nothing.
+/// Cost   one pass over the points
+ISOTET_API std::optional<std::array<double, 3>> default_stretch(const Array& points);
 
 /// A solid as IsosurfaceScene draws it: triangles of its boundary share no vertex, so that each is flat.
 ///

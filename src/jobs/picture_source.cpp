@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -58,31 +59,8 @@ Result<ColorField> colors_of(const From& from, const std::string& name, const st
     return std::move(found->field);
 }
 
-/// Points with their axes stretched.
-Array stretched(const Array& points, const std::vector<double>& factors) {
-    return points.visit([&]<class Scalar>(std::span<const Scalar> scalars) {
-        std::vector<Scalar> out(scalars.size());
-        for (std::size_t i = 0; i < out.size(); ++i)
-            out[i] = static_cast<Scalar>(static_cast<double>(scalars[i]) * factors[i % 3]);
-        return Array::own(std::move(out), 3);
-    });
-}
-
-/// Formats of corner-point grids: reservoirs of kilometres, some metres high.
-bool is_of_reservoirs(const std::string& format) { return format == "grdecl"; }
-
-/// Where a grid is 50 times as wide as high or more, factors that make it about four times as wide as high: 1, 2 or 5 times
-/// a power of ten for z. Else none.
-std::vector<double> default_stretch(const Array& points) {
-    constexpr double flat = 50, seen = 4;
-    const auto ranges = statistics_of(points);
-    if (!ranges || ranges->size() != 3 || (*ranges)[0].lower > (*ranges)[0].upper) return {};
-    const auto extent = [&](std::size_t axis) { return (*ranges)[axis].upper - (*ranges)[axis].lower; };
-    const double width = std::max(extent(0), extent(1)), height = extent(2);
-    if (!(height > 0) || width < flat * height) return {};
-    const double most = width / height / seen, power = std::pow(10, std::floor(std::log10(most)));
-    return {1, 1, (most < 2 * power ? 1 : most < 5 * power ? 2 : 5) * power};
-}
+/// Factors of x, y and z, which the command line gives.
+std::span<const double, 3> factors_of(const std::vector<double>& stretch) { return std::span(stretch).first<3>(); }
 
 } // namespace
 
@@ -202,8 +180,7 @@ SceneLook PictureSource::look_of(const Contents& contents) const {
     look.slices = job_.slices;
     for (std::vector<Plane>* planes : {&look.clips, &look.slices})
         for (Plane& plane : *planes)
-            for (std::size_t axis = 0; axis < 3 && !job_.stretch.empty(); ++axis)
-                plane.normal[axis] /= job_.stretch[axis];
+            if (!job_.stretch.empty()) plane = stretched(plane, factors_of(job_.stretch));
     return look;
 }
 
@@ -227,7 +204,7 @@ Result<DrawInput> PictureSource::take_surface(const std::optional<Device>& devic
     }
     Surface surface = *surface_;
     if (!job_.stretch.empty()) {
-        surface.positions = stretched(surface.positions, job_.stretch);
+        surface.positions = stretched(surface.positions, factors_of(job_.stretch));
         surface.normals_kind = Normals::none;
     }
     Result<IsosurfaceScene> scene = IsosurfaceScene::create(device, std::move(surface), look_of(contents));
@@ -598,17 +575,18 @@ Result<DrawInput> PictureSource::read(std::size_t which, const std::optional<Dev
     }
     options.grid = contents->grid;
     if (may_stretch()) {
-        job_.stretch = default_stretch(options.grid.points);
-        if (!job_.stretch.empty())
+        if (const auto factors = default_stretch(options.grid.points)) {
+            job_.stretch.assign(factors->begin(), factors->end());
             caller.note(fmt::format("heights are drawn {} times as large; `scale` 1,1,1 draws them as they are",
                                     shortest(job_.stretch[2])));
+        }
     }
     input.stretch = job_.stretch;
     options.all_cells = contents->all_cells;
     options.bounds = contents->bounds;
     options.packed = std::move(contents->packed);
     if (options.all_cells) options.expected_isovalues = input.isovalues;
-    if (!job_.stretch.empty()) options.grid.points = stretched(options.grid.points, job_.stretch);
+    if (!job_.stretch.empty()) options.grid.points = stretched(options.grid.points, factors_of(job_.stretch));
     options.surfaces = job_.sweep.empty() ? input.isovalues.size() : static_cast<std::uint64_t>(job_.sweep[2]);
     options.method = job_.method.extract;
     options.draw = job_.method.draw;

@@ -26,14 +26,25 @@ std::string shell_text(const std::vector<std::string>& words);
 /// Errors   invalid_argument when a quotation does not end
 Result<std::vector<std::string>> shell_words(std::string_view text);
 
+/// Where a command line looks from that has no --camera.
+///
+/// `camera`   its direction, its upper side and its projection; the page makes it see all
+/// `up`       "z", "-y" and so on
+struct PastedLook {
+    Camera camera;
+    std::string up;
+    double zoom = 1;
+};
+
 /// What a page takes of a command line.
 struct PastedCommand {
     ViewState state;
     std::string file;                  ///< that it names; empty: none
+    std::optional<PastedLook> look;    ///< nothing: a camera in `state`, or none is said
     std::vector<std::string> left_out; ///< options that change what is seen and that the page lacks, with their values
 };
 
-/// A command line for render, extract or view, or options alone.
+/// A command line for render, extract, view or slice, or options alone. A slice has the planes of --plane, and no isosurfaces.
 /// `reading`   options that the page's file is read with: they are not left out
 ///
 /// Errors   invalid_argument: another program; an option of the page without its value, or with a wrong one

@@ -24,6 +24,15 @@ Json maps_json() {
 
 } // namespace
 
+void take_first_view(const FirstView& first, ViewState& state) {
+    state.field = first.field.empty() ? std::string("x") : first.field;
+    if (first.draw == FirstDraw::isosurfaces) return;
+    state.boundary = 1;
+    state.isosurfaces = false;
+    state.color_by = first.field;
+    state.colored_boundary = !first.field.empty();
+}
+
 Json welcome_json(const std::string& file, const std::string& version, const std::string& out) {
     return {{"say", "welcome"}, {"version", version}, {"file", file}, {"maps", maps_json()}, {"out", out}};
 }
@@ -32,17 +41,23 @@ Json grid_json(const GridView& view, const std::string& file, const ViewerInput&
     Json fields = Json::array();
     for (const OfferedField& field : view.fields())
         fields.push_back({{"name", field.name}, {"cell", field.association == Association::cell}});
-    Json grid = {{"say", "grid"},         {"file", file},          {"points", view.points()},
-                 {"cells", view.cells()}, {"fields", std::move(fields)}, {"state", to_json(input.state)},
-                 {"notes", std::move(notes)},  {"times", input.times},  {"refines", view.refines()}};
+    Json notes = Json::array();
+    for (const std::string& note : input.notes) notes.push_back(page_words(note));
+    Json grid = {{"say", "grid"},
+                 {"file", file},
+                 {"points", view.points()},
+                 {"cells", view.cells()},
+                 {"fields", std::move(fields)},
+                 {"state", to_json(input.state)},
+                 {"notes", std::move(notes)},
+                 {"times", input.times},
+                 {"refines", view.refines()}};
     const Box& box = view.bounds();
     if (!box.empty()) {
         grid["lower"] = {box.lower[0], box.lower[1], box.lower[2]};
         grid["upper"] = {box.upper[0], box.upper[1], box.upper[2]};
     }
     return grid;
-    Json notes = Json::array();
-    for (const std::string& note : input.notes) notes.push_back(page_words(note));
 }
 
 } // namespace isotet::view

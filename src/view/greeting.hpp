@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <isotet/first_view.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/packed_file.hpp>
 #include <isotet/read.hpp>
@@ -27,6 +28,9 @@ struct ViewerInput {
     std::uint64_t cells = 0;
     std::vector<RegionName> regions = {}; ///< of numbers that colour
 };
+
+/// What is shown first of a grid of which no field is named: the boundary stands alone where `draw` says so.
+void take_first_view(const FirstView& first, ViewState& state);
 
 /// {"say": "welcome", ...}: 64 colours of each map among it.
 /// `out`   the folder where pages may save files; empty: none

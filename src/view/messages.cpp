@@ -316,6 +316,22 @@ std::string picked_text(const Picked& picked) {
     return text_of(json);
 }
 
+std::string pasted_text(const PastedCommand& pasted, bool of_other_file) {
+    Json json = {{"say", "state"},
+                 {"state", to_json(pasted.state)},
+                 {"left_out", pasted.left_out},
+                 {"other_file", of_other_file ? pasted.file : std::string()}};
+    if (pasted.look) {
+        const auto& [camera, up, zoom] = *pasted.look;
+        json["look"] = {{"direction", corner_json(camera.direction)},
+                        {"up", corner_json(camera.up)},
+                        {"axis", up},
+                        {"parallel", camera.projection == Projection::parallel},
+                        {"zoom", zoom}};
+    }
+    return text_of(json);
+}
+
 std::string chart_text(const std::string& field, std::size_t step, const Chart& chart) {
     return text_of({{"say", "chart"},
                     {"field", field},

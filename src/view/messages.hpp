@@ -17,6 +17,7 @@
 #include <isotet/result.hpp>
 
 #include "view/chart.hpp"
+#include "view/command_line.hpp"
 #include "view/encode.hpp"
 #include "view/json.hpp"
 #include "view/mesh.hpp"
@@ -76,15 +77,15 @@ struct PasteMessage {
 struct PickMessage {
     ViewState state;                  ///< the first isovalue is that of the surface
     std::optional<std::size_t> slice; ///< which of the slices, instead of the isosurface
-    std::array<double, 3> point{};
     bool boundary = false;            ///< the grid's boundary, which stands alone
+    std::array<double, 3> point{};
     std::optional<std::array<double, 3>> ray = {}; ///< from the point; of all surfaces and slices of the state
     bool parts = false;                            ///< the number of the surface's part goes with the values
 };
 
-/// {"do": "parts", "state": ..., "refined": true}: the connected parts of the first surface, when nothing else is to be done.
 /// {"do": "pick", "boundary": true, ...}: either of them, of the boundary.
 
+/// {"do": "parts", "state": ..., "refined": true}: the connected parts of the first surface, when nothing else is to be done.
 struct PartsMessage {
     ViewState state;      ///< with an isovalue
     bool refined = false; ///< curved cells are, as ShowMessage::refined
@@ -153,6 +154,8 @@ std::string progress_text(std::string_view step, double fraction);
 std::string refusal_text(std::uint64_t number, std::string_view sentence);
 std::string error_text(std::string_view about, std::string_view sentence);
 std::string picked_text(const Picked& picked);
+/// `of_other_file`   the command line names another one than the page shows
+std::string pasted_text(const PastedCommand& pasted, bool of_other_file);
 std::string chart_text(const std::string& field, std::size_t step, const Chart& chart);
 /// The largest ones one by one, at most 500.
 std::string parts_text(const PartsMessage& message, std::size_t step, const std::vector<SurfacePart>& parts,

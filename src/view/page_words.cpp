@@ -44,9 +44,8 @@ std::string page_words(std::string_view sentence) {
         const char first = sentence.front();
         const std::size_t length = first == '\'' || first == '`' ? marked_length(sentence) : 0;
         const std::string_view inside = length > 2 ? sentence.substr(1, length - 2) : std::string_view();
-        const bool is_option = first == '`' && !inside.empty() && std::ranges::all_of(inside, [](char c) {
-            return (c >= 'a' && c <= 'z') || c == '_';
-        });
+        const bool is_option = first == '`' && !inside.empty() &&
+                               std::ranges::all_of(inside, [](char c) { return (c >= 'a' && c <= 'z') || c == '_'; });
         const std::size_t taken = std::max<std::size_t>(1, length);
         if (is_option) words += control_of(inside);
         else words += sentence.substr(0, taken);

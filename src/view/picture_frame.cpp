@@ -47,6 +47,9 @@ SceneLook look_of(const ShowMessage& message, std::optional<ColorField> colors,
     look.keep = state.keep;
     look.clips = state.clips;
     look.slices = state.slices;
+    for (std::vector<Plane>* planes : {&look.clips, &look.slices})
+        for (Plane& plane : *planes)
+            if (state.stretch) plane = stretched(plane, *state.stretch);
     look.line_width = std::max(1.0, (*message.picture)[1] / 600.0);
     return look;
 }
@@ -67,6 +70,7 @@ Result<void> GridView::make_scene(const ShowMessage& message, const std::optiona
         if (Result<void> here = need_cells(run); !here) return here;
         IsosurfaceOptions options;
         options.grid = grid_;
+        if (state.stretch) options.grid.points = stretched(grid_.points, *state.stretch);
         options.field = *std::move(field);
         options.surfaces = isovalues.size();
         options.where = ExtractOn::cpu;

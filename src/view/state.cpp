@@ -90,6 +90,14 @@ Result<VolumeState> volume_of(const Json& json) {
     return volume;
 }
 
+/// Three numbers above 0.
+bool take_stretch(const Json& value, std::optional<std::array<double, 3>>& stretch) {
+    std::vector<double> factors;
+    if (!take_numbers(value, 3, factors) || factors.size() != 3) return false;
+    stretch = {factors[0], factors[1], factors[2]};
+    return std::ranges::all_of(factors, [](double factor) { return factor > 0; });
+}
+
 bool same_planes(const std::vector<Plane>& a, const std::vector<Plane>& b) {
     return std::ranges::equal(
         a, b, [](const Plane& p, const Plane& q) { return p.normal == q.normal && p.offset == q.offset; });
@@ -121,7 +129,8 @@ bool operator==(const ViewState& a, const ViewState& b) {
            range(a) == range(b) && a.logarithmic == b.logarithmic && a.opacity == b.opacity && a.outline == b.outline &&
            camera(a) == camera(b) && a.boundary == b.boundary && a.isosurfaces == b.isosurfaces &&
            a.colored_boundary == b.colored_boundary && a.edges == b.edges && a.solid == b.solid && a.keep == b.keep &&
-           same_planes(a.clips, b.clips) && same_planes(a.slices, b.slices) && a.step == b.step && a.volume == b.volume;
+           same_planes(a.clips, b.clips) && same_planes(a.slices, b.slices) && a.step == b.step &&
+           a.volume == b.volume && a.stretch == b.stretch;
 }
 
 Json to_json(const ViewState& state) {
@@ -141,6 +150,7 @@ Json to_json(const ViewState& state) {
     if (state.keep) json["keep"] = to_text(*state.keep);
     if (state.step) json["step"] = *state.step;
     if (state.range) json["range"] = {state.range->lower, state.range->upper};
+    if (state.stretch) json["stretch"] = *state.stretch;
     if (state.opacity) json["opacity"] = *state.opacity;
     if (state.camera) json["camera"] = to_text(*state.camera);
     if (state.volume) {
@@ -201,6 +211,8 @@ Result<ViewState> state_of(const Json& json) {
         state.opacity = finite_number(value);
         return state.opacity && *state.opacity >= 0 && *state.opacity <= 1;
     });
+    reader.read("stretch", "three numbers above 0",
+                [&](const Json& value) { return take_stretch(value, state.stretch); });
     reader.read("camera", "a camera as text", [&](const Json& value) {
         const std::string* camera = text(value);
         if (camera && camera->size() <= max_name_bytes) state.camera = parse_camera(*camera);

@@ -2,6 +2,7 @@
 // What a page shows: a small value that `isotet render` has options for.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -43,7 +44,9 @@ struct ViewState {
     bool logarithmic = false;
     std::optional<double> opacity; ///< 0 to 1, of all surfaces; nothing: as render chooses
     bool outline = false;
-    std::optional<Camera> camera;
+    std::optional<Camera> camera; ///< of what `stretch` makes of the grid
+    std::optional<std::array<double, 3>>
+        stretch;                                ///< factors of the axes, above 0; planes are in coordinates of the grid
     double boundary = default_boundary_opacity; ///< opacity of the grid's boundary, 0 to 1; 0: it is not shown
     bool colored_boundary = false;              ///< by `color_by`
     bool edges = false;                         ///< as SceneLook::edges

@@ -301,10 +301,7 @@ void Viewer::Data::answer(ConnectionNumber from, PageMessage message) {
         const Result<PastedCommand> pasted = state_of_command(paste->text, options.reading);
         if (!pasted) return server->send_text(from, error_text("paste", pasted.error().message));
         const bool other = !pasted->file.empty() && pasted->file != options.file;
-        server->send_text(from, text_of({{"say", "state"},
-                                         {"state", to_json(pasted->state)},
-                                         {"left_out", pasted->left_out},
-                                         {"other_file", other ? pasted->file : std::string()}}));
+        server->send_text(from, pasted_text(*pasted, other));
     }
 }
 

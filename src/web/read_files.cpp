@@ -46,14 +46,10 @@ ReadOptions options_of(const Told& told) {
 }
 
 /// What is shown first, as `isotet view` does.
-void take_first_view(const FirstView& first, Told& told) {
-    told.state.field = first.field.empty() ? std::string("x") : first.field;
-    if (first.draw != FirstDraw::isosurfaces) {
-        told.state.boundary = 1;
-        told.state.isosurfaces = false;
-        told.state.color_by = first.field;
-        told.state.colored_boundary = !first.field.empty();
-    }
+void choose_first_view(const ReadResult& read, Told& told) {
+    const FirstView first = first_view(read.grid, read.info.fields);
+    take_first_view(first, told.state);
+    if (is_of_reservoirs(read.info.format)) told.state.stretch = default_stretch(read.grid.points);
     told.notes.push_back(first.field.empty() ? std::string("no field varies: this is the grid") : jobs::note_of(first));
 }
 
@@ -63,7 +59,7 @@ Result<std::unique_ptr<Looker>> looker_of_files(Told& told) {
     Result<ReadResult> read = isotet::read(told.files.front(), options, telling_run());
     if (!read) return read.error();
     told.notes.insert(told.notes.end(), read->notes.begin(), read->notes.end());
-    take_first_view(first_view(read->grid, read->info.fields), told);
+    choose_first_view(*read, told);
     GridViewOptions view_options;
     view_options.threads = 1;
     view_options.regions = read->info.regions;

@@ -2,6 +2,8 @@
 // States as command lines and as JSON, and back.
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include "view/command_line.hpp"
 #include "view/random_state.hpp"
 
@@ -113,14 +115,55 @@ TEST(StateOfCommand, NamesWhatItDoesNotTake) {
                                          {"--merge-points", "0", "--block", "b"});
     ASSERT_TRUE(pasted) << pasted.error().message;
     EXPECT_EQ(pasted->file, "x.vtu");
-    EXPECT_EQ(pasted->left_out, (std::vector<std::string>{"--view +x", "--zoom=2", "--scale 1,1,5", "--block a"}));
+    EXPECT_EQ(pasted->left_out, (std::vector<std::string>{"--block a"}));
+    EXPECT_EQ(pasted->state.stretch, (std::array<double, 3>{1, 1, 5}));
+    ASSERT_TRUE(pasted->look);
+    EXPECT_EQ(pasted->look->camera.direction, (std::array<double, 3>{1, 0, 0}));
+    EXPECT_EQ(pasted->look->zoom, 2);
+    EXPECT_EQ(pasted->look->up, "z");
     EXPECT_TRUE(pasted->state.colored_boundary);
     EXPECT_EQ(pasted->state.color_by, "p");
 }
 
+TEST(StateOfCommand, LooksAsACommandLineDoes) {
+    const auto look_of = [](const char* text) { return state_of_command(text)->look; };
+    EXPECT_FALSE(look_of("isotet render x.vtu -i 1"));
+    EXPECT_FALSE(look_of("isotet render x.vtu --zoom 3 --camera parallel:0,0,0:0,0,1:0,1,0:2"))
+        << "the camera says all";
+    const auto look = look_of("isotet render x.vtu --view 90,0 --up -y --parallel");
+    ASSERT_TRUE(look);
+    EXPECT_EQ(look->up, "-y");
+    EXPECT_EQ(look->camera.projection, Projection::parallel);
+    EXPECT_EQ(to_text(look->camera), to_text(camera_of(90, 0, UpAxis::minus_y, Projection::parallel)));
+    for (const char* text : {"--view left", "--view 0,91", "--up w", "--zoom 0", "--scale 1,1", "--scale 1,1,0"})
+        EXPECT_FALSE(state_of_command(text)) << text;
+}
+
+TEST(StateOfCommand, TakesThePlanesOfSlices) {
+    const auto slice_of = [](const char* text) { return state_of_command(text).value(); };
+    const auto same = [](const Plane& plane, std::array<double, 3> normal, double offset) {
+        return plane.normal == normal && std::abs(plane.offset - offset) < 1e-12;
+    };
+    const PastedCommand three = slice_of("isotet slice x.vtu cut.vtp --plane x=0.1,0.2,0.3 --with p --step 2");
+    ASSERT_EQ(three.state.slices.size(), 3U);
+    EXPECT_TRUE(same(three.state.slices[2], {1, 0, 0}, 0.3));
+    EXPECT_EQ(three.file, "x.vtu");
+    EXPECT_EQ(three.left_out, std::vector<std::string>{"--with p"});
+    EXPECT_EQ(three.state.step, 2U);
+    EXPECT_FALSE(three.state.isosurfaces);
+    EXPECT_TRUE(same(slice_of("isotet slice x.vtu --plane 1,1,0@0.5,0.5,9").state.slices.at(0), {1, 1, 0}, 1));
+    EXPECT_TRUE(same(slice_of("isotet slice x.vtu --plane=-z@1,2,3").state.slices.at(0), {0, 0, -1}, -3));
+    EXPECT_TRUE(same(slice_of("isotet slice x.vtu --plane 0,0,2,1").state.slices.at(0), {0, 0, 2}, 1));
+    for (const char* plane : {"z=50%v", "w=1", "@1,2,3", "x=1,2,3,4,5,6,7", "0,0,0@1,2,3"}) {
+        const PastedCommand none = slice_of(fmt::format("isotet slice x.vtu --plane {}", plane).c_str());
+        EXPECT_TRUE(none.state.slices.empty()) << plane;
+        EXPECT_EQ(none.left_out, std::vector<std::string>{fmt::format("--plane {}", plane)});
+    }
+}
+
 TEST(StateOfCommand, SaysWhatIsWrong) {
     EXPECT_EQ(state_of_command("rm -rf /").error().message,
-              "'rm' begins no command line of isotet render, isotet extract or isotet view");
+              "'rm' begins no command line of isotet render, extract, view or slice");
     EXPECT_FALSE(state_of_command("isotet check x.vtp"));
     EXPECT_EQ(state_of_command("-i 0.5,x").error().message,
               "--isovalue got '0.5,x', but it takes numbers separated by commas, at most 32 of them");

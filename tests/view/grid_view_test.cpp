@@ -175,7 +175,7 @@ TEST(GridViewFlatCells, AreColouredByFieldsOfPointsAndCells) {
         message.state.colored_boundary = true;
         message.state.boundary = 1;
         std::vector<std::string> known;
-        const Result<Frame> frame = view->frame(message, 0, known, {});
+        const Result<view::Frame> frame = view->frame(message, 0, known, {});
         ASSERT_TRUE(frame) << frame.error().message;
         const Json head = head_of(frame->bytes);
         ASSERT_EQ(head["surfaces"].size(), 1u) << field;
@@ -608,7 +608,7 @@ TEST_F(PartsTest, OfSurfacesAndSolidsAreThoseThatAreKept) {
 
 TEST_F(PartsTest, APickTellsThePartAndMeetsNoneThatIsLeftOut) {
     const auto part_at = [this, centre = parts().parts[0].centre] {
-        const Picked picked = view_->pick({message_.state, {}, centre, {}, true}, {}).value();
+        const Picked picked = view_->pick({message_.state, {}, false, centre, {}, true}, {}).value();
         return std::ranges::find(picked.values, "part", &PickedValue::name)->values;
     };
     keep("parts:0");

@@ -136,7 +136,7 @@ TEST(Server, ThePageIsSmallAndNeedsNothingFromElsewhere) {
     std::size_t bytes = 0;
     for (const auto& [name, content] : loaded_files()) bytes += content.size();
     EXPECT_GT(bytes, 100'000U) << "imports that are not found?";
-    EXPECT_LT(bytes, 200'000U);
+    EXPECT_LT(bytes, 240'000U);
 }
 
 TEST(Server, AnswersOnlyToNamesOfThisMachine) {

@@ -47,6 +47,8 @@ TEST(RenderWords, AreOptionsOfTheProgramWithTheSameMeaning) {
         EXPECT_EQ(render.boundary.value_or(state.volume ? 0 : view::default_boundary_opacity), state.boundary);
         expect_same_volume(render, state.volume);
         EXPECT_EQ(render.edges, state.edges);
+        EXPECT_EQ(render.stretch, state.stretch ? std::vector<double>(state.stretch->begin(), state.stretch->end())
+                                                : std::vector<double>());
         EXPECT_EQ(render.solid, state.solid);
         EXPECT_EQ(render.keep, state.keep);
         expect_same_planes(render.clips, state.clips);

@@ -47,6 +47,7 @@ inline view::ViewState random_state(unsigned seed) {
     }
     if (chance(0.3)) state.boundary = std::uniform_real_distribution(0.0, 1.0)(random);
     state.edges = chance(0.3);
+    if (chance(0.3)) state.stretch = std::array{1.0, std::abs(number()) + 1e-12, 20.0};
     if (chance(0.3)) state.solid = chance(0.5) ? SolidSide::above : SolidSide::below;
     if (chance(0.3)) {
         constexpr std::array choices{"largest", "3", "area>0.5", "volume>1e-30", "touching:boundary", "parts:0,7", "not:2"};

@@ -11,10 +11,14 @@ function turned(a, axis, angle) {
   return [0, 1, 2].map((i) => a[i] * c + x[i] * s + axis[i] * k);
 }
 
+// To the eye and upwards, in shares of right, front and up, which an axis that points upwards gives.
 const views = {
-  front: [[0, -1, 0], [0, 0, 1]], right: [[1, 0, 0], [0, 0, 1]], top: [[0, 0, 1], [0, 1, 0]],
-  oblique: [unit([0.5007, -0.7510, 0.4305]), [0, 0, 1]], // 33.69 degrees to the right, 25.5 upwards
+  front: [[0, 1, 0], [0, 0, 1]], right: [[1, 0, 0], [0, 0, 1]], top: [[0, 0, 1], [0, -1, 0]],
+  oblique: [unit([0.5, 0.75, 0.43]), [0, 0, 1]], // 33.69 degrees to the right, 25.5 upwards
 };
+
+/** The side that a view from the front shows, by the axis that points upwards: as camera_of() of include/isotet/camera.hpp. */
+const fronts = {x: [0, -1, 0], y: [0, 0, 1], z: [0, -1, 0]};
 
 export class Camera {
   constructor() {
@@ -23,11 +27,18 @@ export class Camera {
     this.distance = 1;
     this.angle = 25;
     this.height = 1;
+    this.setUp('z');
     this.look('oblique');
   }
 
+  /** "z" or "-y": of the views to come. */
+  setUp(name) {
+    const sign = name.startsWith('-') ? -1 : 1, axis = name.slice(-1), up = ['x', 'y', 'z'].map((one) => (one === axis ? sign : 0)), front = fronts[axis];
+    this.frame = [cross(up, front), front, up];
+  }
+
   look(name) {
-    const [direction, up] = views[name];
+    const [direction, up] = views[name].map((shares) => [0, 1, 2].map((i) => shares.reduce((sum, share, k) => sum + share * this.frame[k][i], 0) || 0));
     this.direction = direction;
     this.up = unit(add(up, direction, -dot(up, direction)));
   }
@@ -51,19 +62,37 @@ export class Camera {
     this.projection = projection;
   }
 
-  /** Sees all of a box. */
-  fit(lower, upper, aspect, margin = 0.06) {
-    this.target = [0, 1, 2].map((i) => (lower[i] + upper[i]) / 2);
-    const right = this.right(), slope = this.slope(), free = 1 - 2 * margin;
-    let distance = 0, height = 0;
-    for (let corner = 0; corner < 8; ++corner) {
-      const from = [0, 1, 2].map((i) => (corner >> i & 1 ? upper : lower)[i] - this.target[i]);
-      const x = Math.abs(dot(from, right)), y = Math.abs(dot(from, this.up)), z = dot(from, this.direction);
-      distance = Math.max(distance, z + y / (slope * free), z + x / (slope * aspect * free));
-      height = Math.max(height, 2 * y / free, 2 * x / (aspect * free));
+  /**
+   * Sees all of some points as large as possible, as Camera::fit() of include/isotet/camera.hpp.
+   *
+   * @param points  x, y and z one after another
+   */
+  fit(points, aspect, margin = 0.04) {
+    const lower = [Infinity, Infinity, Infinity], upper = [-Infinity, -Infinity, -Infinity];
+    for (let i = 0; i < points.length; ++i) {
+      if (points[i] < lower[i % 3]) lower[i % 3] = points[i];
+      if (points[i] > upper[i % 3]) upper[i % 3] = points[i];
     }
-    this.distance = distance || 1;
-    this.height = height || 1;
+    const middle = lower.map((v, i) => v / 2 + upper[i] / 2), widest = Math.max(...upper.map((u, i) => u - lower[i])) || 1;
+    const part = 1 - 2 * margin, right = this.right(), {up, direction} = this;
+    // How far the points reach to the right, left, up and down: where lines of sight spread, and where they are parallel.
+    const spread = [-Infinity, -Infinity, -Infinity, -Infinity], flat = spread.slice(), slopes = [this.slope() * part * aspect, this.slope() * part];
+    for (let i = 0; i < points.length; i += 3) {
+      const x = points[i] - middle[0], y = points[i + 1] - middle[1], z = points[i + 2] - middle[2];
+      const nearer = x * direction[0] + y * direction[1] + z * direction[2];
+      for (let side = 0; side < 2; ++side) {
+        const axis = side ? up : right, place = x * axis[0] + y * axis[1] + z * axis[2], wider = nearer * slopes[side];
+        spread[2 * side] = Math.max(spread[2 * side], place + wider);
+        spread[2 * side + 1] = Math.max(spread[2 * side + 1], wider - place);
+        flat[2 * side] = Math.max(flat[2 * side], place);
+        flat[2 * side + 1] = Math.max(flat[2 * side + 1], -place);
+      }
+    }
+    this.height = Math.max(flat[2] + flat[3], (flat[0] + flat[1]) / aspect, widest * 1e-3) / part;
+    this.distance = Math.max((spread[0] + spread[1]) / (2 * slopes[0]), (spread[2] + spread[3]) / (2 * slopes[1]), widest * 1e-3);
+    const reach = this.projection === 'parallel' ? flat : spread;
+    this.target = add(add(middle, right, (reach[0] - reach[1]) / 2), up, (reach[2] - reach[3]) / 2);
+    if (this.projection === 'parallel') this.distance = 2 * widest;
   }
 
   /** Turns about a point: to the right about the axis of the world that is nearest to `up`, then upwards. Radians. */

@@ -48,7 +48,7 @@ export function colorsChanged() {
   drawSoon();
 }
 
-id('color-by').addEventListener('change', () => { app.state.colorBy = id('color-by').value; app.state.range = null; colorsChanged(); });
+id('color-by').addEventListener('change', () => { app.state.colorBy = id('color-by').value; app.state.range = null; app.state.hidden = []; colorsChanged(); });
 id('map').addEventListener('change', () => { app.state.map = id('map').value; colorsChanged(); });
 id('logarithmic').addEventListener('change', () => { app.state.logarithmic = id('logarithmic').checked; colorsChanged(); });
 id('range-reset').addEventListener('click', () => { app.state.range = null; colorsChanged(); });

@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Command lines: copied, and pasted.
 import {app, id} from './app.js';
+import {frameAll} from './framing.js';
 import {say} from './notes.js';
 import {fromMessage, toMessage} from './state.js';
 import {commit} from './undo.js';
@@ -25,7 +26,8 @@ export async function takeCommand(message) {
   id('copied').textContent = text;
   id('copied').title = copied ? 'Copied' : 'The browser did not copy: select it';
   id('copy-' + kind).textContent = copied ? 'Copied' : 'See below';
-  if (own) say('Colours and opacities of single surfaces are not part of isotet render.');
+  const missing = [own && 'colours and opacities of single surfaces', kind === 'render' && app.state.hidden.length > 0 && 'hidden regions'].filter(Boolean);
+  if (missing.length > 0) say(`Not part of isotet render: ${missing.join(', ')}.`);
   setTimeout(() => { id('copy-render').textContent = 'Copy render'; id('copy-extract').textContent = 'Copy extract'; }, 1500);
 }
 
@@ -42,13 +44,24 @@ function leftOut({left_out, other_file}) {
   return parts.join(' ');
 }
 
+/** All is seen from there, and enlarged. */
+function lookAsTold({direction, up, parallel, zoom}) {
+  app.camera.setProjection(parallel ? 'parallel' : 'perspective');
+  Object.assign(app.camera, {direction, up});
+  frameAll();
+  app.camera.zoom(app.camera.target, zoom);
+  app.state.camera = app.camera.text();
+}
+
 export function takeState(message) {
   const next = fromMessage(message.state);
   if (!next.field) next.field = app.state.field;
   if (next.value === null && next.field === app.state.field) next.value = app.state.value;
   if (next.step === null) next.step = app.state.step;
-  app.state = {...next, drawn: app.state.drawn};
-  if (!app.state.camera) app.state.camera = app.camera.text();
+  if (next.planes.some(({kind}) => kind === 'slice') && !next.isosurfaces) next.colorBy ||= next.field;
+  app.state = {...next, drawn: app.state.drawn, up: message.look?.axis ?? app.state.up};
+  if (message.look) lookAsTold(message.look);
+  else if (!app.state.camera) app.state.camera = app.camera.text();
   id('command').value = '';
   commit();
   commands.show();

@@ -15,6 +15,7 @@ function caption() {
   else if (values.length > 0) parts.push(`${frame.field} = ${values.map(numberLabel).join(', ')}`);
   if (grid.times.length > 1) parts.push(`time ${numberLabel(grid.times[frame.step] ?? 0)} (step ${frame.step})`);
   if (state.planes.some(({kind}) => kind === 'clip')) parts.push('clipped');
+  if (state.stretch?.some((factor) => factor !== 1)) parts.push(`axes × ${state.stretch.map(numberLabel).join(', ')}`);
   return parts.join('  ·  ');
 }
 
@@ -71,7 +72,7 @@ function paintEntry(context, [color, text], x, y) {
 /** At the right: the scale of the colours, else the colours of several surfaces. */
 function paintColumn(context, width, height) {
   const {frame, state} = app, scale = coloredBy(state) ? frame.scale : null, surfaces = shown();
-  const classes = scale?.classes?.map(({name, color}) => [color, name]), graded = scale && !classes;
+  const classes = scale?.classes?.filter(({name}) => !state.hidden.includes(name)).map(({name, color}) => [color, name]), graded = scale && !classes;
   const entries = classes || (scale || surfaces.length < 2 ? [] : surfaces.map((one) => [colorOf(one), numberLabel(one.isovalue)]).reverse());
   if (!scale && entries.length === 0) return;
   const tall = graded ? Math.round(Math.min(0.55 * height, 320)) : line * entries.length, title = scale ? coloredBy(state) : frame.field;

@@ -6,6 +6,7 @@ import {colorsChanged} from './colors.js';
 import * as format from './format.js';
 import {showIsosurfaces} from './looking.js';
 import {say} from './notes.js';
+import {Player} from './play.js';
 import {forgetParts, forgetPartNumbers} from './parts.js';
 import {pinColor, showSurfaces} from './surfaces.js';
 import {commit, commitSoon, nameState} from './undo.js';
@@ -14,7 +15,33 @@ import {wishSoon} from './wishes.js';
 
 app.slider = new ChartSlider(id('slider'), id('chart'), {input(value) { showIsosurfaces(true); setValue(value); }, commit});
 
+/** Over the slider from end to end, by its scale. */
+const places = () => app.slider.stops?.length ?? 101;
+const valueOfPlace = (place) => (app.slider.stops ? app.slider.stops[place] : app.slider.roundedAt(place / (places() - 1)));
+
+export const valuePlayer = new Player({button: id('play-value'), speed: id('speed-value'), order: id('order-value')}, {
+  count: () => (app.slider.range() > 0 ? places() : 0), ended: () => commit(),
+  at() {
+    if (level.place !== null && valueOfPlace(level.place) === app.state.value) return level.place;
+    const {slider, state} = app, {stops} = slider;
+    return stops ? stops.indexOf(slider.allowed(state.value)) : Math.round(Math.max(0, Math.min(1, slider.part(state.value))) * (places() - 1));
+  },
+  go(place) {
+    const before = app.state.value;
+    level.place = place;
+    showIsosurfaces(true);
+    setValue(valueOfPlace(place));
+    if (app.state.value === before) valuePlayer.shown(); // no other frame comes
+  },
+});
+
+/** A frame of the slider's value is on the screen. */
+export function valueShown() { if (app.frame.surfaces[0]?.isovalue === app.state.value) valuePlayer.shown(); }
+
+for (const event of ['pointerdown', 'keydown']) id('slider').addEventListener(event, () => valuePlayer.stop());
+
 const level = {
+  place: null,           // that was played last
   seen: new Map(),       // ranges: field -> step -> [lower, upper]
   left: new Map(),       // what was shown of a field when another one was chosen
   automatic: false,      // the value is that of a field that is constant, until a step has another
@@ -200,12 +227,13 @@ export function takeShare({field, step, of, percent, isovalue}) {
   const {state} = app;
   if (level.share !== `${question()}|${of}|${percent}` || field !== state.field || (state.step !== null && step !== state.step)) return;
   level.share = '';
-  id('value').blur();
   setValue(isovalue);
+  retype();
   commit();
 }
 
 function typed() {
+  valuePlayer.stop();
   const share = app.grid?.saved === 'surfaces' ? null : format.parseShare(id('value').value);
   const value = share ? 0 : format.parseNumber(id('value').value, app.slider.span);
   id('value').setAttribute('aria-invalid', value === null);
@@ -215,11 +243,25 @@ function typed() {
   if (share) { say(''); return askShare(share); }
   say('');
   setValue(value);
+  retype();
   commit();
+}
+
+/** The number as it is now, in the box that keeps its focus. */
+function retype() {
+  id('value').value = String(app.state.value);
+  if (document.activeElement === id('value')) id('value').select();
 }
 
 id('value').addEventListener('keydown', (event) => {
   if (event.key === 'Enter') typed();
+  if (['ArrowUp', 'ArrowDown', 'PageUp', 'PageDown'].includes(event.key) && app.slider.span) {
+    event.preventDefault();
+    valuePlayer.stop();
+    showIsosurfaces(true);
+    app.slider.step((event.key.endsWith('Up') ? 1 : -1) * (event.key.startsWith('Page') ? 10 : event.shiftKey ? 0.1 : 1));
+    retype();
+  }
   if (event.key === 'Escape') { event.target.value = String(app.state.value ?? ''); event.target.removeAttribute('aria-invalid'); }
 });
 id('value').addEventListener('blur', () => showValue());
@@ -227,12 +269,14 @@ id('value').addEventListener('blur', () => showValue());
 /** Another field has its own value and pins: those that it had, when it was shown before. */
 export function chooseField(name) {
   const {state} = app;
+  valuePlayer.stop();
   commit(); // what was shown last is a state of its own
   forgetPartNumbers();
   level.left.set(state.field, {value: state.value, pins: state.pins});
   Object.assign(state, {field: name, value: null, pins: []}, level.left.get(name));
   if (!state.isosurfaces && state.coloredBoundary && app.grid.fields.some((one) => one.name === name)) { // it is what is seen
     state.range = null;
+    state.hidden = [];
     state.colorBy = id('color-by').value = name;
     colorsChanged();
   }

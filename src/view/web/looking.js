@@ -1,7 +1,9 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Standard views, and what is drawn beside the surfaces.
-import {app, aspect, id} from './app.js';
+import {app, id} from './app.js';
 import {colorsChanged} from './colors.js';
+import {frameAll} from './framing.js';
+import {setUpHeights} from './heights.js';
 import {showValue} from './level.js';
 import {say} from './notes.js';
 import {closePicked} from './picked.js';
@@ -13,7 +15,7 @@ import {serverDraws, wishSoon} from './wishes.js';
 export function lookFrom(name) {
   if (!app.grid?.lower) return;
   if (name !== 'fit') app.camera.look(name);
-  app.camera.fit(app.grid.lower, app.grid.upper, aspect());
+  frameAll();
   moved();
 }
 
@@ -24,6 +26,7 @@ export function moved() {
   commitSoon();
 }
 
+setUpHeights(moved, () => lookFrom('oblique'));
 for (const button of document.querySelectorAll('[data-view]')) button.addEventListener('click', () => lookFrom(button.dataset.view));
 id('parallel').addEventListener('change', () => { app.camera.setProjection(id('parallel').checked ? 'parallel' : 'perspective'); moved(); });
 for (const flag of ['edges', 'outline'])

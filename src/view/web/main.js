@@ -1,13 +1,15 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Ties the parts together: state -> wishes -> frames -> picture.
-import {app, aspect, id, mayBeField} from './app.js';
+import {app, id, mayBeField} from './app.js';
 import {colorsChanged, showMap, showRange} from './colors.js';
 import {commands, takeCommand, takeState, wholeState} from './commands.js';
 import {Cuts} from './cuts.js';
 import {short} from './format.js';
 import {offerField, refuseFormula} from './formula.js';
+import {forgetBoundary, frameAll, lookAtFirst} from './framing.js';
+import {showHeights, stretched} from './heights.js';
 import './keys.js';
-import {askChart, followStep, forgetField, forgetQuestions, forgetSpeed, forgetValues, takeChart, takeShare, takeSpectrum} from './level.js';
+import {askChart, followStep, forgetField, forgetQuestions, forgetSpeed, forgetValues, takeChart, takeShare, takeSpectrum, valuePlayer} from './level.js';
 import {Link} from './link.js';
 import {moved, showBoundary} from './looking.js';
 import {say, showNotes} from './notes.js';
@@ -15,6 +17,7 @@ import {forgetPartNumbers, showParts, takeParts} from './parts.js';
 import {pickAt, takePicked} from './picked.js';
 import {drawSoon, pictureAsSeen, takeFrame} from './picture.js';
 import {Pointer} from './pointer.js';
+import {showRegions} from './regions.js';
 import {Save} from './save.js';
 import {Scene} from './scene.js';
 import {coloredBy, fromAddress, fromMessage} from './state.js';
@@ -26,7 +29,8 @@ import {serverDraws, stopWaiting, wishSoon} from './wishes.js';
 
 /** The controls and the picture follow a new state. */
 function showState() {
-  if (!app.state.camera || !app.camera.set(app.state.camera)) app.camera.fit(app.grid.lower, app.grid.upper, aspect());
+  showHeights();
+  if (!app.state.camera || !app.camera.set(app.state.camera)) frameAll();
   offerField(app.state.field);
   offerField(app.state.colorBy);
   id('field').value = app.state.field;
@@ -48,6 +52,7 @@ function showState() {
   app.time.show(app.state.step ?? 0);
   showMap();
   showRange();
+  showRegions();
   id('span').value = app.state.span;
   followStep();
   showSurfaces();
@@ -57,7 +62,7 @@ function showState() {
 }
 
 app.cuts = new Cuts(id('cuts'), {slice: id('add-slice'), clip: id('add-clip')}, {
-  state: () => app.state, box: () => [app.grid?.lower || [0, 0, 0], app.grid?.upper || [1, 1, 1]], direction: () => app.camera.direction, say,
+  state: () => app.state, box: () => [app.grid?.lower || [0, 0, 0], app.grid?.upper || [1, 1, 1]], direction: () => stretched(app.camera.direction), say,
   changed(moving, added) {
     // A slice of one colour says little.
     if (added === 'slice' && !app.state.colorBy) {
@@ -71,8 +76,8 @@ app.cuts = new Cuts(id('cuts'), {slice: id('add-slice'), clip: id('add-clip')}, 
   },
 });
 
-app.time = new TimeSteps({section: id('time'), slider: id('step'), label: id('step-text'), play: id('play')}, {
-  step: () => app.state.step ?? 0, commit, rest: followStep,
+app.time = new TimeSteps({section: id('time'), slider: id('step'), label: id('step-text'), typed: id('time-typed'), play: id('play'), speed: id('speed'), order: id('order')}, {
+  step: () => app.state.step ?? 0, commit, rest: followStep, say,
   go(step) {
     if (step < 0 || step >= app.time.times.length) return;
     if (step !== app.state.step) forgetPartNumbers();
@@ -96,8 +101,10 @@ id('reset').addEventListener('click', () => {
   if (!app.grid) return;
   commit();
   app.time.stop();
+  valuePlayer.stop();
   app.state = fromMessage(app.grid.state);
-  app.camera.look('oblique');
+  app.camera.setUp(app.state.up);
+  lookAtFirst();
   app.camera.setProjection('perspective');
   forgetValues();
   say('');
@@ -141,20 +148,23 @@ function takeGrid(message) {
   fill(id('color-by'), [['', 'Surface'], ...colors.map(label)], app.state.colorBy);
   showNotes();
   document.body.dataset.grid = `${app.grid.points} points, ${app.grid.cells} cells`;
+  if (!app.state.camera) lookAtFirst();
   showState();
   if (fresh) nameState();
 }
 
 /** Another grid comes: nothing of this one stays. */
 function forgetGrid() {
-  if (app.grid) app.state = fromAddress('');
   app.time.stop();
+  valuePlayer.stop();
+  if (app.grid) app.state = fromAddress('');
   app.grid = app.frame = app.made = app.sent = app.picked = null;
   app.sentAt.clear();
   app.large = 0;
   forgetQuestions();
   forgetField();
   forgetPartNumbers();
+  forgetBoundary();
   stopWaiting();
   say('');
 }
@@ -237,5 +247,5 @@ app.link = new Link(app.token, {
 });
 
 new Pointer(id('scene'), app.camera, () => (serverDraws() ? null : app.scene), {
-  moved, middle: () => app.grid && app.grid.lower.map((v, i) => (v + app.grid.upper[i]) / 2), level: (steps) => app.slider.step(steps), click: pickAt,
+  moved, middle: () => app.grid && stretched(app.grid.lower.map((v, i) => (v + app.grid.upper[i]) / 2)), level: (steps) => app.slider.step(steps), click: pickAt,
 });

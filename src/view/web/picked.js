@@ -2,27 +2,33 @@
 // Values at a point of a surface or slice.
 import {app, aspect, id} from './app.js';
 import * as format from './format.js';
+import {seenBox, stretched, unstretched} from './heights.js';
 import {markPart} from './parts.js';
 import {toMessage} from './state.js';
 import {serverDraws} from './wishes.js';
 
+/** It stands alone. */
+const isBoundaryPicked = () => !app.state.isosurfaces && !app.state.volume && app.state.boundary > 0 && !app.state.planes.some(({kind}) => kind === 'slice');
+
 export function pickAt(x, y) {
   if (serverDraws()) {
     const {volume, planes} = app.state; // there may be no surface
+    const boundary = isBoundaryPicked();
     if (!app.grid?.lower || (volume && !volume.surfaces && !planes.some(({kind}) => kind === 'slice'))) return;
-    const [point, ray] = app.camera.ray(x, y, aspect(), app.grid.lower, app.grid.upper);
-    app.picked = {point: null, isovalue: null, key: null, field: app.frame?.field, step: app.frame?.step};
-    app.link.send({do: 'pick', state: {...toMessage(app.state), camera: undefined}, point, ray, parts: id('parts').open});
+    const [point, ray] = app.camera.ray(x, y, aspect(), ...seenBox()).map(unstretched);
+    app.picked = {point: null, isovalue: null, key: null, boundary, field: app.frame?.field, step: app.frame?.step};
+    app.link.send({do: 'pick', state: {...toMessage(app.state), camera: undefined}, point, ray, boundary, parts: id('parts').open});
     return;
   }
   const found = app.scene?.pickSurface(x, y);
   if (!found) return closePicked();
-  const {surface, point} = found, message = {do: 'pick', state: toMessage(app.state), point, parts: id('parts').open};
+  const {surface} = found, point = unstretched(found.point), message = {do: 'pick', state: toMessage(app.state), point, parts: id('parts').open};
   delete message.state.camera;
-  if (surface.kind === 'slice') message.slice = app.frame.surfaces.filter(({kind}) => kind === 'slice').findIndex(({key}) => key === surface.key);
+  if (surface.kind === 'boundary') message.boundary = true;
+  else if (surface.kind === 'slice') message.slice = app.frame.surfaces.filter(({kind}) => kind === 'slice').findIndex(({key}) => key === surface.key);
   else message.state.isovalues = [surface.isovalue];
   if (message.slice >= message.state.slices.length) return;
-  app.picked = {point, isovalue: surface.kind === 'slice' ? null : surface.isovalue, key: surface.kind === 'slice' ? surface.key : null,
+  app.picked = {point, boundary: surface.kind === 'boundary', isovalue: surface.isovalue ?? null, key: surface.kind === 'surface' ? null : surface.key,
     field: app.frame.field, step: app.frame.step};
   app.link.send(message);
 }
@@ -34,7 +40,7 @@ export function takePicked(message) {
   const numbers = (values) => values.map(format.short).join(', ');
   const rows = [['x, y, z', numbers(message.point)], ...message.values.map(({name, cell, values}) => [name + (cell ? ' (cell)' : ''), numbers(values.map((v) => v ?? NaN))])];
   if (message.cell !== undefined) rows.push(['Cell', String(message.cell)]);
-  id('picked-title').textContent = app.picked.isovalue === null ? 'On the slice' : `${app.state.field} = ${format.short(app.picked.isovalue)}`;
+  id('picked-title').textContent = app.picked.isovalue === null ? (app.picked.boundary ? 'On the boundary' : 'On the slice') : `${app.state.field} = ${format.short(app.picked.isovalue)}`;
   id('picked-rows').replaceChildren(...rows.map(([name, value]) => {
     const row = document.createElement('tr'), head = document.createElement('th'), cell = document.createElement('td');
     head.scope = 'row';
@@ -67,7 +73,7 @@ export function closePicked() {
 id('picked-close').addEventListener('click', () => { closePicked(); id('scene').focus(); });
 
 export function placeMark() {
-  const at = app.picked && !id('picked').hidden && !serverDraws() && app.scene?.project(app.picked.point);
+  const at = app.picked && !id('picked').hidden && !serverDraws() && app.scene?.project(stretched(app.picked.point));
   id('mark').toggleAttribute('hidden', !at);
   if (!at) return;
   id('mark').style.left = `${50 + 50 * at[0]}%`;

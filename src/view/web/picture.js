@@ -3,12 +3,15 @@
 import {app, aspect, css, id} from './app.js';
 import {mapColors, showRange} from './colors.js';
 import * as format from './format.js';
-import {followStep, measureServer, rangeOf} from './level.js';
+import {frameBoundary} from './framing.js';
+import {seenBox} from './heights.js';
+import {followStep, measureServer, rangeOf, valueShown} from './level.js';
 import {paintLabels, showLabels} from './labels.js';
 import {showNotes} from './notes.js';
 import {askParts} from './parts.js';
 import {checkPicked, placeMark} from './picked.js';
-import {planesOf} from './state.js';
+import {hiddenClasses, showRegions} from './regions.js';
+import {factorsOf, planesOf} from './state.js';
 import {showSurfaces} from './surfaces.js';
 import {showVolume} from './volume.js';
 import {measureLine, measureSpeed, noteSize, pictureSize, refineSoon, restSoon, serverDraws, stopWaiting, wishSoon} from './wishes.js';
@@ -56,11 +59,11 @@ function draw() {
   }
   if (app.frame?.picture) return wishSoon();
   chooseScale();
-  const pad = app.grid.upper.map((u, i) => (u - app.grid.lower[i]) * 0.001);
+  const [lower, upper] = seenBox(), pad = upper.map((u, i) => (u - lower[i]) * 0.001);
   const start = performance.now();
   if (app.maps) app.scene.setMap(mapColors());
-  app.scene.draw(app.camera, dressed().filter((one) => !one.hidden), {background: css('scene'), lower: app.grid.lower.map((v, i) => v - pad[i]),
-    upper: app.grid.upper.map((v, i) => v + pad[i]), boxLower: app.grid.lower, boxUpper: app.grid.upper, outline: app.state.outline,
+  app.scene.draw(app.camera, dressed().filter((one) => !one.hidden), {background: css('scene'), lower: lower.map((v, i) => v - pad[i]),
+    upper: upper.map((v, i) => v + pad[i]), stretch: factorsOf(app.state), hidden: hiddenClasses(), boxLower: app.grid.lower, boxUpper: app.grid.upper, outline: app.state.outline,
     edges: app.state.edges, mapped: !!app.state.colorBy, noData: app.frame?.scale?.no_data, line: css('soft'),
     cuts: planesOf(app.state, 'clip'), occlusion: app.scene.scale < 1 ? 0 : 0.8});
   placeMark();
@@ -78,6 +81,7 @@ function draw() {
     acknowledge(app.frame);
     tellFacts();
     app.time.shown(app.frame.step);
+    valueShown();
     measureServer(app.frame);
     followStep();
     refineSoon();
@@ -193,11 +197,13 @@ async function takePicture(next) {
   checkPicked();
   showSurfaces();
   showRange();
+  showRegions();
   showVolume();
   tellFacts();
   drawSoon();
   if (next.preview && next.number >= app.number) restSoon();
   app.time.shown(next.step);
+  valueShown();
   followStep();
   askParts();
 }
@@ -220,12 +226,14 @@ export function takeFrame(next) {
   for (const key of [...app.scene.meshes.keys()]) if (!keep.has(key)) app.scene.remove(key);
   for (const {key, mesh} of next.surfaces) if (mesh) app.scene.add(key, mesh);
   app.frame = next;
+  frameBoundary(next.surfaces);
   if (next.surfaces.some(({kind, mesh}) => kind === 'surface' && mesh)) app.made = {extract_ms: next.extract_ms, mesh_ms: next.mesh_ms, bytes: next.bytes};
   if (next.number >= app.number) stopWaiting();
   showNotes(next);
   checkPicked();
   showSurfaces();
   showRange();
+  showRegions();
   drawSoon();
   if (next.preview && next.number >= app.number) restSoon();
 }

@@ -22,12 +22,14 @@ void main() {
   colorAt = colorPlace / 65534.0;
 }`;
 
-// Beyond a plane nothing is drawn.
+// Beyond a plane nothing is drawn, nor of a class that is hidden.
 const cut = `
 in vec3 inBox;
+in float colorAt;
 uniform vec4 cuts[6];
-uniform int cutCount;
+uniform int cutCount, classCount, hidden;
 void leaveOut() {
+  if (classCount > 0 && (hidden >> min(int(colorAt * float(classCount)), classCount - 1) & 1) == 1) discard;
   for (int i = 0; i < cutCount; ++i) if (dot(cuts[i].xyz, inBox) > cuts[i].w) discard;
 }`;
 
@@ -35,7 +37,6 @@ void leaveOut() {
 const meshFragment = `#version 300 es
 precision highp float;
 in vec3 normal, position;
-in float colorAt;
 flat in float noData;
 uniform vec4 color;
 uniform vec3 noDataColor;
@@ -77,9 +78,11 @@ void main() {
 
 const lineVertex = `#version 300 es
 layout(location = 0) in vec3 place;
+layout(location = 2) in float colorPlace;
 uniform mat4 clip;
 out vec3 inBox;
-void main() { inBox = place; gl_Position = clip * vec4(place, 1.0); }`;
+out float colorAt;
+void main() { inBox = place; colorAt = colorPlace / 65534.0; gl_Position = clip * vec4(place, 1.0); }`;
 const lineFragment = `#version 300 es
 precision highp float;
 uniform vec4 color;
@@ -100,6 +103,7 @@ export class Scene {
     this.canvas = canvas;
     this.meshes = new Map();
     this.scale = 1;
+    this.stretch = [1, 1, 1];
     const gl = this.gl = canvas.getContext('webgl2', {antialias: true, alpha: false, powerPreference: 'high-performance'});
     if (!gl) throw new Error('This browser has no WebGL2, which draws the surfaces.');
     this.start();
@@ -110,10 +114,10 @@ export class Scene {
   start() {
     const gl = this.gl;
     const program = (vertex, fragment, names) => this.program(vertex, fragment, names);
-    this.mesh = program(meshVertex, meshFragment, ['clip', 'toEye', 'toView', 'color', 'noDataColor', 'map', 'mapped', 'faces', 'parallel', 'cuts', 'cutCount',
+    this.mesh = program(meshVertex, meshFragment, ['clip', 'toEye', 'toView', 'color', 'noDataColor', 'map', 'mapped', 'faces', 'parallel', 'cuts', 'cutCount', 'classCount', 'hidden',
       'occlusion', 'occlusionReach', 'open', 'depths', 'nearFar']);
-    this.depth = program(meshVertex, depthFragment, ['clip', 'toEye', 'toView', 'cuts', 'cutCount']);
-    this.line = program(lineVertex, lineFragment, ['clip', 'color', 'cuts', 'cutCount']);
+    this.depth = program(meshVertex, depthFragment, ['clip', 'toEye', 'toView', 'cuts', 'cutCount', 'classCount', 'hidden']);
+    this.line = program(lineVertex, lineFragment, ['clip', 'color', 'cuts', 'cutCount', 'classCount', 'hidden']);
     this.occlusion = new Occlusion(gl, program);
     this.map = gl.createTexture();
     this.mapColors = null;
@@ -210,24 +214,27 @@ export class Scene {
     if (this.canvas.width !== width || this.canvas.height !== height) { this.canvas.width = width; this.canvas.height = height; }
   }
 
-  /** The matrix of a box of size 1 that lies at `lower` to `upper`. */
+  /** The matrix of a box of size 1 that lies at `lower` to `upper` of the grid. */
   clip(rows, lower, upper) {
     const out = new Float32Array(16);
     for (let r = 0; r < 4; ++r) {
       let last = rows[r][3];
       for (let c = 0; c < 3; ++c) {
-        out[4 * c + r] = rows[r][c] * (upper[c] - lower[c]);
-        last += rows[r][c] * lower[c];
+        const factor = rows[r][c] * this.stretch[c];
+        out[4 * c + r] = factor * (upper[c] - lower[c]);
+        last += factor * lower[c];
       }
       out[12 + r] = last;
     }
     return out;
   }
 
-  /** Planes in the coordinates of the mesh's box; slices are not cut. */
+  /** Planes in the coordinates of the mesh's box; slices are not cut. And classes that are hidden. */
   setCuts(program, {mesh, kind}, look) {
     const gl = this.gl, cuts = kind === 'slice' ? [] : look.cuts;
     gl.uniform1i(program.cutCount, cuts.length);
+    gl.uniform1i(program.classCount, mesh.colored && look.hidden.mask ? look.hidden.count : 0);
+    gl.uniform1i(program.hidden, look.hidden.mask);
     if (cuts.length === 0) return;
     gl.uniform4fv(program.cuts, cuts.flatMap(({normal, offset}) => {
       const size = Math.hypot(...normal), scaled = normal.map((n, i) => n * (mesh.upper[i] - mesh.lower[i]) / size);
@@ -237,7 +244,8 @@ export class Scene {
 
   /**
    * @param surfaces  [{key, kind, color, opacity}]; keys without a mesh are passed over
-   * @param look      {background, lower, upper, outline, edges, mapped, noData, line, cuts: [{normal, offset}], occlusion: 0 to 1}
+   * @param look      {background, lower, upper, outline, edges, mapped, noData, line, cuts: [{normal, offset}], occlusion: 0 to 1,
+   *                   hidden: {count, mask: bits} of classes, stretch: factors of the axes; lower and upper are stretched}
    */
   draw(camera, surfaces, look) {
     const gl = this.gl;
@@ -245,6 +253,7 @@ export class Scene {
     this.camera = camera;
     this.surfaces = surfaces;
     this.look = look;
+    this.stretch = look.stretch;
     gl.enable(gl.DEPTH_TEST);
     const view = this.view = camera.matrix(this.aspect(), look.lower, look.upper);
     const there = surfaces.map((one) => ({...one, mesh: this.meshes.get(one.key)}))
@@ -265,7 +274,7 @@ export class Scene {
     const eye = camera.projection === 'parallel' ? camera.target : camera.target.map((t, i) => t + camera.distance * camera.direction[i]);
     this.eyeRows = [right, camera.up, camera.direction].map((axis) => [...axis, -axis.reduce((sum, v, i) => sum + v * eye[i], 0)]).concat([[0, 0, 0, 1]]);
     gl.uniform1i(this.mesh.parallel, camera.projection === 'parallel' ? 1 : 0);
-    gl.uniformMatrix3fv(this.mesh.toView, false, [0, 1, 2].flatMap((i) => [right[i], camera.up[i], camera.direction[i]]));
+    gl.uniformMatrix3fv(this.mesh.toView, false, [0, 1, 2].flatMap((i) => [right, camera.up, camera.direction].map((axis) => axis[i] / look.stretch[i])));
     this.occlusion.use(this.mesh);
     gl.uniform3fv(this.mesh.noDataColor, rgb(look.noData || '#b8b8b8'));
     gl.bindTexture(gl.TEXTURE_2D, this.map);
@@ -351,6 +360,11 @@ export class Scene {
     gl.bindBuffer(gl.ARRAY_BUFFER, mesh.buffers[0]);
     gl.enableVertexAttribArray(0);
     gl.vertexAttribPointer(0, 3, gl.UNSIGNED_SHORT, true, 8, 0);
+    if (mesh.colored) {
+      gl.bindBuffer(gl.ARRAY_BUFFER, mesh.buffers[1]);
+      gl.enableVertexAttribArray(2);
+      gl.vertexAttribPointer(2, 1, gl.UNSIGNED_SHORT, false, 2, 0);
+    }
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, buffer);
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, edges, gl.STATIC_DRAW);
     gl.bindVertexArray(null);
@@ -363,6 +377,7 @@ export class Scene {
     gl.useProgram(this.line.program);
     gl.uniformMatrix4fv(this.line.clip, false, this.clip(rows, look.boxLower, look.boxUpper));
     gl.uniform1i(this.line.cutCount, 0);
+    gl.uniform1i(this.line.classCount, 0);
     gl.uniform4f(this.line.color, ...rgb(look.line), 1);
     gl.bindVertexArray(this.box);
     gl.drawArrays(gl.LINES, 0, 24);
@@ -375,18 +390,22 @@ export class Scene {
     return w > 0 ? [x / w, y / w] : null;
   }
 
+  /** Whether nothing but the boundary is there: then it is what is picked. */
+  isBoundaryAlone() { return this.surfaces.every(({kind}) => kind === 'boundary'); }
+
   /** The surface under a place of the picture, and its point there; or null. */
   pickSurface(x, y) {
     const point = this.pick(x, y);
     if (!point) return null;
     const far = ({key}) => { const other = this.pick(x, y, key); return other ? Math.hypot(...other.map((v, i) => v - point[i])) : Infinity; };
-    const [surface] = this.surfaces.filter(({kind}) => kind !== 'boundary').map((one) => [one, far(one)]).reduce((a, b) => (b[1] < a[1] ? b : a));
+    const [surface] = this.surfaces.filter(({kind}) => kind !== 'boundary' || this.isBoundaryAlone()).map((one) => [one, far(one)]).reduce((a, b) => (b[1] < a[1] ? b : a));
     return {point, surface};
   }
 
   /** The point of a surface or slice under a place of the picture (-1 to 1 each), or null; of the one called `only`. */
   pick(x, y, only = null) {
     if (!this.view) return null;
+    const lone = this.isBoundaryAlone();
     const gl = this.gl, {rows, near, far} = this.view;
     const width = this.canvas.width, height = this.canvas.height;
     // The picture shrinks to one pixel: that at (x, y).
@@ -400,7 +419,7 @@ export class Scene {
     gl.useProgram(this.depth.program);
     for (const {key, opacity, kind} of this.surfaces) {
       const mesh = this.meshes.get(key);
-      if (!mesh || !mesh.lower || opacity <= 0 || kind === 'boundary' || (only && key !== only)) continue;
+      if (!mesh || !mesh.lower || opacity <= 0 || (kind === 'boundary' && !lone) || (only && key !== only)) continue;
       this.drawDepth({mesh, kind}, [zoomed[0], zoomed[1], rows[2], rows[3]], this.look);
     }
     const pixel = new Uint8Array(4);

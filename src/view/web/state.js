@@ -10,6 +10,8 @@ export const firstState = () => ({
   keep: '', // connected parts, as --keep takes them; all
   planes: [], step: null, drawn: '', // 'server': pictures, 'browser': never
   volume: null, // {opacity, length, surfaces}: as isotet render --volume draws it
+  hidden: [], // names of classes that colour: what has their colour is left out
+  up: 'z', stretch: null, // the axis that points upwards; [x, y, z], factors of the axes
   labels: true, // scale, field, isovalue and time in the scene
   span: '', // of the slider: 'step', else all steps that were seen
   scale: '', // of the slider: 'log', 'share' of the volume, else values
@@ -21,6 +23,9 @@ const isColor = (text) => /^#[0-9a-f]{6}$/.test(text);
 export const isKeptParts = (text) => text.length <= 4096 && /^(largest|0*[1-9]\d{0,17}|(area|volume)>\+?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?|touching:boundary|(parts|not):\d{1,18}(,\d{1,18})*)$/i.test(text);
 
 const isPart = (number) => Number.isFinite(number) && number >= 0 && number <= 1;
+
+const upAxes = ['z', 'y', 'x', '-z', '-y', '-x'];
+export const factorsOf = ({stretch}) => stretch ?? [1, 1, 1];
 
 export const maxPlanes = 6; // of a kind
 export const planesOf = (state, kind) => state.planes.filter((plane) => plane.kind === kind);
@@ -49,6 +54,9 @@ export function toAddress(state) {
   if (state.volume) parts.set('volume', state.volume.opacity);
   if (state.volume?.length) parts.set('length', state.volume.length);
   if (state.volume?.surfaces) parts.set('surfaces', 1);
+  for (const name of state.hidden) parts.append('hidden', name);
+  if (state.up !== 'z') parts.set('up', state.up);
+  if (state.stretch) parts.set('stretch', state.stretch.join(','));
   if (!state.labels) parts.set('labels', 0);
   if (state.camera) parts.set('camera', state.camera);
   return parts.toString();
@@ -95,6 +103,10 @@ export function fromAddress(text) {
     const length = number(parts.get('length'));
     state.volume = {opacity: parts.get('volume').slice(0, 4096), length: length > 0 ? length : null, surfaces: parts.get('surfaces') === '1'};
   }
+  state.hidden = parts.getAll('hidden').slice(0, 12);
+  if (upAxes.includes(parts.get('up'))) state.up = parts.get('up');
+  const stretch = (parts.get('stretch') || '').split(',').map(Number);
+  if (stretch.length === 3 && stretch.every((one) => one > 0 && one < Infinity)) state.stretch = stretch;
   state.labels = parts.get('labels') !== '0';
   state.camera = parts.get('camera');
   return state;
@@ -115,6 +127,7 @@ export function toMessage(state) {
   if (state.value === null) message.isovalues.shift();
   if (state.range) message.range = state.range;
   if (state.camera) message.camera = state.camera;
+  if (state.stretch) message.stretch = state.stretch;
   if (state.volume) {
     const {opacity, length, surfaces} = state.volume;
     message.volume = length ? {opacity, length, surfaces} : {opacity, surfaces};
@@ -134,5 +147,5 @@ export function fromMessage(message) {
     solid: message.solid ?? '', keep: message.keep ?? '', step: message.step ?? null,
     planes: ['clip', 'slice'].flatMap((kind) => message[kind + 's'].map((plane) => ({kind, normal: plane.slice(0, 3), offset: plane[3]}))),
     volume: message.volume ? {length: null, ...message.volume} : null,
-    range: message.range ?? null, camera: message.camera ?? null};
+    range: message.range ?? null, camera: message.camera ?? null, stretch: message.stretch ?? null};
 }

@@ -1,14 +1,17 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Time steps: a slider, and playing. The next step is wished for when the last one is on the screen.
-import {short} from './format.js';
+// Time steps: a slider, a typed time, and playing.
+import {parseNumber, short} from './format.js';
+import {Player} from './play.js';
 
 export class TimeSteps {
-  /** @param on  {step(): shown, go(step), commit(), rest(): no longer playing} */
-  constructor({section, slider, label, play}, on) {
-    Object.assign(this, {section, slider, label, button: play, on, times: [], playing: false});
+  /** @param on  {step(): shown, go(step), commit(), rest(): no longer playing, say(sentence)} */
+  constructor({section, slider, label, typed, play, speed, order}, on) {
+    Object.assign(this, {section, slider, label, typed, on, times: []});
+    this.player = new Player({button: play, speed, order}, {count: () => this.times.length, at: on.step, go: on.go, ended() { on.rest(); on.commit(); }});
     slider.addEventListener('input', () => { this.stop(); on.go(Number(slider.value)); });
     slider.addEventListener('change', () => on.commit());
-    play.addEventListener('click', () => this.toggle());
+    typed.addEventListener('change', () => this.goTo(parseNumber(typed.value)));
+    typed.addEventListener('blur', () => this.show(on.step()));
   }
 
   set(times) {
@@ -22,31 +25,32 @@ export class TimeSteps {
     this.slider.value = step;
     this.label.textContent = `Step ${step} of 0 to ${this.times.length - 1}, time ${short(this.times[step] ?? NaN)}`;
     this.slider.setAttribute('aria-valuetext', this.label.textContent);
+    if (document.activeElement === this.typed) return;
+    this.typed.value = short(this.times[step] ?? NaN);
+    this.typed.removeAttribute('aria-invalid');
   }
+
+  /** The step whose time is nearest. */
+  goTo(time) {
+    this.typed.setAttribute('aria-invalid', time === null);
+    if (time === null) return this.on.say('A time is a number, such as 0.25.');
+    const far = this.times.map((one) => Math.abs(one - time)), step = far.indexOf(Math.min(...far));
+    this.stop();
+    this.on.say('');
+    this.on.go(step);
+    this.typed.value = short(this.times[step]);
+    this.on.commit();
+  }
+
+  get playing() { return this.player.playing; }
 
   /** The step to read ahead while playing. */
-  next(step) { return (step + 1) % this.times.length; }
+  next(step) { return this.player.next(step) ?? step; }
 
-  toggle() {
-    if (this.times.length < 2) return;
-    if (this.playing) { this.stop(); return this.on.commit(); }
-    this.playing = true;
-    this.button.textContent = 'Pause';
-    this.on.go(this.next(this.on.step()));
-  }
+  toggle() { this.player.toggle(); }
 
-  stop() {
-    if (!this.playing) return;
-    this.playing = false;
-    clearTimeout(this.timer);
-    this.button.textContent = 'Play';
-    this.on.rest();
-  }
+  stop() { this.player.stop(); }
 
-  /** A frame of this step is on the screen: the next one follows, 8 a second at most. */
-  shown(step) {
-    if (!this.playing || step !== this.on.step()) return;
-    clearTimeout(this.timer);
-    this.timer = setTimeout(() => { if (this.playing) this.on.go(this.next(step)); }, 125);
-  }
+  /** A frame of this step is on the screen. */
+  shown(step) { if (step === this.on.step()) this.player.shown(); }
 }
