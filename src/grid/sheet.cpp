@@ -22,6 +22,7 @@ namespace {
 
 enum FlatType : std::uint8_t {
     triangle_strip = 6,
+    polygon = 7,
     pixel = 8,
     quad = 9,
     quadratic_triangle = 22,
@@ -78,6 +79,7 @@ public:
         cell_ = cell;
         first_ = cells_.first(cell);
         const std::uint64_t count = cells_.corners(cell);
+        if (count < 3 && (type == polygon || type == triangle_strip)) return true; // without an area
         if (count < nodes_needed(type)) return false;
         for (std::uint64_t i = 0; i < count; ++i)
             if (cells_.corner(first_ + i) >= cells_.points()) return false;

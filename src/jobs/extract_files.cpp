@@ -598,6 +598,10 @@ Result<std::vector<Surface>> ExtractRun::extract_solid(double isovalue, std::siz
                                  std::move(made->patches)};
     if (numbers.triangles == 0 && job_.fail_if_empty)
         return Error{ErrorCode::invalid_data, "`fail_if_empty`: the solid is empty"};
+    const bool may_be_empty = job_.allow_empty || job_.piece || plan_.steps.size() > 1 || isovalues_.size() > 1;
+    if (numbers.triangles == 0 && !may_be_empty)
+        return Error{ErrorCode::invalid_data,
+                     why_solid_is_empty(numbers_.field, range) + "; `allow_empty` writes it nevertheless"};
     note_what_a_solid_is(numbers_, numbers, caller_);
     std::vector<Surface> surfaces;
     surfaces.push_back(std::move(made->surface));
@@ -659,6 +663,13 @@ Result<void> ExtractRun::reduce_triangles(Surface& surface, SurfaceNumbers& numb
     caller_.detail("reducing the surface");
     Result<ReducedSurface> reduced = reduce(surface, *job_.reduce, caller_.run());
     if (!reduced) return reduced.error();
+    const Result<SurfaceParts> before = find_parts(surface, caller_.run());
+    if (!before) return before.error();
+    const Result<SurfaceParts> after = find_parts(reduced->surface, caller_.run());
+    if (!after) return after.error();
+    if (after->parts.size() < before->parts.size())
+        caller_.note(fmt::format("{} of {} connected parts are kept: the others were too small for so few triangles",
+                                 after->parts.size(), before->parts.size()));
     caller_.note(fmt::format("{} of {} triangles are kept, which moved the surface by about {:.2g}",
                              grouped(reduced->surface.triangle_count()), grouped(reduced->triangles_before),
                              reduced->error));

@@ -61,8 +61,6 @@ std::string why_all_are_empty(const FieldReport& field, std::span<const double> 
     return sentence;
 }
 
-namespace {
-
 std::string why_solid_is_empty(const FieldReport& field, const SolidRange& range) {
     const std::string values = std::isinf(range.upper) ? fmt::format("{} or more", shortest(range.lower))
                                : std::isinf(range.lower)
@@ -73,8 +71,6 @@ std::string why_solid_is_empty(const FieldReport& field, const SolidRange& range
                                 : std::string("no finite value");
     return fmt::format("the solid is empty: it has values of '{}' {}, but the field has {}", field.name, values, has);
 }
-
-} // namespace
 
 void note_what_a_solid_is(const ExtractNumbers& numbers, const SurfaceNumbers& surface, Caller& caller) {
     const SolidRange& range = surface.solid->range;

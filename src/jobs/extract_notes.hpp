@@ -17,6 +17,9 @@ std::string why_empty(const FieldReport& field, double isovalue);
 std::string why_all_are_empty(const FieldReport& field, std::span<const double> isovalues,
                               std::optional<double> decimal_comma);
 
+/// The same of a solid.
+std::string why_solid_is_empty(const FieldReport& field, const SolidRange& range);
+
 /// Notes of one surface: that it is empty, ties that only rounding made.
 void note_what_extracting_found(const ExtractNumbers& numbers, const SurfaceNumbers& surface, Caller& caller);
 

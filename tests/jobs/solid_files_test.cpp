@@ -174,11 +174,29 @@ TEST(SolidFiles, ThatAreEmptySayWhichValuesTheFieldHas) {
     ExtractJob job = solid_job("make:kuhn:2:sphere", "", SolidChoice::Kind::above);
     job.field.name = "x";
     job.isovalues = {7};
+    const Result<ExtractNumbers> refused = extract_files(job, listener);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().message, "the solid is empty: it has values of 'x' 7 or more, but the field has -1 to 1; "
+                                       "`allow_empty` writes it nevertheless");
+    job.allow_empty = true;
     ASSERT_TRUE(extract_files(job, listener));
     EXPECT_EQ(std::ranges::count(listener.noted,
                                  "the solid is empty: it has values of 'x' 7 or more, but the field has -1 to 1"),
               1)
         << testing::PrintToString(listener.noted);
+}
+
+TEST(SolidFiles, TellPartsThatReducingLeavesOut) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    ExtractJob job = solid_job("make:kuhn:24:wavelet", folder.file("s.vtp"), SolidChoice::Kind::above);
+    job.field.name = "wavelet";
+    job.isovalues = {220};
+    job.reduce = ReduceOptions{.share = 0.97};
+    ASSERT_TRUE(extract_files(job, listener));
+    EXPECT_TRUE(std::ranges::any_of(listener.noted, [](const std::string& note) {
+        return note.find("connected parts are kept: the others were too small") != note.npos;
+    })) << testing::PrintToString(listener.noted);
 }
 
 TEST(SolidFiles, RefuseWhatDoesNotGoTogether) {

@@ -142,6 +142,10 @@ TEST(Boundary, RefusesBrokenFlatCells) {
         EXPECT_EQ(surface.error().code, ErrorCode::invalid_data);
         EXPECT_NE(surface.error().message.find("cells[0]"), std::string::npos) << surface.error().message;
     }
+    grid.cells.types = Array::own(std::vector<std::uint8_t>{7, 5});
+    grid.cells.offsets = Array::own(std::vector<std::int64_t>{0, 2, 5});
+    grid.cells.connectivity = Array::own(std::vector<std::int64_t>{0, 1, 0, 1, 2});
+    EXPECT_EQ(boundary_of(grid).value().triangle_count(), 1u) << "a polygon of two corners has no area";
 }
 
 TEST(Boundary, CanBeCancelled) {
