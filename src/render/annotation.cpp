@@ -64,6 +64,7 @@ private:
     }
 
     bool has_column() const { return annotation_.scale || !annotation_.legend.empty(); }
+    void thin_legend();
     double column_width() const;
     double column_height() const;
     bool has_bar() const { return annotation_.orientation && annotation_.orientation->bar; }
@@ -104,6 +105,22 @@ Layout::Layout(const Annotation& annotation, PictureSize whole, std::unique_ptr<
         if (!annotation.no_data.empty()) entries_.push_back({annotation.scale->no_data, annotation.no_data});
     }
     title_ = shortened(*text_, annotation.title, 0.28 * whole.width);
+    thin_legend();
+}
+
+/// Entries that the picture has no room for go, evenly; the last one then says how many.
+void Layout::thin_legend() {
+    const double over = column_height() + axes_height() + caption_height() - whole_.height;
+    if (over <= 0) return;
+    constexpr std::size_t least = 3;
+    const std::size_t all = entries_.size(), lines = static_cast<std::size_t>(std::ceil(over / line_));
+    if (all < lines + least) return;
+    const std::size_t kept = all - lines - 1;
+    std::vector<LegendEntry> some;
+    for (std::size_t i = 0; i < kept; ++i)
+        some.push_back(std::move(entries_[kept == 1 ? 0 : i * (all - 1) / (kept - 1)]));
+    some.push_back({Color{0, 0, 0, 0}, fmt::format("and {} more", all - kept)});
+    entries_ = std::move(some);
 }
 
 Result<std::unique_ptr<Layout>> Layout::make(const Annotation& annotation, PictureSize whole) {
@@ -140,7 +157,7 @@ std::optional<PictureSize> Layout::room() const {
 }
 
 void Layout::paint_entry(Picture& picture, double x, double y, const LegendEntry& entry, const Color& ink) const {
-    fill(picture, x, y, swatch_, swatch_, entry.color);
+    if (entry.color.opacity > 0) fill(picture, x, y, swatch_, swatch_, entry.color);
     text_->paint(picture, x + swatch_ + 0.5 * size_, std::round(y + (swatch_ + text_->ascent()) / 2), entry.text, ink);
 }
 

@@ -415,6 +415,21 @@ TEST(Refine, DropsTetsWithANodeThatIsNotFinite) {
         for (const std::uint64_t point : tet) ASSERT_TRUE(std::isfinite(longer.at(point)));
 }
 
+/// As of linear cells, nothing is there, which is no error.
+TEST(Refine, OfCellsWithoutDataIsAGridWithoutASurface) {
+    CurvedGrid made = curved_grid({.shape = "kuhn", .side = 1, .field = wave});
+    made.field.values = Array::own(std::vector<double>(made.grid.points.tuples(), NAN));
+    for (const std::vector<double>& isovalues : {std::vector<double>{}, {0.3}}) {
+        RefineOptions options;
+        options.isovalues = isovalues;
+        const LinearGrid linear = refine(made.grid, made.field, options).value();
+        EXPECT_GE(linear.grid.cells.count(), 1u);
+        EXPECT_EQ(surface_of(linear, made.field, 0.3).triangle_count(), 0u);
+        const std::vector<std::int32_t> numbers(made.grid.cells.count(), 7);
+        EXPECT_TRUE(linear.of_cells(Array::own(std::vector<std::int32_t>(numbers))));
+    }
+}
+
 TEST(Refine, RefusesWhatDoesNotFit) {
     CurvedGrid made = curved_grid({.shape = "kuhn", .side = 1, .field = quadric});
     EXPECT_EQ(refine(made.grid, made.field, {.tolerance = -1}).error().code, ErrorCode::invalid_argument);

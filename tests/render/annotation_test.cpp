@@ -120,6 +120,20 @@ TEST(Annotations, AreLeftOutWhereThePictureIsTooSmall) {
     EXPECT_FALSE(annotate(scene_of({10, 10}, {}), sample(), {600, 400}, {}));
 }
 
+TEST(Annotations, OfManyEntriesKeepSomeAndSayHowManyAreNotThere) {
+    Annotation annotation;
+    annotation.caption = "grid.vtu";
+    annotation.title = "p";
+    for (int i = 0; i < 60; ++i) annotation.legend.push_back({Color{0, 0, 1, 1}, std::to_string(i)});
+    const PictureSize whole{1200, 900};
+    const auto room = room_beside(annotation, whole).value();
+    ASSERT_TRUE(room);
+    Picture scene{room->width, room->height, {}};
+    scene.pixels.resize(std::size_t{room->width} * room->height);
+    EXPECT_TRUE(annotate(scene, annotation, whole, Color{1, 1, 1, 1}));
+    EXPECT_FALSE(room_beside(annotation, {60, 40}).value());
+}
+
 TEST(Annotations, TakeAnyText) {
     Annotation annotation = sample();
     for (const std::string& text : {std::string(5000, 'W'), std::string("\xff\xfe\xf0\x9f"),

@@ -1,7 +1,11 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Legacy VTK (.vtk), binary, version 5.1: the one that VTK 9 reads without turning the cells around.
+#include <cstdint>
+#include <vector>
+
 #include <fmt/core.h>
 
+#include "io/files/scalars.hpp"
 #include "io/write/write_formats.hpp"
 #include "io/write/write_names.hpp"
 
@@ -46,8 +50,27 @@ void write_header(WriteStream& stream, std::string_view dataset, const std::vect
     write_block(stream, points);
 }
 
+/// As int64, as VTK writes numbers of cells whatever it holds them in: meshio takes "int" for that, too.
+Column widened(const Column& narrow) {
+    Column wide = narrow;
+    if (size_of(narrow.type) == sizeof(std::int64_t)) return wide;
+    wide.type = ScalarType::int64;
+    wide.fill = [narrow](std::size_t begin, std::size_t end, std::byte* out) {
+        const std::size_t count = (end - begin) * narrow.components;
+        std::vector<std::byte> bytes(count * size_of(narrow.type));
+        narrow.fill(begin, end, bytes.data());
+        with_type(narrow.type, [&]<class Number>(Number) {
+            const auto* const from = reinterpret_cast<const Number*>(bytes.data());
+            for (std::size_t i = 0; i < count; ++i)
+                reinterpret_cast<std::int64_t*>(out)[i] = static_cast<std::int64_t>(from[i]);
+        });
+    };
+    return wide;
+}
+
 /// `offsets` has one entry more than there are cells.
-void write_cells(WriteStream& stream, std::string_view keyword, const Column& offsets, const Column& connectivity) {
+void write_cells(WriteStream& stream, std::string_view keyword, const Column& narrow_offsets, const Column& corners) {
+    const Column offsets = widened(narrow_offsets), connectivity = widened(corners);
     stream.text(fmt::format("{} {} {}\nOFFSETS {}\n", keyword, offsets.tuples,
                             connectivity.tuples * connectivity.components, legacy_type(offsets.type)));
     write_block(stream, offsets);

@@ -321,6 +321,15 @@ std::size_t Bisector::bisect(std::uint32_t index) {
     return tets_.size() - before;
 }
 
+void Bisector::keep_whole(std::uint32_t index) {
+    index_ = index;
+    const std::size_t before = tets_.size(), first_point = places_.size();
+    emit(part_of(index));
+    forget_numbers();
+    order_points(first_point, before);
+    children_.push_back(static_cast<std::uint32_t>(tets_.size() - before));
+}
+
 Bisected Bisector::take() {
     Bisected out = std::exchange(told_, {});
     out.places = copied(places_);

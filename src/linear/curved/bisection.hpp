@@ -67,9 +67,11 @@ public:
     /// Returns how many tets it made.
     std::size_t bisect(std::uint32_t index);
 
-    /// What has been added since the last call.
     /// As a quadratic tet of which nothing is kept.
     void pass_over() { children_.push_back(0); }
+    /// Adds the tet of its corners, whatever its values.
+    void keep_whole(std::uint32_t index);
+    /// What has been added since the last call.
     Bisected take();
 
 private:

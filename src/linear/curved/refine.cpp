@@ -139,7 +139,8 @@ bool has_folds(const std::vector<Bisected>& blocks, const Grid& user, const Line
     return folded_cells(user, before, tets, points, bent) > 0;
 }
 
-/// Where isovalues meet nothing, what the first quadratic tet becomes stays: what contours takes no grid without cells.
+/// Where isovalues meet nothing, what the first quadratic tet becomes stays, where none has only finite values the first one's
+/// corners: what contours takes no grid without cells.
 void keep_one(std::vector<Bisected>& blocks, std::size_t count, std::size_t per_block, Bisector& bisector) {
     if (!std::ranges::all_of(blocks, [](const Bisected& block) { return block.tets.empty(); })) return;
     for (std::size_t b = 0; b < blocks.size(); ++b) {
@@ -154,6 +155,12 @@ void keep_one(std::vector<Bisected>& blocks, std::size_t count, std::size_t per_
         blocks[b] = std::move(block);
         return;
     }
+    if (count == 0) return;
+    bisector.keep_whole(0);
+    for (std::size_t i = 1; i < std::min(count, per_block); ++i) bisector.pass_over();
+    Bisected block = bisector.take();
+    block.not_finite = blocks[0].not_finite;
+    blocks[0] = std::move(block);
 }
 
 } // namespace
@@ -249,12 +256,10 @@ Result<LinearGrid> refined(const Grid& user, LinearGrid before, const Array* fie
                         "fewer",
                         tolerance, limits.max_tets,
                         options.max_tets == limits.max_tets ? "the options" : format_bytes(free) + " of memory")};
-    if (!isovalues.empty()) {
-        BisectionRule all = rule;
-        all.isovalues = {};
-        Bisector bisector(*tets, points, field ? &values : nullptr, all, limits, progress);
-        keep_one(blocks, count, per_block, bisector);
-    }
+    BisectionRule all = rule;
+    all.isovalues = {};
+    Bisector bisector(*tets, points, field ? &values : nullptr, all, limits, progress);
+    keep_one(blocks, count, per_block, bisector);
     progress("refine", 0.6);
     RefinementReport report = reported(blocks, *tets);
     add_own_bounds(blocks, own, report);
@@ -267,6 +272,7 @@ Result<LinearGrid> refined(const Grid& user, LinearGrid before, const Array* fie
     report.points = out.refined.count();
     report.refined = field != nullptr;
     report.tolerance = tolerance;
+    report.carried_fields = carried.arrays.size();
     report.wanted_distance = field ? options.distance : 0;
     report.isovalues = std::move(isovalues);
     out.refinement = std::move(report);
