@@ -47,6 +47,11 @@ public:
         });
     }
 
+    /// Doubts a point whatever its sums are.
+    void doubt(std::uint64_t point) {
+        std::atomic_ref(doubted_[point]).store(std::uint8_t{1}, std::memory_order_relaxed);
+    }
+
     /// Adds tets a few at a time: memory is asked for before it is changed.
     template <class Point>
     class Adder {

@@ -101,7 +101,12 @@ private:
             if (cells_.only_tets()) return add_tets(begin, end);
             for (std::size_t cell = begin; cell < end; ++cell)
                 if (const auto whole = whole_cell(cell)) cells.add(*whole, is_cell_mirrored(*whole));
-                else add_tets(cell, cell + 1);
+                else {
+                    add_tets(cell, cell + 1);
+                    if (!Orienter::is_whole(cells_.type(cell))) // a tet of it may be one of a whole cell
+                        for (const Tet& tet : cells_.tets(cell))
+                            for (const std::uint64_t corner : tet) sums.doubt(corner);
+                }
         });
         const double points = static_cast<double>(cells_.points() - survey_.unused);
         const double tets_of_a_point = 2 * static_cast<double>(survey_.tets) / points;
