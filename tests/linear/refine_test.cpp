@@ -416,18 +416,26 @@ TEST(Refine, DropsTetsWithANodeThatIsNotFinite) {
 }
 
 /// As of linear cells, nothing is there, which is no error.
-TEST(Refine, OfCellsWithoutDataIsAGridWithoutASurface) {
-    CurvedGrid made = curved_grid({.shape = "kuhn", .side = 1, .field = wave});
-    made.field.values = Array::own(std::vector<double>(made.grid.points.tuples(), NAN));
-    for (const std::vector<double>& isovalues : {std::vector<double>{}, {0.3}}) {
-        RefineOptions options;
-        options.isovalues = isovalues;
-        const LinearGrid linear = refine(made.grid, made.field, options).value();
-        EXPECT_GE(linear.grid.cells.count(), 1u);
-        EXPECT_EQ(surface_of(linear, made.field, 0.3).triangle_count(), 0u);
-        const std::vector<std::int32_t> numbers(made.grid.cells.count(), 7);
-        EXPECT_TRUE(linear.of_cells(Array::own(std::vector<std::int32_t>(numbers))));
-    }
+TEST(Refine, OfACellWithoutAValueIsAGridWithoutASurface) {
+    Grid grid;
+    grid.points = Array::own(std::vector<double>{0,   0,   0, 1, 0,   0, 0, 1, 0,   0,   0, 1,   0.5, 0,   0,
+                                                 0.5, 0.5, 0, 0, 0.5, 0, 0, 0, 0.5, 0.5, 0, 0.5, 0,   0.5, 0.5},
+                             3);
+    grid.cells.connectivity = Array::own(std::vector<std::int64_t>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9});
+    grid.cells.offsets = Array::own(std::vector<std::int64_t>{0, 10});
+    grid.cells.types = Array::own(std::vector<std::uint8_t>{24});
+    for (std::size_t node = 0; node < 10; ++node)
+        for (const std::vector<double>& isovalues : {std::vector<double>{}, {0.3}}) {
+            std::vector<double> values;
+            for (std::size_t i = 0; i < 10; ++i) values.push_back(i == node ? NAN : grid.points.at(i, 0));
+            const PointField field{"x", Array::own(std::move(values)), false, {}};
+            RefineOptions options;
+            options.isovalues = isovalues;
+            const LinearGrid linear = refine(grid, field, options).value();
+            EXPECT_EQ(linear.grid.cells.count(), 1u);
+            EXPECT_EQ(linear.refinement.not_finite, 1u);
+            EXPECT_EQ(surface_of(linear, field, 0.3).triangle_count(), 0u) << "node " << node;
+        }
 }
 
 TEST(Refine, RefusesWhatDoesNotFit) {

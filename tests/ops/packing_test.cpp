@@ -156,7 +156,9 @@ void expect_packed_arrays(const Grid& grid, const PointField& field, bool split_
         }
     } else { // made grids: upright, each once, tets as the file has them aside
         for (std::size_t cell = 0; cell < cells.count(); ++cell) {
-            const core::WholeCell whole = cells.whole(cell);
+            core::WholeCell whole = cells.whole(cell);
+            if (whole.kind == core::CellKind::wedge) // stored with the first triangle outwards, made with it inwards
+                std::rotate(whole.corners.begin(), whole.corners.begin() + 3, whole.corners.begin() + 6);
             Tet tet{whole.corners[0], whole.corners[1], whole.corners[2], whole.corners[3]};
             tet = core::canonical(tet);
             const auto end = whole.corners.begin() + static_cast<std::ptrdiff_t>(core::corner_count(whole.kind));

@@ -68,7 +68,7 @@ TEST(Boundary, OfFlatCellsIsTheCells) {
         {8, {{0, 0}, {2, 0}, {0, 2}, {2, 2}}, 4, 2},
         {9, square, 4, 2},
         {22, with(triangle, triangle_middles), 2, 4},
-        {34, with(with(triangle, triangle_middles), {{0.5, 0.5}}), 2, 6},
+        {34, with(with(triangle, triangle_middles), {{0.6, 0.6}}), 2, 6},
         {23, with(square, square_middles), 4, 6},
         {28, with(with(square, square_middles), {{1, 1}}), 4, 8},
         {30, with(square, {{1, 0}, {1, 2}}), 4, 4},

@@ -324,7 +324,16 @@ std::size_t Bisector::bisect(std::uint32_t index) {
 void Bisector::keep_whole(std::uint32_t index) {
     index_ = index;
     const std::size_t before = tets_.size(), first_point = places_.size();
-    emit(part_of(index));
+    Part part = part_of(index);
+    const auto is_finite = [](double value) { return std::isfinite(value); };
+    if (std::ranges::all_of(part.corners, is_finite, &Corner::value)) // then a middle has no value: it becomes a corner
+        for (std::size_t e = 0; e < 6; ++e) {
+            if (is_finite(part.edges[e].bump)) continue;
+            const auto [a, b] = tet_edges[e];
+            part.corners[b].place = *halfway(part.corners[a].place, part.corners[b].place);
+            break;
+        }
+    emit(part);
     forget_numbers();
     order_points(first_point, before);
     children_.push_back(static_cast<std::uint32_t>(tets_.size() - before));

@@ -69,7 +69,7 @@ public:
 
     /// As a quadratic tet of which nothing is kept.
     void pass_over() { children_.push_back(0); }
-    /// Adds the tet of its corners, whatever its values.
+    /// Adds a tet of points of it that have not all a value, as not all of its nodes have.
     void keep_whole(std::uint32_t index);
     /// What has been added since the last call.
     Bisected take();

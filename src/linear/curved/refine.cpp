@@ -139,8 +139,8 @@ bool has_folds(const std::vector<Bisected>& blocks, const Grid& user, const Line
     return folded_cells(user, before, tets, points, bent) > 0;
 }
 
-/// Where isovalues meet nothing, what the first quadratic tet becomes stays, where none has only finite values the first one's
-/// corners: what contours takes no grid without cells.
+/// Where isovalues meet nothing, what the first quadratic tet becomes stays, where none has only finite values a part of the first
+/// one without a surface: what contours takes no grid without cells.
 void keep_one(std::vector<Bisected>& blocks, std::size_t count, std::size_t per_block, Bisector& bisector) {
     if (!std::ranges::all_of(blocks, [](const Bisected& block) { return block.tets.empty(); })) return;
     for (std::size_t b = 0; b < blocks.size(); ++b) {
