@@ -227,7 +227,13 @@ void add_sessions(nb::module_& module) {
             "normals"_a, "edge_ends"_a, "source_cells"_a, "ties"_a, "precision"_a, "method"_a.none(), "surfaces"_a,
             "split_cells"_a = false, "frame"_a.none() = nb::none(), "tolerance"_a.none() = nb::none(),
             "relative_tolerance"_a.none() = nb::none(), "geometry_tolerance"_a = 0.0, "distance"_a = 0.0,
-            "exact_vertices"_a = false, "expected_isovalues"_a = std::vector<double>(), "pack_all"_a = false);
+            "exact_vertices"_a = false, "expected_isovalues"_a = std::vector<double>(), "pack_all"_a = false)
+        .def(
+            "refine_for",
+            [](ContourOptions& self, const FieldsIn& fields) {
+                if (self.refine) self.refine->carried = fields_in(fields);
+            },
+            "fields"_a);
 
     nb::class_<Contour>(module, "Contour")
         .def(

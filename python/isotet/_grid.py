@@ -238,9 +238,11 @@ class Grid:
                                          split_cells, frame and frame._frame,
                                          *tolerances_in(tolerance, geometry_tolerance, distance),
                                          exact_vertices, values)  # fmt: skip
-        session = _isotet.Contour(self._grid, self._field(field, call, frame is not None, centre),
-                                  self._carried(fields, "fields"), self._carried(cell_fields, "cell_fields"), options,
-                                  call)  # fmt: skip
+        carried = self._carried(fields, "fields")
+        if isinstance(field, _isotet.PointField):  # of a cut
+            options.refine_for(carried)
+        session = _isotet.Contour(self._grid, self._field(field, call, frame is not None, centre), carried,
+                                  self._carried(cell_fields, "cell_fields"), options, call)  # fmt: skip
         return Surface._of(*session.extract(values, call))
 
     def slice(self, normal="x", origin=None, *, offsets: npt.ArrayLike | None = None, **options) -> Surface:
@@ -253,7 +255,8 @@ class Grid:
         offsets
             In place of an origin: the products of normal and point in the plane (z of the normal "z"), one or several.
         options
-            `fields`, `cell_fields` and all else that `contour` takes, but for isovalues and field.
+            `fields`, `cell_fields` and all else that `contour` takes, but for isovalues and field. With a tolerance curved cells
+            are refined for the carried fields, too.
 
         Raises ValueError for a normal of 0, and as `contour`.
 

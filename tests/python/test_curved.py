@@ -65,3 +65,16 @@ def test_exact_vertices_lie_on_the_quadratic_field():
     assert (exact.triangles == linear.triangles).all()
     session = isotet.Contour(ball(), "d", precision="float64", exact_vertices=True)
     assert (session.contour(0.5).points == exact.points).all()
+
+
+def test_cuts_follow_the_fields_that_they_carry():
+    """A cut is straight, but the fields on it are not."""
+    grid = ball()
+    for cut_by in (lambda **how: grid.slice("z", (0, 0, 0.3), **how), lambda **how: grid.slice_sphere((0, 0, 0), 0.6, **how)):
+        off = []
+        for tolerance in (None, "0.1%"):
+            cut = cut_by(tolerance=tolerance)
+            off.append(np.abs(cut.fields["d"] - (cut.points.astype(float) ** 2).sum(axis=1)).max())
+        assert off[1] < off[0] / 3
+    plane = [grid.slice("z", (0, 0, 0.3), tolerance="0.1%", fields=fields) for fields in (None, [])]
+    assert len(plane[0].triangles) > len(plane[1].triangles)
