@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numbers
 import operator
+import sys
 
 import numpy as np
 
@@ -22,9 +23,15 @@ _SOLID = ("tetra", "hexahedron", "wedge", "pyramid", "polyhedron")
 _TYPE_OF_CORNERS = {4: 10, 8: 12, 6: 13, 5: 14}
 
 
+def _has_masked(array) -> bool:
+    """Whether it is a masked array with masked values. There is none where numpy.ma, which is slow to import, was not."""
+    ma = sys.modules.get("numpy.ma")
+    return ma is not None and isinstance(array, ma.MaskedArray) and bool(ma.is_masked(array))
+
+
 def _native(what: str, array, integers_only: bool = False) -> np.ndarray:
     """A contiguous array of a type that isotet has."""
-    if isinstance(array, np.ma.MaskedArray) and np.ma.is_masked(array):
+    if _has_masked(array):
         raise ValueError(f"{what} is a masked array with masked values: only values may have some, which are no data")
     if hasattr(array, "__dlpack__") and not hasattr(array, "__array__"):
         array = np.from_dlpack(array)
@@ -53,7 +60,7 @@ def points_in(points) -> np.ndarray:
 
 def values_in(what: str, values) -> np.ndarray:
     """One or two dimensions; masked values become NaN."""
-    if isinstance(values, np.ma.MaskedArray) and np.ma.is_masked(values):
+    if _has_masked(values):
         keeps = values.dtype.kind == "f"
         values = (values if keeps else values.astype(np.float64)).filled(np.nan)
     array = _native(what, values)
@@ -166,7 +173,7 @@ def isovalues_in(isovalues) -> list[float]:
             raise ValueError("an isovalue is beyond the range of float64") from None
     if array.dtype.kind not in "iuf":
         raise TypeError(f"isovalues is {_shortened(isovalues)}, but must be a number, or several")
-    if isinstance(isovalues, np.ma.MaskedArray) and np.ma.is_masked(isovalues):
+    if _has_masked(isovalues):
         raise ValueError("isovalues is a masked array with masked values")
     return array.astype(np.float64).tolist()
 
