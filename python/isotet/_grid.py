@@ -178,13 +178,13 @@ class Grid:
             raise ValueError(f"{of} has no '{missing[0]}': there are {', '.join(own) or 'none'}")
         return [(name, own[name]) for name in fields]
 
-    def contour(self, isovalues: npt.ArrayLike, field=None, *, normals: str = "none",
+    def contour(self, isovalues: npt.ArrayLike, field: npt.ArrayLike | str | None = None, *, normals: str = "none",
                 fields: Mapping[str, Any] | Iterable[str] | None = None,
                 cell_fields: Mapping[str, Any] | Iterable[str] | None = None, edge_ends: bool = False,
                 source_cells: bool = False, ties: str = "merge", precision: str = "float32", method: str | None = None,
                 split_cells: bool = False, frame: Frame | None = None, tolerance: float | str | None = None,
-                geometry_tolerance: float = 0.0, distance: float = 0.0, exact_vertices: bool = False,
-                centre: str = "mean", threads: int = 0, progress: Progress | None = None) -> Surface:  # fmt: skip
+                geometry_tolerance: float = 0.0, distance: float = 0.0, exact_vertices: bool = False, centre: str = "mean",
+                threads: int = 0, progress: Progress | None = None) -> Surface:  # fmt: skip
         """The surface on which a field has a value. Nothing is kept: for many surfaces see `pack` and `Contour`.
 
         isovalues
@@ -245,7 +245,8 @@ class Grid:
                                   self._carried(cell_fields, "cell_fields"), options, call)  # fmt: skip
         return Surface._of(*session.extract(values, call))
 
-    def slice(self, normal="x", origin=None, *, offsets: npt.ArrayLike | None = None, **options) -> Surface:
+    def slice(self, normal: npt.ArrayLike | str = "x", origin: npt.ArrayLike | None = None, *,
+              offsets: npt.ArrayLike | None = None, **options: Any) -> Surface:  # fmt: skip
         """The cut along a plane, or along several parallel ones, as a surface that carries all fields of points and cells.
 
         normal
@@ -274,14 +275,15 @@ class Grid:
             places = [direction[0] * point[0] + direction[1] * point[1] + direction[2] * point[2]]
         return self._cut(_isotet.plane_field, (0, 0, 0), direction, places, options)
 
-    def slice_sphere(self, centre, radius: npt.ArrayLike, **options) -> Surface:
+    def slice_sphere(self, centre: npt.ArrayLike, radius: npt.ArrayLike, **options: Any) -> Surface:
         """The cut along a sphere, or along several around one point; facing outwards. `options` as for `slice`.
 
         Raises ValueError for a negative radius, and as `contour`.
         """
         return self._cut(_isotet.sphere_field, place_in("centre", centre), (0, 0, 1), isovalues_in(radius), options)
 
-    def slice_cylinder(self, point, axis, radius: npt.ArrayLike, **options) -> Surface:
+    def slice_cylinder(self, point: npt.ArrayLike, axis: npt.ArrayLike | str, radius: npt.ArrayLike,
+                       **options: Any) -> Surface:  # fmt: skip
         """The cut along a cylinder without ends, or along several around one axis through `point`. `axis` as the `normal` of
         `slice`, `options` as there.
 
@@ -296,8 +298,8 @@ class Grid:
         options.setdefault("cell_fields", list(self.cell_fields))
         return self.contour(sizes, field, **options)
 
-    def isovalues_at(self, percents: npt.ArrayLike, field=None, *, of: str = "volume", threads: int = 0,
-                     progress: Progress | None = None) -> list[float]:  # fmt: skip
+    def isovalues_at(self, percents: npt.ArrayLike, field: npt.ArrayLike | str | None = None, *, of: str = "volume",
+                     threads: int = 0, progress: Progress | None = None) -> list[float]:  # fmt: skip
         """Isovalues by what lies below them, in percent.
 
         of
@@ -311,7 +313,7 @@ class Grid:
         call = call_options(threads, progress)
         return _isotet.isovalues_at(self._grid, self._field(field, call), isovalues_in(percents), of == "volume", call)
 
-    def volumes(self, isovalues: npt.ArrayLike, field=None, *, threads: int = 0,
+    def volumes(self, isovalues: npt.ArrayLike, field: npt.ArrayLike | str | None = None, *, threads: int = 0,
                 progress: Progress | None = None) -> dict[str, Any]:  # fmt: skip
         """Area of the isosurfaces and volume below them, without making them: "area" and "volume_below", one an isovalue, and the
         "volume" of the grid where the field has values. In any order of the isovalues.
@@ -326,15 +328,15 @@ class Grid:
         places[order] = np.arange(len(order))
         return {**measured, "area": measured["area"][places], "volume_below": measured["volume_below"][places]}
 
-    def pack(self, field=None, *, gradients: bool = False, source_cells: bool = False, split_cells: bool = False,
-             precision: str = "float32", frame: Frame | None = None, threads: int = 0,
+    def pack(self, field: npt.ArrayLike | str | None = None, *, gradients: bool = False, source_cells: bool = False,
+             split_cells: bool = False, precision: str = "float32", frame: Frame | None = None, threads: int = 0,
              progress: Progress | None = None) -> PackedGrid:  # fmt: skip
         """Packs the grid once, to contour it many times: `pack` of this grid and field."""
         return pack(self, values=field, gradients=gradients, source_cells=source_cells, split_cells=split_cells,
                     precision=precision, frame=frame, threads=threads, progress=progress)  # fmt: skip
 
-    def survey(self, field=None, *, fields: Mapping[str, Any] | Iterable[str] | None = None, split_cells: bool = False,
-               threads: int = 0, progress: Progress | None = None) -> bytes:  # fmt: skip
+    def survey(self, field: npt.ArrayLike | str | None = None, *, fields: Mapping[str, Any] | Iterable[str] | None = None,
+               split_cells: bool = False, threads: int = 0, progress: Progress | None = None) -> bytes:  # fmt: skip
         """What this piece of a grid says of itself, some 800 bytes: `make_frame` joins those of all pieces.
 
         field, fields, split_cells
@@ -354,10 +356,12 @@ class Grid:
             raise ValueError(f"index is {index}, but must be from 0 to {count - 1}")
         return Grid._of(_isotet.take_piece(self._grid, index, count, call_options(0, None)))
 
-    def solid(self, field=None, *, above: float | None = None, below: float | None = None, fields=None, cell_fields=None,
-              normals: str = "none", edge_ends: bool = False, source_cells: bool = False, precision: str = "float32",
-              split_cells: bool = False, tolerance: float | str | None = None, geometry_tolerance: float = 0.0,
-              distance: float = 0.0, threads: int = 0, progress: Progress | None = None) -> Surface:  # fmt: skip
+    def solid(self, field: npt.ArrayLike | str | None = None, *, above: float | None = None, below: float | None = None,
+              fields: Mapping[str, Any] | Iterable[str] | None = None,
+              cell_fields: Mapping[str, Any] | Iterable[str] | None = None, normals: str = "none", edge_ends: bool = False,
+              source_cells: bool = False, precision: str = "float32", split_cells: bool = False,
+              tolerance: float | str | None = None, geometry_tolerance: float = 0.0, distance: float = 0.0, threads: int = 0,
+              progress: Progress | None = None) -> Surface:  # fmt: skip
         """The part of the grid where a field is at least `above` and less than `below`, as a closed surface: one of
         `Solids`, which is faster for several.
 
@@ -369,10 +373,12 @@ class Grid:
                         progress=progress)  # fmt: skip
         return solids.solid(above=above, below=below, threads=threads, progress=progress)
 
-    def clip(self, field=None, *, above: float | None = None, below: float | None = None, fields=None, cell_fields=None,
-             polyhedra: bool = True, edge_ends: bool = False, precision: str = "float32", split_cells: bool = False,
-             tolerance: float | str | None = None, geometry_tolerance: float = 0.0, distance: float = 0.0,
-             threads: int = 0, progress: Progress | None = None) -> Grid:  # fmt: skip
+    def clip(self, field: npt.ArrayLike | str | None = None, *, above: float | None = None, below: float | None = None,
+             fields: Mapping[str, Any] | Iterable[str] | None = None,
+             cell_fields: Mapping[str, Any] | Iterable[str] | None = None, polyhedra: bool = True, edge_ends: bool = False,
+             precision: str = "float32", split_cells: bool = False, tolerance: float | str | None = None,
+             geometry_tolerance: float = 0.0, distance: float = 0.0, threads: int = 0,
+             progress: Progress | None = None) -> Grid:  # fmt: skip
         """The cells where a field is at least `above` and less than `below`: one of `Clipper`, which is faster for several.
 
         Raises ValueError as `Grid.contour`, and where neither end is given.
@@ -387,7 +393,7 @@ class Grid:
                           distance=distance, threads=threads, progress=progress)  # fmt: skip
         return clipper.clip(above=above, below=below, polyhedra=polyhedra, threads=threads, progress=progress)
 
-    def without_cells(self, marks, *, bits: int = 57) -> Grid:
+    def without_cells(self, marks: npt.ArrayLike, *, bits: int = 57) -> Grid:
         """The grid without cells whose `marks`, one integer a cell, have one of the `bits`: those of VTK's ghost cells. Cells
         keep their numbers.
 
@@ -522,7 +528,7 @@ class PackedGrid:
                 for name, values in (fields or {}).items()]  # fmt: skip
         _isotet.save_packed(self._packed, os.fspath(path), more, time, call)
 
-    def set_field(self, values, *, name: str = "values", frame: Frame | None = None, threads: int = 0,
+    def set_field(self, values: npt.ArrayLike, *, name: str = "values", frame: Frame | None = None, threads: int = 0,
                   progress: Progress | None = None) -> None:  # fmt: skip
         """Another field on the same cells, or its next time step: one value a point. Surfaces that exist stay as they are.
 
@@ -534,7 +540,8 @@ class PackedGrid:
     def _framed(self, frame: Frame | None) -> _isotet.PackedGrid:
         return self._packed if frame is None else self._packed.with_frame(frame._frame)
 
-    def set_points(self, points, *, frame: Frame | None = None, threads: int = 0, progress: Progress | None = None) -> None:
+    def set_points(self, points: Any, *, frame: Frame | None = None, threads: int = 0,
+                   progress: Progress | None = None) -> None:  # fmt: skip
         """Other coordinates of the same points: a mesh that moves.
 
         Raises ValueError for another number of points, and where a cell turned over: pack again. The grid is then as before.
@@ -618,11 +625,12 @@ class Contour:
 
     __slots__ = ("_session", "_options", "_refinement", "_centre", "_grid", "_given", "__weakref__")
 
-    def __init__(self, grid: Grid, field=None, *, fields=None, cell_fields=None, normals: str = "none",
-                 edge_ends: bool = False, source_cells: bool = False, ties: str = "merge", precision: str = "float32",
-                 method: str | None = None, split_cells: bool = False, surfaces: int = 0,
-                 frame: Frame | None = None, tolerance: float | str | None = None,
-                 geometry_tolerance: float = 0.0, distance: float = 0.0,
+    def __init__(self, grid: Grid, field: npt.ArrayLike | str | None = None, *,
+                 fields: Mapping[str, Any] | Iterable[str] | None = None,
+                 cell_fields: Mapping[str, Any] | Iterable[str] | None = None, normals: str = "none", edge_ends: bool = False,
+                 source_cells: bool = False, ties: str = "merge", precision: str = "float32", method: str | None = None,
+                 split_cells: bool = False, surfaces: int = 0, frame: Frame | None = None,
+                 tolerance: float | str | None = None, geometry_tolerance: float = 0.0, distance: float = 0.0,
                  exact_vertices: bool = False, centre: str = "mean"):  # fmt: skip
         call = call_options(0, None)
         words_in(normals=normals, ties=ties, precision=precision)
@@ -637,7 +645,9 @@ class Contour:
     def _options_with(self, frame: Frame | None) -> _isotet.ContourOptions:
         return _isotet.ContourOptions(*self._options, frame and frame._frame, *self._refinement)
 
-    def set(self, grid: Grid, field=None, *, fields=None, cell_fields=None, frame: Frame | None = None, threads: int = 0,
+    def set(self, grid: Grid, field: npt.ArrayLike | str | None = None, *,
+            fields: Mapping[str, Any] | Iterable[str] | None = None,
+            cell_fields: Mapping[str, Any] | Iterable[str] | None = None, frame: Frame | None = None, threads: int = 0,
             progress: Progress | None = None) -> str:  # fmt: skip
         """Another grid, field or time step. Arrays may be the same, the same in other memory, or changed in place.
 
@@ -727,11 +737,12 @@ class Solids:
 
     __slots__ = ("_solids", "__weakref__")
 
-    def __init__(self, grid: Grid, field=None, *, fields=None, cell_fields=None, normals: str = "none",
-                 edge_ends: bool = False, source_cells: bool = False, precision: str = "float32",
-                 method: str | None = None, split_cells: bool = False, tolerance: float | str | None = None,
-                 geometry_tolerance: float = 0.0, distance: float = 0.0, centre: str = "mean", threads: int = 0,
-                 progress: Progress | None = None):  # fmt: skip
+    def __init__(self, grid: Grid, field: npt.ArrayLike | str | None = None, *,
+                 fields: Mapping[str, Any] | Iterable[str] | None = None,
+                 cell_fields: Mapping[str, Any] | Iterable[str] | None = None, normals: str = "none", edge_ends: bool = False,
+                 source_cells: bool = False, precision: str = "float32", method: str | None = None, split_cells: bool = False,
+                 tolerance: float | str | None = None, geometry_tolerance: float = 0.0, distance: float = 0.0,
+                 centre: str = "mean", threads: int = 0, progress: Progress | None = None):  # fmt: skip
         call = call_options(threads, progress)
         options = _isotet.ContourOptions(normals, edge_ends, source_cells, "merge", precision, method, 0, split_cells,
                                          None, *tolerances_in(tolerance, geometry_tolerance, distance))  # fmt: skip
@@ -778,7 +789,9 @@ class Clipper:
 
     __slots__ = ("_clipper", "__weakref__")
 
-    def __init__(self, grid: Grid, field=None, *, fields=None, cell_fields=None, edge_ends: bool = False,
+    def __init__(self, grid: Grid, field: npt.ArrayLike | str | None = None, *,
+                 fields: Mapping[str, Any] | Iterable[str] | None = None,
+                 cell_fields: Mapping[str, Any] | Iterable[str] | None = None, edge_ends: bool = False,
                  precision: str = "float32", method: str | None = None, split_cells: bool = False,
                  tolerance: float | str | None = None, geometry_tolerance: float = 0.0, distance: float = 0.0,
                  centre: str = "mean", threads: int = 0, progress: Progress | None = None):  # fmt: skip
@@ -815,10 +828,10 @@ class Clipper:
         return "<isotet.Clipper>"
 
 
-def solid(points, cells, values, *, above: float | None = None, below: float | None = None, offsets=None, types=None,
-          fields: Mapping[str, Any] | None = None, cell_fields: Mapping[str, Any] | None = None, normals: str = "none",
-          precision: str = "float32", split_cells: bool = False, threads: int = 0,
-          progress: Progress | None = None) -> Surface:  # fmt: skip
+def solid(points: Any, cells: Any, values: npt.ArrayLike, *, above: float | None = None, below: float | None = None,
+          offsets: npt.ArrayLike | None = None, types: npt.ArrayLike | None = None, fields: Mapping[str, Any] | None = None,
+          cell_fields: Mapping[str, Any] | None = None, normals: str = "none", precision: str = "float32",
+          split_cells: bool = False, threads: int = 0, progress: Progress | None = None) -> Surface:  # fmt: skip
     """The part of a grid between isovalues as a closed surface: `Solids.solid` of arrays as `contour` takes them.
 
     above, below
@@ -839,12 +852,13 @@ def solid(points, cells, values, *, above: float | None = None, below: float | N
                       precision=precision, split_cells=split_cells, threads=threads, progress=progress)  # fmt: skip
 
 
-def contour(points, cells, values, isovalues: npt.ArrayLike, *, offsets=None, types=None, normals: str = "none",
-            fields: Mapping[str, Any] | None = None, cell_fields: Mapping[str, Any] | None = None,
-            edge_ends: bool = False, source_cells: bool = False, ties: str = "merge", precision: str = "float32",
-            method: str | None = None, split_cells: bool = False, frame: Frame | None = None,
-            tolerance: float | str | None = None, geometry_tolerance: float = 0.0, distance: float = 0.0,
-            exact_vertices: bool = False, threads: int = 0, progress: Progress | None = None) -> Surface:  # fmt: skip
+def contour(points: Any, cells: Any, values: npt.ArrayLike, isovalues: npt.ArrayLike, *, offsets: npt.ArrayLike | None = None,
+            types: npt.ArrayLike | None = None, normals: str = "none", fields: Mapping[str, Any] | None = None,
+            cell_fields: Mapping[str, Any] | None = None, edge_ends: bool = False, source_cells: bool = False,
+            ties: str = "merge", precision: str = "float32", method: str | None = None, split_cells: bool = False,
+            frame: Frame | None = None, tolerance: float | str | None = None, geometry_tolerance: float = 0.0,
+            distance: float = 0.0, exact_vertices: bool = False, threads: int = 0,
+            progress: Progress | None = None) -> Surface:  # fmt: skip
     """The surface on which values at the points of a grid, linear in each tetrahedron, equal an isovalue.
 
     points, cells, offsets, types
@@ -874,8 +888,9 @@ def contour(points, cells, values, isovalues: npt.ArrayLike, *, offsets=None, ty
                         threads=threads, progress=progress)  # fmt: skip
 
 
-def pack(points, cells=None, values=None, *, offsets=None, types=None, gradients: bool = False, source_cells: bool = False,
-         split_cells: bool = False, precision: str = "float32", frame: Frame | None = None, threads: int = 0,
+def pack(points: Any, cells: Any = None, values: npt.ArrayLike | str | None = None, *, offsets: npt.ArrayLike | None = None,
+         types: npt.ArrayLike | None = None, gradients: bool = False, source_cells: bool = False, split_cells: bool = False,
+         precision: str = "float32", frame: Frame | None = None, threads: int = 0,
          progress: Progress | None = None) -> PackedGrid:  # fmt: skip
     """Packs a grid once, to contour it many times: about 10 bytes a tetrahedron stay.
 

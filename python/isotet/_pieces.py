@@ -4,12 +4,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from . import _isotet
 from ._arrays import points_in
 from ._call import Progress, call_options
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
 
 
 class Frame:
@@ -68,7 +72,7 @@ def make_frame(surveys: Iterable[bytes]) -> Frame:
     return Frame._of(_isotet.make_frame(list(surveys)))
 
 
-def number_points(points, *, threads: int = 0, progress: Progress | None = None) -> np.ndarray:
+def number_points(points: npt.ArrayLike, *, threads: int = 0, progress: Progress | None = None) -> np.ndarray:
     """Numbers for ``Grid(..., point_numbers=...)`` where the points of a grid have none: their ranks by x, then y, then z.
     Pieces rank the points that they share alike.
 

@@ -18,6 +18,7 @@ from ._call import Progress, call_options
 
 if TYPE_CHECKING:
     import meshio
+    import numpy.typing as npt
     import pyvista
     import trimesh
     from vtkmodules.vtkCommonDataModel import vtkPolyData
@@ -50,8 +51,8 @@ class Surface:
 
     __slots__ = ("_surface", "_how", "__weakref__")
 
-    def __init__(self, points, triangles, *, normals=None, fields: Mapping[str, Any] | None = None,
-                 cell_fields: Mapping[str, Any] | None = None):  # fmt: skip
+    def __init__(self, points: Any, triangles: npt.ArrayLike, *, normals: npt.ArrayLike | None = None,
+                 fields: Mapping[str, Any] | None = None, cell_fields: Mapping[str, Any] | None = None):  # fmt: skip
         corners = np.asarray(triangles)
         if corners.ndim != 2 or corners.shape[1] != 3 or corners.dtype.kind not in "iu":
             raise ValueError(
@@ -333,8 +334,8 @@ def parts(surface: Surface, *, threads: int = 0, progress: Progress | None = Non
     return _isotet.find_parts(surface._surface, call_options(threads, progress))
 
 
-def check(surface: Surface, *, grid: Grid | None = None, field=None, closed: bool = False, weld: bool = False,
-          max_findings: int = 5, threads: int = 0, progress: Progress | None = None) -> SurfaceReport:  # fmt: skip
+def check(surface: Surface, *, grid: Grid | None = None, field: npt.ArrayLike | str | None = None, closed: bool = False,
+          weld: bool = False, max_findings: int = 5, threads: int = 0, progress: Progress | None = None) -> SurfaceReport:  # fmt: skip
     """Measures a surface and looks for what should not be there.
 
     closed

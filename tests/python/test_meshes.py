@@ -3,8 +3,6 @@
 
 import copy
 import pickle
-import subprocess
-import sys
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 
@@ -14,7 +12,7 @@ import pytest
 import pyvista as pv
 
 import isotet
-from conftest import TREE, same
+from conftest import same
 
 SHAPES = ["kuhn", "hex", "wedge", "pyramid", "mixed", "tet10"]
 
@@ -154,35 +152,3 @@ def area_of(grid: isotet.Grid) -> float:
 def test_pools_of_processes_take_grids(sphere):
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
         assert list(pool.map(area_of, [sphere, sphere])) == [area_of(sphere)] * 2
-
-
-TYPED = """
-import numpy as np
-import isotet
-grid = isotet.make("kuhn", 4, ["sphere"])
-surface: isotet.Surface = grid.contour(np.linspace(0, 1, 3))
-surface = grid.contour(np.float32(0.5), normals="vertex")
-isotet.contour(np.zeros((4, 3)), [[0, 1, 2, 3]], np.zeros(4), [0.5, np.float64(0.3)])
-again = isotet.Grid(grid.to_pyvista())
-session = isotet.Contour(again, np.zeros(3))
-session.set(again, [1.0, 2.0])
-print(surface.to_pyvista(), surface.to_vtk(), isotet.Error, isotet.__version__)
-grid.contour(0.5, normal="face")  # type: ignore[call-arg]
-"""
-SETTINGS = """
-[mypy]
-strict = True
-[mypy-pyvista.*,vtkmodules.*,meshio.*,trimesh.*,dask.*]
-follow_imports = skip
-"""
-
-
-def test_types_hold_in_strict_code(tmp_path):
-    """A comment that ignores nothing is an error, too."""
-    pytest.importorskip("mypy")
-    (tmp_path / "typed.py").write_text(TYPED)
-    (tmp_path / "mypy.ini").write_text(SETTINGS)
-    files = ["typed.py", *sorted((TREE / "examples/python").glob("*.py"))]
-    done = subprocess.run([sys.executable, "-m", "mypy", "--cache-dir", tmp_path / "cache", *files], cwd=tmp_path,
-                          capture_output=True, text=True, timeout=250, check=False)  # fmt: skip
-    assert done.returncode == 0, done.stdout
