@@ -63,10 +63,10 @@ class _Block(NamedTuple):
         arrays = arrays_of(self.grid.GetPointData(), self.scalars.replaced)
         return sorted((named for named in arrays if not (normals and named[0] == "Normals")), key=lambda named: named[0])
 
-    def times(self) -> tuple[int, ...]:
+    def times(self, session: Session) -> tuple[int, ...]:
         """Modified times of what a frame follows from."""
         parts = [self.grid.GetPoints().GetData(), self.scalars.array, self.numbers, self.grid.GetPointData()]
-        return Session.times_of(self.grid) + tuple(part.GetMTime() for part in parts if part is not None)
+        return session.times + tuple(part.GetMTime() for part in parts if part is not None)
 
 
 def _leaves(data, out) -> Iterator[tuple[int, Any, Any]]:
@@ -314,7 +314,7 @@ class IsotetContour(ContourProperties):
                failure: BaseException | None, has_array: bool) -> tuple[Ranks, bool]:
         """What all ranks must know before one extracts; and whether all points have global ids. Raises alike on all."""
         ranks = Ranks(self._controller)
-        times = [block.times() for block in blocks] if failure is None else None
+        times = [block.times(self._sessions[block.number]) for block in blocks] if failure is None else None
         failed, changed, found, lacks, many, unnumbered = ranks.any(
             [failure is not None, times is None or times != self._framed, has_array, missing is not None, len(blocks) > 1,
              any(block.numbers is None for block in blocks)])  # fmt: skip

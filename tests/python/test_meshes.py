@@ -152,3 +152,11 @@ def area_of(grid: isotet.Grid) -> float:
 def test_pools_of_processes_take_grids(sphere):
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
         assert list(pool.map(area_of, [sphere, sphere])) == [area_of(sphere)] * 2
+
+
+def test_grids_of_flat_cells_alone_say_that_there_is_nothing_to_contour():
+    grid = isotet.Grid([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [0, 1, 2], offsets=[0, 3], types=[5], fields={"f": [0.0, 1.0, 2.0]})
+    for use in (lambda: grid.contour(0.5, "f"), lambda: grid.pack("f"), lambda: grid.slice("x"), lambda: grid.clip("f", below=1)):
+        with pytest.raises(ValueError, match=r"no cell that can be contoured \(1 x triangle\)"):
+            use()
+    assert isinstance(grid.survey("f"), bytes), "it may be a piece of a grid that has others"
