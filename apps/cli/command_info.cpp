@@ -135,7 +135,9 @@ std::string first_table(const FirstView& first) {
         case FirstDraw::isosurfaces: return fmt::format("isosurfaces of {}: {}", first.field, text_of(first.reason));
         case FirstDraw::field_on_boundary:
             return fmt::format("the boundary, coloured by {}: {}", first.field,
-                               first.rough ? "it jumps from cell to cell" : "the grid is one cell thick, or flat");
+                               first.rough  ? "it jumps from cell to cell"
+                               : first.flat ? "its cells are flat"
+                                            : "the grid is one cell thick");
         case FirstDraw::regions_on_boundary:
             return fmt::format("the boundary, coloured by {}: no field varies, but regions do", first.field);
         case FirstDraw::boundary: break;

@@ -84,7 +84,7 @@ ISOTET_API Result<void> color_boundary(Surface& boundary, const Grid& grid, cons
                                        const Run& run = {});
 
 /// The same of a field of points that fits. The grid's cells are needed only where the boundary has points that linearize() has
-/// made; the pass over them is then more.
+/// made: that costs another linearize().
 ISOTET_API Result<void> color_boundary_by_points(Surface& boundary, const Grid& grid, const ColorField& field,
                                                  const Run& run = {});
 

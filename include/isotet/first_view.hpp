@@ -35,6 +35,7 @@ struct FirstView {
     Association association = Association::point;
     FirstReason reason = FirstReason::nothing;
     bool rough = false; ///< the field varies as much within cells as over the grid
+    bool flat = false;  ///< the grid has flat cells alone
 };
 
 /// "its name", "the file marks it", ...: why a field was chosen, to complete "'p' is shown first: ".

@@ -100,9 +100,9 @@ struct GridReport {
     std::size_t inverted_tets = 0;          ///< tets whose sign is not that of most, repeated ones counted
     std::size_t flat_tets = 0;              ///< tets of volume exactly zero, repeated ones counted
     std::size_t unused_points = 0;          ///< points that no tet uses
-    std::array<double, 3> lower{}, upper{}; ///< bounds of the used points; without tets, of all
+    std::array<double, 3> lower{}, upper{}; ///< bounds of the used points; without tets of all that are finite
 
-    // Counted only with SurveyOptions::faces.
+    // Counted only with SurveyOptions::faces, and where there are tets.
     std::size_t repeated_tets = 0;    ///< tets with the same four corners as an earlier one; packing keeps the first
     std::size_t duplicate_points = 0; ///< used points with the coordinates of a used point of a lower number
     std::size_t boundary_faces = 0;   ///< faces that one cell has: tets, those of a twisted cell turned as the cell,

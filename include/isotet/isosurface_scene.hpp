@@ -116,7 +116,7 @@ ISOTET_API Plane stretched(const Plane& plane, std::span<const double, 3> factor
 /// Formats of corner-point grids: reservoirs of kilometres, some metres high.
 ISOTET_API bool is_of_reservoirs(std::string_view format) noexcept;
 
-/// Where points reach 50 times as wide as high or more, factors that make it about four times: 1, 2 or 5 times a power of
+/// Where points reach 50 times as wide as high or more, factors that make it 4 to 10 times: 1, 2 or 5 times a power of
 /// ten for z. Else nothing.
 /// Cost   one pass over the points
 ISOTET_API std::optional<std::array<double, 3>> default_stretch(const Array& points);

@@ -57,7 +57,7 @@ struct RefinementReport {
     std::uint64_t tets = 0, points = 0; ///< linear tets and points between nodes that were made
     bool refined = false;               ///< by refine(): else each edge with a node was bisected once
     double tolerance = 0;               ///< of the field, in its unit, as asked for
-    std::uint64_t carried_fields = 0;   ///< RefineOptions::carried that were followed, too
+    bool carried_left_out = false;      ///< memory does not suffice to follow RefineOptions::carried
     double field_bound = 0;             ///< proven: the field's error is nowhere larger in the tets that were made
     double geometry_bound = 0;          ///< proven: the tets are nowhere farther from the curved cells
     bool too_fine = false;              ///< an edge could not be bisected any further: bounds may exceed tolerances

@@ -17,7 +17,7 @@ namespace isotet {
 
 /// Both limits hold: triangles go until one of them is reached.
 ///
-/// `share`   of the triangles that may go, from 0 to below 1
+/// `share`   of the triangles that may go, from 0 to below 1; of a piece four stay, if it has so many
 /// `error`   how far the surface may move, in units of the grid, by meshoptimizer's measure: a mean, no bound
 struct ReduceOptions {
     double share = 0.9;

@@ -31,11 +31,13 @@ struct RefineOptions {
     /// deviate by this times the least gradient of the field at its ends, but always by 10^-5 of the range. 0: not looked
     /// at. What of tolerance, relative_tolerance and distance is above 0 holds together.
     double distance = 0;
-    /// Other fields of the points, of floating numbers, any components: cells are bisected for them, too, where a component is
-    /// off by more than `carried_tolerance` of its range, but for them no edge to less than a quarter of a cell's. For cuts,
-    /// whose own field is made of the places: fields that they carry follow the cells' functions, too.
+    /// Other fields of the points, any components: cells are bisected for them, too, where a component is off by more than
+    /// `carried_tolerance` of its range, but for them no edge to less than a quarter of a cell's. For cuts, whose own field is
+    /// made of the places: fields that they carry follow the cells' functions, too. Of floating numbers: others are passed
+    /// over, and so are cells at whose nodes a component is not finite. Where memory does not suffice for them, none is
+    /// followed (RefinementReport::carried_left_out).
     std::vector<Field> carried = {};
-    double carried_tolerance = 0.01;
+    double carried_tolerance = 0.01; ///< 0: they are not followed
 };
 
 /// Makes linear tets of all cells that linearize() handles, so fine that the field, linear in each tet, differs from the
@@ -51,7 +53,7 @@ struct RefineOptions {
 /// Guarantees   conforming; the field's error is at most LinearGrid::refinement.field_bound, for the tets that are kept; the
 ///              same bytes for any thread count; with isovalues the same surfaces of these as without, to the triangle
 /// Cost         in proportion to the tets that it makes; 24 bytes a tet and 12 a point, and twice that for a while
-/// Errors       as linearize(); invalid_argument for a tolerance that is negative or not finite, or a field that does not fit;
+/// Errors       as linearize(); invalid_argument for a tolerance that is negative or not finite, or fields that do not fit;
 ///              out_of_memory, before memory runs out, where the tolerance asks for too many tets; cancelled
 /// Threads      safe from many threads on one grid
 /// Method       docs/cells.md

@@ -69,7 +69,7 @@ struct Simplified {
 /// Leaves triangles out until `wanted` are left, or the next one would move the piece farther than `limit`.
 Simplified simplify(const Piece& piece, std::size_t wanted, double limit) {
     constexpr std::size_t stride = 3 * sizeof(float);
-    constexpr std::size_t least = 4; // closed pieces of fewer enclose nothing
+    constexpr std::size_t least = 4; // of a piece: closed ones of fewer enclose nothing
     const auto scale =
         static_cast<double>(meshopt_simplifyScale(piece.positions.data(), piece.vertices.size(), stride));
     Simplified out;

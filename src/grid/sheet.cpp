@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -149,6 +150,18 @@ std::vector<std::uint64_t> number_points(std::vector<std::array<std::uint64_t, 3
     return used;
 }
 
+/// As check_cells() asks of contoured cells.
+Result<void> check_places(const Array& points, const std::vector<std::uint64_t>& used) {
+    for (const std::uint64_t point : used)
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            if (const double x = points.at(point, axis); !(std::abs(x) < 0x1p91))
+                return invalid_data(
+                    fmt::format("points[{}] has {} coordinate {}, but cells use the point, and coordinates "
+                                "must be finite and below 2^91",
+                                point, "xyz"[axis], x));
+    return {};
+}
+
 /// Of some points; both ends of edges are the points.
 void place_vertices(Surface& surface, const Array& points, const std::vector<std::uint64_t>& used) {
     std::vector<std::int64_t> ends(2 * used.size());
@@ -178,6 +191,7 @@ Result<Surface> sheet_of(const Grid& grid, const Progress& progress) {
     const std::vector<std::uint64_t> used = number_points(list.triangles, grid.points.tuples());
     if (used.size() > std::numeric_limits<std::uint32_t>::max())
         return invalid_data("flat cells have more than 2^32 points, but a surface that is drawn has fewer");
+    if (auto sound = check_places(grid.points, used); !sound) return sound.error();
     Surface surface;
     place_vertices(surface, grid.points, used);
     std::vector<std::uint32_t> triangles(3 * list.triangles.size());

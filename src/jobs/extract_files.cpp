@@ -273,6 +273,7 @@ Result<bool> ExtractRun::load(std::size_t step) {
     const core::Stopwatch reading;
     caller_.detail(fmt::format("reading step {}", step));
     grid_ = {};
+    if (plan_.contour.refine) plan_.contour.refine->carried = {};
     bool found = false;
     Result<std::optional<std::uint64_t>> cells_in_file = read_field_of(step, found);
     if (!cells_in_file) return cells_in_file.error();

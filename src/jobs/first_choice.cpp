@@ -118,7 +118,8 @@ std::string note_of(const FirstView& view) {
                            view.field);
     const char* how = view.draw != FirstDraw::field_on_boundary ? ""
                       : view.rough ? ", and colours the boundary, for it jumps from cell to cell"
-                                   : ", and colours the boundary, for the grid is one cell thick, or flat";
+                      : view.flat  ? ", and colours the cells, which are flat"
+                                   : ", and colours the boundary, for the grid is one cell thick";
     return fmt::format("no field was named: '{}' was taken ({}){}; `field` names another", view.field,
                        text_of(view.reason), how);
 }

@@ -196,11 +196,11 @@ Result<GridSummary> look_into(const InfoJob& job, Caller& caller) {
     const Result<Grid> grid = source->read({}, summary.step, caller);
     if (!grid) return grid.error();
     summary.point_type = grid->points.type();
-    summary.surveyed = job.survey;
     Result<GridReport> surveyed = survey(*grid, {.faces = job.survey}, caller.run());
     if (!surveyed) return surveyed.error();
     summary.report = *std::move(surveyed);
-    if (job.survey) {
+    summary.surveyed = job.survey && summary.report.tets > 0;
+    if (summary.surveyed) {
         const Result<std::uint64_t> hanging = count_hanging_points(*grid, caller.run());
         if (!hanging) return hanging.error();
         const Result<ClosedGrid> closed = close_hanging_points(*grid, caller.run());

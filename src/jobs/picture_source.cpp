@@ -116,7 +116,7 @@ bool PictureSource::wants_surfaces() const {
            (job_.slices.empty() && (job_.boundary_color_by.empty() || !job_.field.name.empty()));
 }
 
-/// Whether heights of the grid are stretched where it is flat, as no option says otherwise.
+/// Whether heights may be stretched by default.
 bool PictureSource::may_stretch() const {
     return job_.stretch.empty() && !surface_ && is_of_reservoirs(source_->info().format);
 }

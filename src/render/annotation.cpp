@@ -117,8 +117,7 @@ void Layout::thin_legend() {
     if (all < lines + least) return;
     const std::size_t kept = all - lines - 1;
     std::vector<LegendEntry> some;
-    for (std::size_t i = 0; i < kept; ++i)
-        some.push_back(std::move(entries_[kept == 1 ? 0 : i * (all - 1) / (kept - 1)]));
+    for (std::size_t i = 0; i < kept; ++i) some.push_back(std::move(entries_[i * (all - 1) / (kept - 1)]));
     some.push_back({Color{0, 0, 0, 0}, fmt::format("and {} more", all - kept)});
     entries_ = std::move(some);
 }

@@ -50,6 +50,10 @@ std::vector<std::string> notes_on(const RefinementReport& report) {
         out.push_back(fmt::format("{} curved cells were split at their nodes into {} tets, without a tolerance for the "
                                   "field",
                                   report.curved_cells, report.tets));
+    if (report.carried_left_out)
+        out.emplace_back(
+            "memory does not suffice to refine cells for the carried fields, too: these are linear between the "
+            "points that the contoured field needs");
     if (report.too_fine)
         out.push_back("some edges could not be bisected any further: the bound is larger than the tolerance");
     if (report.too_bent)

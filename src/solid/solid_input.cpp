@@ -42,10 +42,6 @@ Result<std::shared_ptr<const LinearGrid>> linear_of(const ContourInput& input, c
         all.isovalues = {};
         all.carried = input.point_fields;
         made = refine(input.grid, input.field, all, run);
-        if (!made && made.error().code == ErrorCode::out_of_memory) {
-            all.carried = {};
-            made = refine(input.grid, input.field, all, run);
-        }
     } else {
         made = linearize(input.grid, {}, run);
     }
@@ -70,9 +66,6 @@ Result<SolidInput> take_input(ContourInput given, const ContourOptions& options,
     auto linear = linear_of(given, options, run);
     if (!linear) return linear.error();
     out.linear = *std::move(linear);
-    const bool has_floats =
-        std::ranges::any_of(given.point_fields, [](const Field& field) { return is_floating(field.values.type()); });
-    const bool follows = !out.linear || !out.linear->refinement.refined || out.linear->refinement.carried_fields > 0;
     out.input = std::move(given);
     if (!out.linear) return out;
     Result<ContourInput> made = session::on_linear_grid(std::move(out.input), *out.linear, run);
@@ -80,10 +73,6 @@ Result<SolidInput> take_input(ContourInput given, const ContourOptions& options,
     out.input = *std::move(made);
     out.notes = out.linear->report.notes();
     std::ranges::move(session::notes_on(out.linear->refinement), std::back_inserter(out.notes));
-    if (has_floats && !follows)
-        out.notes.emplace_back(
-            "cells are refined for the contoured field alone: for the carried ones, too, memory does "
-            "not suffice");
     return out;
 }
 

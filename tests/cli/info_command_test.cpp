@@ -157,6 +157,7 @@ TEST_F(Program, InfoTellsWhatASurfaceHas) {
     EXPECT_EQ(report["points"], surface["vertices"]);
     EXPECT_EQ(report["cells_by_type"]["triangle"], surface["triangles"]);
     EXPECT_EQ(report["tets"], 0);
+    EXPECT_FALSE(report.contains("duplicate_points")) << "nothing is counted";
     EXPECT_EQ(report["fields"][0]["name"], "sphere");
 }
 

@@ -146,6 +146,8 @@ TEST(Boundary, RefusesBrokenFlatCells) {
     grid.cells.offsets = Array::own(std::vector<std::int64_t>{0, 2, 5});
     grid.cells.connectivity = Array::own(std::vector<std::int64_t>{0, 1, 0, 1, 2});
     EXPECT_EQ(boundary_of(grid).value().triangle_count(), 1u) << "a polygon of two corners has no area";
+    grid.points = Array::own(std::vector<float>{0, 0, 0, 1, 0, NAN, 0, 1, 0}, 3);
+    EXPECT_EQ(boundary_of(grid).error().message.substr(0, 37), "points[1] has z coordinate nan, but c");
 }
 
 TEST(Boundary, CanBeCancelled) {

@@ -60,7 +60,9 @@ struct ExtractJob {
     std::optional<std::vector<std::string>> with; ///< nothing: all point fields that the format can hold
     bool keep_degenerate = false;
     bool fail_if_empty = false;
-    bool allow_empty = false; ///< also where all isovalues are outside the field's range, which else is an error
+    bool allow_empty =
+        false; ///< also where all isovalues are outside the field's range, or a solid has nothing, which else
+               ///< is an error
     bool edge_ends = false;
     bool source_cells = false;
     bool split_cells = false;

@@ -212,12 +212,14 @@ std::vector<FieldInfo> describe_fields(const Grid& grid) {
     return infos;
 }
 
-FirstView first_view(const Grid& grid, const std::vector<FieldInfo>& fields) {
+namespace {
+
+FirstView chosen_view(const Grid& grid, const std::vector<FieldInfo>& fields, bool flat) {
     Judge judge(grid);
     std::vector<FirstCandidate> candidates = first_candidates(fields);
     add_named_as_regions(fields, candidates);
-    const bool has_no_surfaces = has_only_flat_cells(grid.cells) || judge.is_one_cell_thick();
-    const FirstDraw surfaces = has_no_surfaces ? FirstDraw::field_on_boundary : FirstDraw::isosurfaces;
+    const FirstDraw surfaces =
+        flat || judge.is_one_cell_thick() ? FirstDraw::field_on_boundary : FirstDraw::isosurfaces;
     const FirstCandidate* best = nullptr;
     const FirstCandidate* rough = nullptr;
     double most = 0;
@@ -244,6 +246,15 @@ FirstView first_view(const Grid& grid, const std::vector<FieldInfo>& fields) {
         return view;
     }
     return regions_of(grid, fields, judge);
+}
+
+} // namespace
+
+FirstView first_view(const Grid& grid, const std::vector<FieldInfo>& fields) {
+    const bool flat = has_only_flat_cells(grid.cells);
+    FirstView view = chosen_view(grid, fields, flat);
+    view.flat = flat;
+    return view;
 }
 
 bool field_varies(const Grid& grid, std::string_view name) {

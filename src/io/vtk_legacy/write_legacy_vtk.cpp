@@ -50,7 +50,7 @@ void write_header(WriteStream& stream, std::string_view dataset, const std::vect
     write_block(stream, points);
 }
 
-/// As int64, as VTK writes numbers of cells whatever it holds them in: meshio takes "int" for that, too.
+/// As int64, as VTK writes numbers of cells: meshio reads "int" as 64 bits, too.
 Column widened(const Column& narrow) {
     Column wide = narrow;
     if (size_of(narrow.type) == sizeof(std::int64_t)) return wide;

@@ -272,7 +272,6 @@ Result<LinearGrid> refined(const Grid& user, LinearGrid before, const Array* fie
     report.points = out.refined.count();
     report.refined = field != nullptr;
     report.tolerance = tolerance;
-    report.carried_fields = carried.arrays.size();
     report.wanted_distance = field ? options.distance : 0;
     report.isovalues = std::move(isovalues);
     out.refinement = std::move(report);
@@ -309,7 +308,13 @@ Result<LinearGrid> refine(const Grid& grid, const PointField& field, const Refin
                             field.name, field.values.tuples(), field.values.components(), grid.points.tuples()));
         auto split = linear::split_polyhedra(grid, {}, progress);
         if (!split || !has_curved_cells(grid.cells)) return split;
-        return linear::refined(grid, *std::move(split), &field.values, options, progress);
+        auto made = linear::refined(grid, *split, &field.values, options, progress);
+        if (made || made.error().code != ErrorCode::out_of_memory || options.carried.empty()) return made;
+        RefineOptions alone = options;
+        alone.carried = {};
+        made = linear::refined(grid, *std::move(split), &field.values, alone, progress);
+        if (made) made->refinement.carried_left_out = true;
+        return made;
     });
 }
 

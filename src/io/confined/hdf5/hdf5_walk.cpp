@@ -247,8 +247,8 @@ private:
         if (failed_) return;
         const auto file = named_file(file_, name, allow_outside_);
         if (const auto known = std::ranges::find(files_, *file, &WalkedFile::path); known != files_.end()) {
-            known->needed = known->needed || needed;
-            return;
+            if (known->needed || !needed) return;
+            known->needed = true; // if it was gone over, then with less to say
         }
         if (files_.size() == max_files) return fail(fmt::format("it links to more than {} files", max_files));
         files_.push_back({*file, needed});
