@@ -108,7 +108,7 @@ class IsotetContour(ContourProperties):
     True
     """
 
-    def __init__(self, **properties):
+    def __init__(self, **properties: Any) -> None:
         self._expected = 0
         self._threads = 0
         self._precision = "float32"

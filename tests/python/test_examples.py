@@ -1,6 +1,7 @@
 # Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 """Every example runs, from any folder, and leaves what it says."""
 
+import os
 import subprocess
 import sys
 
@@ -27,7 +28,7 @@ def run(path, folder) -> str:
 
 
 def test_all_are_known():
-    assert {path.stem for path in FOLDER.glob("*.py")} == set(LEAVES)
+    assert {path.stem for path in FOLDER.glob("*.py")} == {*LEAVES, "trame_slider"}
 
 
 @pytest.mark.parametrize("name", LEAVES)
@@ -44,3 +45,20 @@ def test_runs(name, tmp_path):
     if name == "time_series":
         assert "step 1: <isotet.Surface" in told and "new: field, clusters" in told
         assert isotet.read_surface(tmp_path / "wave_39.vtp").area > 1
+
+
+def test_the_slider_of_trame_moves_the_surface(tmp_path):
+    """The page is made, and its state changed as a browser does; it is not served."""
+    pytest.importorskip("trame_pyvista")
+    code = (
+        "from trame.app import get_server\n"
+        "import trame_slider\n"
+        "server = get_server('test'); contour = trame_slider.make_app(server); server.state.ready()\n"
+        "first = contour.GetOutput().GetNumberOfCells()\n"
+        "server.state.isovalue = 0.3; server.state.flush()\n"
+        "assert contour.GetValue(0) == 0.3 and 0 < contour.GetOutput().GetNumberOfCells() < first\n"
+    )
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(FOLDER), os.environ.get("PYTHONPATH", "")])}
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=250,
+                          check=False)  # fmt: skip
+    assert done.returncode == 0, done.stderr
