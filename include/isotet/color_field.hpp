@@ -83,8 +83,18 @@ ISOTET_API Result<FoundColors> find_colors(const Surface& surface, const std::st
 ISOTET_API Result<void> color_boundary(Surface& boundary, const Grid& grid, const ColorField& field,
                                        const Run& run = {});
 
-/// The same of a field of points that fits. The grid's cells are needed only where the boundary has points that linearize() has
-/// made: that costs another linearize().
+/// Fields of the grid's points at the vertices of a boundary_of() that grid, of any components, in the order of `fields`. The grid's
+/// cells are needed only where the boundary has points that linearize() has made: the fields are then continued there by
+/// LinearGrid::extend(), integers as float64.
+///
+/// `fields`   one tuple a point of the grid
+///
+/// Cost     a pass over the boundary a field; with points of linearize() that, once, and a copy of each field
+/// Errors   invalid_argument: a field does not fit the grid, or the boundary is of another one; as linearize()
+ISOTET_API Result<std::vector<Field>> fields_at_boundary(const Surface& boundary, const Grid& grid,
+                                                         std::span<const Field> fields, const Run& run = {});
+
+/// The same as color_boundary() of a field of points that fits, by fields_at_boundary().
 ISOTET_API Result<void> color_boundary_by_points(Surface& boundary, const Grid& grid, const ColorField& field,
                                                  const Run& run = {});
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -28,13 +30,17 @@ struct FaceHash {
     }
 };
 
-/// The values of some tuples.
+/// Some tuples.
 template <class Number>
 Array gathered(const Array& values, std::size_t count, const Number& number) {
+    const std::size_t components = values.components();
     return values.visit([&]<class Scalar>(std::span<const Scalar> scalars) {
-        std::vector<Scalar> out(count);
-        for (std::size_t i = 0; i < count; ++i) out[i] = scalars[number(i)];
-        return Array::own(std::move(out));
+        std::vector<Scalar> out(count * components);
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::size_t from = number(i) * components;
+            for (std::size_t c = 0; c < components; ++c) out[i * components + c] = scalars[from + c];
+        }
+        return Array::own(std::move(out), components);
     });
 }
 
@@ -98,22 +104,40 @@ Result<std::vector<std::uint64_t>> boundary_cells(const Surface& boundary, const
     return cells;
 }
 
-Result<void> color_boundary_by_points(Surface& boundary, const Grid& grid, const ColorField& field, const Run& run) {
+Result<std::vector<Field>> fields_at_boundary(const Surface& boundary, const Grid& grid, std::span<const Field> fields,
+                                              const Run& run) {
     const auto ends = boundary.edge_ends.as<std::int64_t>();
     const std::int64_t last = ends.empty() ? -1 : *std::ranges::max_element(ends);
-    Array values = field.values;
-    if (last >= static_cast<std::int64_t>(values.size())) { // points that linearize() has made
-        const Result<LinearGrid> linear = linearize({grid.points, grid.cells, {}, {}}, {}, run);
-        if (!linear) return linear.error();
-        Result<Array> longer = linear->extend(values, run);
-        if (!longer) return longer.error();
-        values = *std::move(longer);
-        if (last >= static_cast<std::int64_t>(values.size()))
-            return invalid_argument(fmt::format("the boundary has point {}, but the grid has {}", last, values.size()));
+    const auto is_short = [&](const Field& field) { return last >= static_cast<std::int64_t>(field.values.tuples()); };
+    std::optional<LinearGrid> linear;
+    if (std::ranges::any_of(fields, is_short)) { // of points that linearize() has made
+        Result<LinearGrid> made = linearize({grid.points, grid.cells, {}, {}}, {}, run);
+        if (!made) return made.error();
+        linear = *std::move(made);
     }
-    boundary.point_fields = {{field.name, scene::gathered(values, boundary.vertex_count(), [&](std::size_t i) {
-                                  return static_cast<std::size_t>(ends[2 * i]);
-                              })}};
+    std::vector<Field> found;
+    for (const Field& field : fields) {
+        Array values = field.values;
+        if (is_short(field)) {
+            Result<Array> longer = linear->extend(values, run);
+            if (!longer) return longer.error();
+            values = *std::move(longer);
+            if (last >= static_cast<std::int64_t>(values.tuples()))
+                return invalid_argument(
+                    fmt::format("the boundary has point {}, but the grid has {}", last, values.tuples()));
+        }
+        found.push_back({field.name, scene::gathered(values, boundary.vertex_count(), [&](std::size_t i) {
+                             return static_cast<std::size_t>(ends[2 * i]);
+                         })});
+    }
+    return found;
+}
+
+Result<void> color_boundary_by_points(Surface& boundary, const Grid& grid, const ColorField& field, const Run& run) {
+    const Field of_points{field.name, field.values};
+    Result<std::vector<Field>> found = fields_at_boundary(boundary, grid, std::span(&of_points, 1), run);
+    if (!found) return found.error();
+    boundary.point_fields = *std::move(found);
     return {};
 }
 

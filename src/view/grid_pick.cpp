@@ -18,17 +18,19 @@ namespace isotet::view {
 
 namespace {
 
-/// The tuples of these numbers; those of numbers beyond are the first.
-Array tuples_at(const Array& values, const std::vector<std::uint64_t>& numbers) {
+/// The tuples of these cells; NaN where no cell was found.
+Array tuples_of_cells(const Array& values, const std::vector<std::uint64_t>& cells) {
     const std::size_t components = values.components();
-    return values.visit([&]<class Scalar>(std::span<const Scalar> all) {
-        std::vector<Scalar> some(numbers.size() * components);
-        for (std::size_t i = 0; i < numbers.size(); ++i) {
-            const std::size_t from = numbers[i] < values.tuples() ? numbers[i] * components : 0;
-            std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(from), components,
-                        some.begin() + static_cast<std::ptrdiff_t>(i * components));
-        }
+    const auto gather = [&]<class Out, class Scalar>(std::vector<Out> some, std::span<const Scalar> all) {
+        for (std::size_t i = 0; i < cells.size(); ++i)
+            for (std::size_t c = 0; c < components && cells[i] < values.tuples(); ++c)
+                some[i * components + c] = static_cast<Out>(all[cells[i] * components + c]);
         return Array::own(std::move(some), components);
+    };
+    const bool all_found = std::ranges::all_of(cells, [&](std::uint64_t cell) { return cell < values.tuples(); });
+    return values.visit([&]<class Scalar>(std::span<const Scalar> all) {
+        const std::size_t count = cells.size() * components;
+        return all_found ? gather(std::vector<Scalar>(count), all) : gather(std::vector<double>(count, NAN), all);
     });
 }
 
@@ -49,14 +51,15 @@ Result<Surface> GridView::boundary_of_pick(const Run& run) {
         boundary = *std::move(again);
     }
     if (Result<void> cells = find_boundary_cells(boundary, number, run); !cells) return cells.error();
-    std::vector<std::uint64_t> points; // both ends of a vertex are its point
-    const auto ends = boundary.edge_ends.as<std::int64_t>();
-    for (std::size_t i = 0; i < ends.size(); i += 2) points.push_back(static_cast<std::uint64_t>(ends[i]));
-    for (const Field& field : grid_.point_fields)
-        if (field.values.tuples() > 0) boundary.point_fields.push_back({field.name, tuples_at(field.values, points)});
+    std::vector<Field> of_points;
+    std::ranges::copy_if(grid_.point_fields, std::back_inserter(of_points),
+                         [](const Field& field) { return field.values.tuples() > 0; });
+    Result<std::vector<Field>> at_vertices = fields_at_boundary(boundary, grid_, of_points, run);
+    if (!at_vertices) return at_vertices.error();
+    boundary.point_fields = *std::move(at_vertices);
     for (const Field& field : grid_.cell_fields)
         if (field.values.tuples() > 0)
-            boundary.cell_fields.push_back({field.name, tuples_at(field.values, boundary_cells_)});
+            boundary.cell_fields.push_back({field.name, tuples_of_cells(field.values, boundary_cells_)});
     boundary.source_cells = Array::own(std::vector<std::int64_t>(boundary_cells_.begin(), boundary_cells_.end()));
     return boundary;
 }

@@ -97,7 +97,9 @@ std::optional<Picked> nearest_on(const Surface& surface, const std::array<double
                 value.values.push_back(static_cast<double>(scalars[nearest.triangle * components + c]));
         });
     }
-    if (!surface.source_cells.empty()) picked.cell = surface.source_cells.as<std::int64_t>()[nearest.triangle];
+    if (!surface.source_cells.empty())
+        if (const std::int64_t cell = surface.source_cells.as<std::int64_t>()[nearest.triangle]; cell >= 0)
+            picked.cell = cell;
     return picked;
 }
 

@@ -25,7 +25,7 @@ struct PickedValue {
 /// The point of a surface that is nearest to another one.
 ///
 /// `values`   point fields between those of the triangle's corners; cell fields of its cell
-/// `cell`     the user's, where the surface has source_cells
+/// `cell`     the user's, where the surface has source_cells; nothing where it was not found, a negative number there
 struct Picked {
     std::array<double, 3> point{};
     std::vector<PickedValue> values;

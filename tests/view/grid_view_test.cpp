@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <atomic>
+#include <numeric>
 
+#include <isotet/boundary.hpp>
 #include <isotet/make.hpp>
 #include <isotet/packed_file.hpp>
 #include <isotet/read.hpp>
 
+#include "linear/curved_grid.hpp"
 #include "support/temporary_folder.hpp"
 #include "view/frame_reader.hpp"
 #include "view/grid_view.hpp"
@@ -154,6 +157,56 @@ TEST_F(GridViewTest, TheBoundaryIsColouredAndStandsAlone) {
     EXPECT_FALSE(head["surfaces"][0]["mesh"].contains("colors_at"));
     message.state.isosurfaces = true;
     EXPECT_EQ(frame(message)["surfaces"].size(), 2);
+}
+
+/// The boundary of quadratic cells has points that the grid does not have.
+TEST(GridViewQuadraticCells, TellTheFieldsAtEveryPointOfTheBoundary) {
+    const auto linear = [](const At& p) { return p[0] + 2 * p[1] - p[2] + 5; };
+    for (const unsigned seed : {1u, 2u, 3u}) {
+        Grid grid = curved_grid({.side = 3, .seed = seed, .field = linear}).grid;
+        std::vector<double> values, places;
+        for (std::size_t i = 0; i < grid.points.tuples(); ++i) {
+            const At at{grid.points.at(i, 0), grid.points.at(i, 1), grid.points.at(i, 2)};
+            values.push_back(linear(at));
+            places.insert(places.end(), at.begin(), at.end());
+        }
+        std::vector<std::int64_t> numbers(grid.cells.count());
+        std::iota(numbers.begin(), numbers.end(), 100);
+        grid.point_fields = {{"p", Array::own(std::move(values))}, {"at", Array::own(std::move(places), 3)}};
+        grid.cell_fields = {{"number", Array::own(std::move(numbers))}};
+        const Surface boundary = boundary_of(grid).value();
+        const auto view = GridView::create(grid).value();
+        ASSERT_TRUE(view->find_boundary({}));
+        PickMessage message;
+        message.state.field = "p";
+        message.boundary = true;
+        std::size_t made = 0;
+        for (std::size_t v = 0; v < boundary.vertex_count(); ++v) {
+            if (static_cast<std::size_t>(boundary.edge_ends.at(v, 0)) < grid.points.tuples() && v % 10 != 0) continue;
+            made += static_cast<std::size_t>(boundary.edge_ends.at(v, 0)) >= grid.points.tuples();
+            for (std::size_t axis = 0; axis < 3; ++axis) message.point[axis] = boundary.positions.at(v, axis);
+            const Picked picked = view->pick(message, {}).value();
+            ASSERT_EQ(picked.values.size(), 3u);
+            EXPECT_NEAR(picked.values[0].values.at(0), linear(message.point), 1e-5)
+                << "seed " << seed << ", vertex " << v;
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                EXPECT_NEAR(picked.values[1].values.at(axis), message.point[axis], 1e-5);
+            ASSERT_TRUE(picked.cell);
+            EXPECT_EQ(picked.values[2].values.at(0), static_cast<double>(*picked.cell + 100));
+        }
+        EXPECT_GT(made, 0u) << "seed " << seed;
+    }
+}
+
+/// Its faces may be of none of the cells that tets were found for.
+TEST(NearestOn, SaysNoCellWhereNoneWasFound) {
+    Surface surface;
+    surface.positions = Array::own(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}, 3);
+    surface.triangles = Array::own(std::vector<std::int32_t>{0, 1, 2}, 3);
+    for (const std::int64_t cell : {-1, 4}) {
+        surface.source_cells = Array::own(std::vector<std::int64_t>{cell});
+        EXPECT_EQ(nearest_on(surface, {0.2, 0.2, 1}).value().cell, cell < 0 ? std::nullopt : std::optional(cell));
+    }
 }
 
 /// A shell has no isosurface and needs no packing; fields of its points and cells colour it.
