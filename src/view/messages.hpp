@@ -74,6 +74,7 @@ struct PasteMessage {
 
 /// {"do": "pick", "state": ..., "slice": n, "point": [x, y, z]}: the values at the point of a surface that is nearest.
 /// {"do": "pick", "state": ..., "point": [x, y, z], "ray": [x, y, z]}: where the ray from the point meets a surface first.
+/// Both with "boundary": true are of the grid's boundary instead of an isosurface.
 struct PickMessage {
     ViewState state;                  ///< the first isovalue is that of the surface
     std::optional<std::size_t> slice; ///< which of the slices, instead of the isosurface
@@ -82,8 +83,6 @@ struct PickMessage {
     std::optional<std::array<double, 3>> ray = {}; ///< from the point; of all surfaces and slices of the state
     bool parts = false;                            ///< the number of the surface's part goes with the values
 };
-
-/// {"do": "pick", "boundary": true, ...}: either of them, of the boundary.
 
 /// {"do": "parts", "state": ..., "refined": true}: the connected parts of the first surface, when nothing else is to be done.
 struct PartsMessage {

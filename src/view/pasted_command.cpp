@@ -210,7 +210,7 @@ std::optional<std::vector<Plane>> planes_of(const std::string& text) {
     return planes.empty() || planes.size() > max_planes ? std::nullopt : std::optional(std::move(planes));
 }
 
-/// Other options of isotet slice say nothing of what the page shows.
+/// Others of isotet slice that choose what is cut, such as --sphere, --along and --cylinder, are left out.
 constexpr PageOption slice_options[] = {
     {"--plane", "", "planes",
      [](Pasting& pasting, const std::string& value) {
