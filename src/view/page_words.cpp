@@ -4,27 +4,39 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <string_view>
 #include <utility>
 
 namespace isotet::view {
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 11> controls{{{"field", "Field"},
-                                                                                  {"isovalue", "Isovalue"},
-                                                                                  {"step", "Time"},
-                                                                                  {"time", "Time"},
-                                                                                  {"color_by", "Colour by"},
-                                                                                  {"range", "Range"},
-                                                                                  {"boundary", "Boundary"},
-                                                                                  {"scale", "Heights"},
-                                                                                  {"solid", "Solid"},
-                                                                                  {"keep", "Keep"},
-                                                                                  {"opacity", "Opacity"}}};
+using std::string_view_literals::operator""sv;
 
-std::string control_of(std::string_view option) {
+constexpr std::array controls = std::to_array<std::pair<std::string_view, std::string_view>>({{"field", "Field"},
+                                                                                              {"isovalue", "Isovalue"},
+                                                                                              {"step", "Time step"},
+                                                                                              {"time", "Time"},
+                                                                                              {"color_by", "Colour by"},
+                                                                                              {"range", "Range"},
+                                                                                              {"boundary", "Boundary"},
+                                                                                              {"scale", "Heights"},
+                                                                                              {"solid", "Solid"},
+                                                                                              {"keep", "Keep"},
+                                                                                              {"opacity", "Opacity"}});
+
+/// Options of isotet view that the page has no control for.
+constexpr std::array view_options{
+    "allow_host"sv,   "allow_outside"sv,      "block"sv,          "cell_field"sv, "displace"sv,    "distance"sv,
+    "format"sv,       "geometry_tolerance"sv, "hanging_points"sv, "json"sv,       "keep_pieces"sv, "listen"sv,
+    "merge_points"sv, "merge_values"sv,       "no_browser"sv,     "out"sv,        "port"sv,        "quiet"sv,
+    "threads"sv,      "tolerance"sv,          "verbose"sv};
+
+/// `marked`   the option with its backquotes
+std::string control_of(std::string_view option, std::string_view marked) {
     const auto* known = std::ranges::find(controls, option, &std::pair<std::string_view, std::string_view>::first);
     if (known != controls.end()) return std::string(known->second);
+    if (std::ranges::find(view_options, option) == view_options.end()) return std::string(marked);
     std::string name(option);
     std::ranges::replace(name, '_', '-');
     return "isotet view --" + name;
@@ -47,7 +59,7 @@ std::string page_words(std::string_view sentence) {
         const bool is_option = first == '`' && !inside.empty() &&
                                std::ranges::all_of(inside, [](char c) { return (c >= 'a' && c <= 'z') || c == '_'; });
         const std::size_t taken = std::max<std::size_t>(1, length);
-        if (is_option) words += control_of(inside);
+        if (is_option) words += control_of(inside, sentence.substr(0, taken));
         else words += sentence.substr(0, taken);
         sentence.remove_prefix(taken);
     }

@@ -7,8 +7,8 @@
 
 namespace isotet::view {
 
-/// Options in backquotes (`merge_points`) become the page's control, such as Field, or else "isotet view --merge-points". What is
-/// 'quoted' stays.
+/// Options in backquotes (`merge_points`) become the page's control, such as Field, or else "isotet view --merge-points" where view has
+/// such an option. All other words stay, and what is 'quoted'.
 std::string page_words(std::string_view sentence);
 
 } // namespace isotet::view

@@ -2,9 +2,13 @@
 // The command lines of the page are those that the program takes: they are parsed by its own option tree.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <set>
+
 #include "option_tree.hpp"
 #include "options.hpp"
 #include "view/command_line.hpp"
+#include "view/page_words.hpp"
 #include "view/random_state.hpp"
 
 namespace isotet::test {
@@ -29,6 +33,42 @@ void expect_same_volume(const cli::RenderCommand& render, const std::optional<vi
     EXPECT_EQ(render.volume_opacity->preset, opacity.preset);
     EXPECT_EQ(render.volume_opacity->peaks, opacity.peaks);
     EXPECT_EQ(render.opacity_length, volume->length);
+}
+
+/// Names without their dashes in front, but --help.
+std::set<std::string> options_of(const std::vector<cli::OptionText>& options) {
+    std::set<std::string> names;
+    for (const cli::OptionText& option : options)
+        for (const std::string& flag : option.flags)
+            if (flag.starts_with("--") && !flag.starts_with("--help")) names.insert(flag.substr(2));
+    return names;
+}
+
+TEST(PageWords, NameOptionsOfIsotetViewThatItHas) {
+    cli::CommandLine line;
+    const cli::OptionTree tree(line);
+    const std::set<std::string> of_view = options_of(tree.describe("view").options);
+    std::size_t named = 0;
+    for (const cli::CommandText& command : tree.describe_all())
+        for (const std::string& name : options_of(command.options)) {
+            std::string option = name;
+            std::ranges::replace(option, '-', '_');
+            const std::string marked = "`" + option + "`", words = view::page_words(marked);
+            const bool is_view = words.starts_with("isotet view --");
+            EXPECT_TRUE(!is_view || words == "isotet view --" + name) << words;
+            EXPECT_TRUE(of_view.contains(name) ? words != marked : !is_view) << name << ": " << words;
+            named += is_view;
+        }
+    EXPECT_GT(named, 10u);
+}
+
+TEST(PageWords, NameControlsAndLeaveOtherWords) {
+    EXPECT_EQ(
+        view::page_words("the file has 3 time steps: step 0, time 0, was taken; `time` and `step` choose another"),
+        "the file has 3 time steps: step 0, time 0, was taken; Time and Time step choose another");
+    EXPECT_EQ(view::page_words("`merge_points` joins them"), "isotet view --merge-points joins them");
+    EXPECT_EQ(view::page_words("`max_size` would be larger"), "`max_size` would be larger");
+    EXPECT_EQ(view::page_words("'a `field` of mine' has no `field`"), "'a `field` of mine' has no Field");
 }
 
 TEST(RenderWords, AreOptionsOfTheProgramWithTheSameMeaning) {
