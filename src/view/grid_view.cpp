@@ -174,9 +174,9 @@ Array GridView::places_in_classes(const Array& numbers) const {
     std::vector<float> places(numbers.size(), NAN);
     numbers.visit([&](auto values) {
         for (std::size_t i = 0; i < places.size(); ++i)
-            if (const auto place = classes_->places.find(static_cast<double>(values[i]));
-                place != classes_->places.end())
-                places[i] = place->second;
+            if (const auto number = static_cast<double>(values[i]); !std::isnan(number)) // a map would find one for it
+                if (const auto place = classes_->places.find(number); place != classes_->places.end())
+                    places[i] = place->second;
     });
     return Array::own(std::move(places));
 }

@@ -862,6 +862,38 @@ def test_surfaces_that_are_too_large_are_drawn_by_the_server(browser, viewer):
     browser.value('delete document.body.dataset.most')
 
 
+def test_hiding_leaves_places_without_data(browser, viewer):
+    """Three cells of the regions 1, 2 and none: those of a hidden region go, grey ones stay."""
+    def count():
+        """Pixels that are grey, and all others that are not background."""
+        browser.value('new Promise(requestAnimationFrame)')
+        x, y, w, h = (int(v * browser.value('devicePixelRatio')) for v in browser.box('#scene'))
+        _, _, rows = pixels(browser.picture())
+        back = rows[y + 4][3 * (x + w - 8):3 * (x + w - 8) + 3]
+        seen = [rows[j][3 * i:3 * i + 3] for j in range(y, y + int(0.85 * h), 4) for i in range(x + 4, x + w - 4, 4)]
+        grey = sum(one != back and max(one) - min(one) < 4 for one in seen)
+        return grey, sum(one != back for one in seen) - grey
+
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, 'three.vtk')
+        with open(path, 'w', encoding='ascii') as file:
+            points = [f'{x} {y} {z}' for x in range(4) for y in range(2) for z in range(2)]
+            cells = [f'8 {" ".join(str(4 * c + k) for k in (0, 4, 6, 2, 1, 5, 7, 3))}' for c in range(3)]
+            file.write('\n'.join(['# vtk DataFile Version 3.0', 'three', 'ASCII', 'DATASET UNSTRUCTURED_GRID', 'POINTS 16 float', *points,
+                                  'CELLS 3 27', *cells, 'CELL_TYPES 3', '12', '12', '12', 'CELL_DATA 3', 'SCALARS region float 1',
+                                  'LOOKUP_TABLE default', '1', '2', 'nan', '']))
+        with Viewer(path) as other:
+            counts = []
+            for hidden in ('', '&hidden=1', '&hidden=2', '&hidden=1&hidden=2'):
+                start(browser, other, '&labels=0&f=region&by=region&isosurfaces=0&colored=1&boundary=1&i=1.5' + hidden)
+                browser.wait('document.body.dataset.kinds === "boundary" && document.querySelectorAll("#regions-list li").length === 2')
+                counts.append(count())
+            (grey, colored), *rest = counts
+            check(grey > 100 and all(one >= 0.9 * grey for one, _ in rest), f'places without data stay: {counts}')
+            check(rest[0][1] < 0.8 * colored and rest[1][1] < 0.8 * colored and rest[2][1] < 0.05 * colored, f'regions go: {counts}')
+            browser.call('Page.navigate', url='about:blank')
+
+
 def test_volume(browser, viewer):
     """The field as a volume: presets, a curve that the hand drags, surfaces with it, the address and the command line."""
     at_rest_in_full = 'document.body.dataset.preview === "false" && document.body.dataset.picture === "image/png"'

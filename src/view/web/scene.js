@@ -22,14 +22,14 @@ void main() {
   colorAt = colorPlace / 65534.0;
 }`;
 
-// Beyond a plane nothing is drawn, nor of a class that is hidden.
+// Beyond a plane nothing is drawn, nor of a class that is hidden; places without data, above 1, are of no class.
 const cut = `
 in vec3 inBox;
 in float colorAt;
 uniform vec4 cuts[6];
 uniform int cutCount, classCount, hidden;
 void leaveOut() {
-  if (classCount > 0 && (hidden >> min(int(colorAt * float(classCount)), classCount - 1) & 1) == 1) discard;
+  if (classCount > 0 && colorAt <= 1.0 && (hidden >> min(int(colorAt * float(classCount)), classCount - 1) & 1) == 1) discard;
   for (int i = 0; i < cutCount; ++i) if (dot(cuts[i].xyz, inBox) > cuts[i].w) discard;
 }`;
 
