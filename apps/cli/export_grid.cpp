@@ -2,18 +2,22 @@
 #include "export_grid.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <optional>
 #include <span>
 #include <sstream>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include <isotet/isosurface_scene.hpp>
 #include <isotet/jobs/grid_source.hpp>
 #include <isotet/jobs/number_text.hpp>
 #include <isotet/jobs/output_names.hpp>
+#include <isotet/packed_file.hpp>
 #include <isotet/version.hpp>
 #include <isotet/write_file.hpp>
 
@@ -78,6 +82,17 @@ Result<std::vector<double>> isovalues_of(const ExportCommand& command, const std
     return isovalues;
 }
 
+/// As isotet view begins with it, of the grid that was packed.
+Result<std::optional<std::array<double, 3>>> stretch_of(const PackNumbers& packed, const std::string& path,
+                                                        const Run& run) {
+    if (!is_of_reservoirs(packed.format)) return std::optional<std::array<double, 3>>();
+    const Result<PackedFile> file = PackedFile::open(path, {}, run);
+    if (!file) return file.error();
+    std::vector<double> corners(file->info().lower.begin(), file->info().lower.end());
+    corners.insert(corners.end(), file->info().upper.begin(), file->info().upper.end());
+    return default_stretch(Array::own(std::move(corners), 3));
+}
+
 std::string bytes_of(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     std::ostringstream bytes;
@@ -136,6 +151,9 @@ Result<GridPage> GridPageMaker::page_with(std::vector<std::string> fields) {
     }
     options.state.isovalues = *isovalues_;
     options.state.color_by = command_.color_by;
+    const auto stretch = stretch_of(*packed, job.out, console_.run());
+    if (!stretch) return stretch.error();
+    options.state.stretch = *stretch;
     options.notes = console_.noted_as_told();
     Result<std::string> html = view::grid_page(bytes_of(job.out), options);
     if (!html) return html.error();

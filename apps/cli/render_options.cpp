@@ -146,7 +146,9 @@ void add_camera(const Command& command, RenderCommand& render) {
             if (render.stretch.size() != 3 || !positive)
                 refuse_value("--scale", text, "three numbers above 0, of x, y and z, such as 1,1,20");
         },
-        "X,Y,Z", "Stretch the axes by these factors; 1,1,20 exaggerates heights");
+        "X,Y,Z",
+        "Stretch the axes by these factors; 1,1,20 exaggerates heights; default: 1,1,1, and larger heights for "
+        "corner-point grids at least 50 times as wide as high");
 }
 
 void add_cuts(const Command& command, RenderCommand& render) {

@@ -72,6 +72,14 @@ TEST(RenderWords, GiveTheBoundaryAloneBack) {
     EXPECT_TRUE(back->state == state);
 }
 
+TEST(RenderWords, SayThatAxesAreNotStretched) {
+    ViewState state;
+    state.field = "porosity";
+    state.stretch = {1, 1, 1}; // isotet render stretches flat reservoirs by itself
+    const std::string text = shell_text(render_words(state, "grid.grdecl"));
+    EXPECT_EQ(text, "isotet render grid.grdecl --field porosity --scale 1,1,1 -o picture.png");
+}
+
 TEST(StateJson, GivesTheStateBack) {
     for (unsigned seed = 1; seed <= 500; ++seed) {
         SCOPED_TRACE(seed);

@@ -110,6 +110,18 @@ def test_fields_that_fit(browser, path):
         check(refused.returncode == 2 and '--max-size' in refused.stderr, f'{words}: {refused.stderr}')
 
 
+def test_heights_of_flat_reservoirs(browser, path):
+    """As isotet view begins with them."""
+    flat, page = path.replace('grid.html', 'flat.grdecl'), path.replace('grid.html', 'flat.html')
+    with open(flat, 'w', encoding='ascii') as file:
+        file.write('SPECGRID\n 2 1 1 1 F /\nCOORD\n 0 0 100 0 0 200  1000 0 100 1000 0 200  2000 0 100 2000 0 200\n'
+                   ' 0 1000 100 0 1000 200  1000 1000 100 1000 1000 200  2000 1000 100 2000 1000 200 /\n'
+                   'ZCORN\n 8*100 8*110 /\nPORO\n 0.1 0.2 /\n')
+    isotet('export', flat, page, '--as', 'grid', '-f', 'PORO')
+    start(browser, page)
+    browser.wait('document.getElementById("heights-text").value === "50"')
+
+
 def main():
     failed = 0
     with tempfile.TemporaryDirectory(prefix='isotet-export-') as folder:

@@ -862,6 +862,38 @@ def test_surfaces_that_are_too_large_are_drawn_by_the_server(browser, viewer):
     browser.value('delete document.body.dataset.most')
 
 
+def flat_reservoir(folder):
+    """Two cells, 2000 wide and 10 high: heights are drawn 50 times as large."""
+    path = os.path.join(folder, 'flat.grdecl')
+    with open(path, 'w', encoding='ascii') as file:
+        file.write('SPECGRID\n 2 1 1 1 F /\nCOORD\n 0 0 100 0 0 200  1000 0 100 1000 0 200  2000 0 100 2000 0 200\n'
+                   ' 0 1000 100 0 1000 200  1000 1000 100 1000 1000 200  2000 1000 100 2000 1000 200 /\n'
+                   'ZCORN\n 8*100 8*110 /\nPORO\n 0.1 0.2 /\n')
+    return path
+
+
+def test_heights_of_flat_reservoirs(browser, viewer):
+    """A command line without --scale has the heights that isotet render gives them, and one is written where they are not stretched."""
+    heights = 'document.getElementById("heights-text").value'
+    with tempfile.TemporaryDirectory() as folder, Viewer(flat_reservoir(folder)) as other:
+        start(browser, other)
+        browser.wait(f'{heights} === "50"')
+        browser.call('Page.navigate', url='about:blank')
+        start(browser, other, '&f=PORO&by=PORO&isosurfaces=0&colored=1&boundary=1&i=0.15')
+        browser.wait(f'{heights} === "1"')
+        browser.click('#copy-render')
+        browser.wait('document.getElementById("copied").textContent.includes("--scale 1,1,1")')
+        browser.click('#command')
+        browser.type('isotet render x --boundary-color-by PORO')
+        browser.key('Enter')
+        browser.wait(f'{heights} === "50" && location.hash.includes("stretch=1%2C1%2C50")')
+        browser.click('#command')
+        browser.type('isotet render x --boundary-color-by PORO --scale 1,1,1')
+        browser.key('Enter')
+        browser.wait(f'{heights} === "1"')
+        browser.call('Page.navigate', url='about:blank')
+
+
 def test_hiding_leaves_places_without_data(browser, viewer):
     """Three cells of the regions 1, 2 and none: those of a hidden region go, grey ones stay."""
     def count():

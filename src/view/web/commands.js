@@ -58,6 +58,7 @@ export function takeState(message) {
   if (!next.field) next.field = app.state.field;
   if (next.value === null && next.field === app.state.field) next.value = app.state.value;
   if (next.step === null) next.step = app.state.step;
+  next.stretch ??= app.grid.state.stretch ?? null; // as isotet render without --scale
   if (next.planes.some(({kind}) => kind === 'slice') && !next.isosurfaces) next.colorBy ||= next.field;
   app.state = {...next, drawn: app.state.drawn, up: message.look?.axis ?? app.state.up};
   if (message.look) lookAsTold(message.look);
@@ -68,10 +69,11 @@ export function takeState(message) {
   say(leftOut(message));
 }
 
-/** As a command line has it: each isovalue once. */
+/** As a command line has it: each isovalue once, and axes as they are where isotet render would stretch them. */
 export function wholeState() {
   app.state.camera = app.camera.text();
   const message = toMessage(app.state);
   message.isovalues = [...new Set(message.isovalues)];
+  if (app.grid.state.stretch) message.stretch ??= [1, 1, 1];
   return message;
 }
