@@ -862,6 +862,25 @@ def test_surfaces_that_are_too_large_are_drawn_by_the_server(browser, viewer):
     browser.value('delete document.body.dataset.most')
 
 
+def test_playing_without_isosurfaces(browser, viewer):
+    """Each frame shows the next value, also a volume without its surfaces; a frame that is refused ends it."""
+    start(browser, viewer, '&f=sphere&i=0.7&labels=0&volume=ramp')
+    browser.wait('document.body.dataset.volume === "ramp" && document.body.dataset.picture === "image/png"')
+    check(browser.value('document.getElementById("shown").textContent') == 'Volume shown', 'no isosurface is shown')
+    browser.value('window.seen = new Set(); window.seeing = setInterval(() => seen.add(document.getElementById("slider").getAttribute("aria-valuenow")), 20)')
+    browser.click('#play-value')
+    browser.wait('seen.size > 4', 60)
+    browser.value('clearInterval(seeing)')
+    browser.click('#play-value')
+    browser.wait('document.getElementById("play-value").textContent === "Play"')
+    start(browser, viewer, '&f=sphere&i=0.7&by=gyroid&range=-1,1')
+    browser.click('#play-value')
+    browser.wait('Number(document.body.dataset.shown) > 0.75')
+    browser.value('document.getElementById("logarithmic").click()')
+    browser.wait('document.getElementById("message").textContent.includes("logarithmic") && document.getElementById("play-value").textContent === "Play"')
+    browser.call('Page.navigate', url='about:blank')
+
+
 def flat_reservoir(folder):
     """Two cells, 2000 wide and 10 high: heights are drawn 50 times as large."""
     path = os.path.join(folder, 'flat.grdecl')

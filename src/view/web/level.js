@@ -29,19 +29,21 @@ export const valuePlayer = new Player({button: id('play-value'), speed: id('spee
   go(place) {
     const before = app.state.value;
     level.place = place;
+    level.asked = app.number + 1;
     showIsosurfaces(true);
     setValue(valueOfPlace(place));
     if (app.state.value === before) valuePlayer.shown(); // no other frame comes
   },
 });
 
-/** A frame of the slider's value is on the screen. */
-export function valueShown() { if (app.frame.surfaces[0]?.isovalue === app.state.value) valuePlayer.shown(); }
+/** A frame is on the screen: of the slider's value, though it may have no isosurface. */
+export function valueShown() { if (app.frame.number >= level.asked) valuePlayer.shown(); }
 
 for (const event of ['pointerdown', 'keydown']) id('slider').addEventListener(event, () => valuePlayer.stop());
 
 const level = {
   place: null,           // that was played last
+  asked: 0,              // the number of its frame
   seen: new Map(),       // ranges: field -> step -> [lower, upper]
   left: new Map(),       // what was shown of a field when another one was chosen
   automatic: false,      // the value is that of a field that is constant, until a step has another

@@ -208,6 +208,8 @@ const messages = {
     if (message.number >= app.number) stopWaiting();
     app.sentAt.delete(message.number);
     app.sent = null;
+    app.time.stop(); // the frame that they wait for does not come
+    valuePlayer.stop();
     say(message.sentence);
   },
   saved: (message) => app.save.done(`Saved: ${message.path}`),
