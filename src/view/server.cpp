@@ -228,7 +228,8 @@ void Connection::respond(http::status status, std::string_view type, std::string
     set("Referrer-Policy", "no-referrer");
     set("Cross-Origin-Resource-Policy", "same-origin");
     set("Content-Security-Policy", "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "
-                                   "img-src 'self' data:; base-uri 'none'; form-action 'none'");
+                                   "img-src 'self' data:; frame-src 'self'; frame-ancestors 'self'; "
+                                   "base-uri 'none'; form-action 'none'");
     response_.content_length(content.size());
     if (parser_->get().method() != http::verb::head) response_.body() = std::string(content);
     stream_.expires_after(duration_of(owner_.options.request_seconds));

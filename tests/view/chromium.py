@@ -114,7 +114,7 @@ class Browser:
             if last:
                 return last
             if time.monotonic() > end:
-                state = self.value('JSON.stringify([document.body.dataset, document.getElementById("message").textContent])')
+                state = self.value('JSON.stringify([document.body.dataset, document.getElementById("message")?.textContent])')
                 raise AssertionError(f'never true: {expression}; the page: {state}; errors: {self.errors}')
             time.sleep(0.02)
 

@@ -93,6 +93,11 @@ TEST(Server, GivesThePageAndItsFilesAndNothingElse) {
     EXPECT_TRUE(page.starts_with("HTTP/1.1 200")) << page.substr(0, 200);
     EXPECT_NE(page.find("Content-Security-Policy: default-src 'none'"), std::string::npos);
     EXPECT_NE(page.find("<!doctype html>"), std::string::npos);
+    for (const char* target : {"/", "/?beside", "/beside.html", "/nothing"})
+        EXPECT_NE(answer_to(viewer, "GET " + std::string(target) + " HTTP/1.1\r\n" + host)
+                      .find("; frame-ancestors 'self';"),
+                  std::string::npos)
+            << target << " can be framed by other origins";
     for (const ServedFile& file : page_files())
         EXPECT_TRUE(answer_to(viewer, "GET /node/host/8123/" + std::string(file.name) + "?x HTTP/1.1\r\n" + host)
                         .ends_with(file.content))

@@ -17,6 +17,7 @@ export const app = {
   number: 0, sent: null, sentAt: new Map(), // wishes: the last number, what it asked for, and when each went
   large: 0,                                 // triangles, where they are too many for the browser
   picked: null,
+  changed() {}, // called where something else is to be seen
 };
 
 export const aspect = () => id('scene').clientWidth / Math.max(1, id('scene').clientHeight);

@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Keys that work anywhere but in texts.
 import {app, id} from './app.js';
+import {toggleBeside} from './beside.js';
 import {valuePlayer} from './level.js';
 import {lookFrom, toggleFullScreen, togglePanel} from './looking.js';
 import {closePicked, pickAt} from './picked.js';
@@ -14,7 +15,7 @@ const keys = {
   s: () => app.save.open(), v: () => pickAt(0, 0), ' ': () => app.time.toggle(), ',': () => { app.time.stop(); app.time.on.go((app.state.step ?? 0) - 1); }, '.': () => { app.time.stop(); app.time.on.go((app.state.step ?? 0) + 1); },
   Escape: closePicked, 9: () => lookFrom('oblique'), 5: () => id('parallel').click(), e: () => id('edges').click(), b: () => id('outline').click(), p: pin,
   '[': () => app.slider.step(-1), ']': () => app.slider.step(1), '{': () => app.slider.step(-0.1), '}': () => app.slider.step(0.1), '?': () => id('help').showModal(),
-  i: () => valuePlayer.toggle(), u: toggleFullScreen, h: togglePanel, l: () => id('labels-on').click(),
+  i: () => valuePlayer.toggle(), u: toggleFullScreen, h: togglePanel, l: () => id('labels-on').click(), 2: toggleBeside,
 };
 addEventListener('keydown', (event) => {
   const typing = event.target.matches('input[type=text], select') || id('help').open || id('save').open || (event.key === ' ' && event.target.matches('button, input'));

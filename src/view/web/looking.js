@@ -19,10 +19,14 @@ export function lookFrom(name) {
   moved();
 }
 
-export function moved() {
+export function showCamera() {
   if (serverDraws()) wishSoon();
   id('parallel').checked = app.camera.projection === 'parallel';
   drawSoon();
+}
+
+export function moved() {
+  showCamera();
   commitSoon();
 }
 

@@ -46,6 +46,7 @@ function chooseScale() {
 function draw() {
   drawPlanned = false;
   if (!app.grid?.lower) return;
+  app.changed();
   if (serverDraws()) {
     drawAxes();
     placeMark();

@@ -3,7 +3,7 @@
 import {app, mayBeField} from './app.js';
 import {fromAddress, toAddress} from './state.js';
 
-let commitTimer = 0;
+let commitTimer = 0, nameTimer = 0;
 /** A page in a notebook's frame has no address. */
 const hasAddress = location.protocol !== 'about:';
 const address = () => `#${app.token}&${toAddress(app.state)}`;
@@ -23,10 +23,24 @@ export function commitSoon() {
   commitTimer = setTimeout(commit, 500);
 }
 
+/** A change that another page made is no state to come back to: it is named only. */
+export function follow(change) {
+  if (commitTimer) commit();
+  change();
+  clearTimeout(commitTimer);
+  commitTimer = 0;
+  clearTimeout(nameTimer);
+  nameTimer = setTimeout(() => {
+    app.state.camera = app.camera.text();
+    nameState();
+  }, 500);
+}
+
 /** The browser's back and forward; `show` puts the state on the screen. */
 export function onReturn(show) {
   addEventListener('popstate', () => {
     clearTimeout(commitTimer);
+    clearTimeout(nameTimer);
     const [sameToken, ...parts] = location.hash.slice(1).split('&');
     if (sameToken !== app.token) return location.reload();
     app.state = fromAddress(parts.join('&'));

@@ -66,6 +66,7 @@ function mostTriangles(moving) {
 function wish(moving) {
   wishPlanned = false;
   if (!app.grid || !app.state.field || app.state.value === null) return;
+  app.changed();
   const what = wanted() + (moving ? '' : '|rest');
   if (what === app.sent || (moving && app.sent === wanted() + '|rest')) return;
   const message = {do: 'show', number: app.number + 1, state: toMessage(app.state), moving, most: mostTriangles(moving)};
