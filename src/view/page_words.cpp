@@ -34,12 +34,12 @@ constexpr std::array view_options{
 
 /// `marked`   the option with its backquotes
 std::string control_of(std::string_view option, std::string_view marked) {
-    const auto* known = std::ranges::find(controls, option, &std::pair<std::string_view, std::string_view>::first);
-    if (known != controls.end()) return std::string(known->second);
+    for (const auto& [name, control] : controls)
+        if (name == option) return std::string(control);
     if (std::ranges::find(view_options, option) == view_options.end()) return std::string(marked);
-    std::string name(option);
-    std::ranges::replace(name, '_', '-');
-    return "isotet view --" + name;
+    std::string words(option);
+    std::ranges::replace(words, '_', '-');
+    return "isotet view --" + words;
 }
 
 /// The length of what stands between two equal marks at the beginning, with them; 0: there is no second one.
