@@ -370,7 +370,7 @@ TableAndJson report_heads(const std::string& path, const GridSummary& found) {
 
 Result<TableAndJson> report_on(const InfoJob& job, Console& console) {
     const std::string& path = job.grid.file;
-    const bool needs_cells = job.survey || job.chart;
+    const bool needs_cells = job.survey || job.chart || !job.grid.cells.empty();
     if (!needs_cells && PackedFile::is_one(path)) {
         const auto file = PackedFile::open(path, {}, console.run());
         if (!file) return file.error();

@@ -592,6 +592,10 @@ void add_reading(const Command& command, GridOptions& grid, const std::string& f
         "--block", [&](const std::vector<std::string>& names) { grid.blocks = names; }, "NAME|NUMBER",
         "Read only this block, zone, part or region of the file, by its name or number as info lists them; may be "
         "repeated");
+    command.add_texts(
+        "--cells", [&](const std::vector<std::string>& cells) { grid.cells = cells; }, "FIELD=LIST",
+        "Keep only cells with these values of a cell field: numbers, ranges A:B, names of regions, as in "
+        "region=2,5:7,sand; all others: !FIELD=LIST; may be repeated: all must hold");
     command.add_text("--displace", grid.displace, "FIELD", "Move the points by this vector field");
     command.add_number(
         "--merge-points", [&](double t) { grid.merge_points = t; }, "TOLERANCE",

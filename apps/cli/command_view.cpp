@@ -38,6 +38,7 @@ std::vector<std::string> reading_options(const GridOptions& grid, const RefineCh
     if (grid.allow_outside) words.emplace_back("--allow-outside");
     if (!grid.displace.empty()) add("--displace", grid.displace);
     for (const std::string& block : grid.blocks) add("--block", block);
+    for (const std::string& cells : grid.cells) add("--cells", cells);
     const RefineOptions usual;
     if (!refine) add("--tolerance", "nodes");
     else if (refine->tolerance > 0) add("--tolerance", shortest(refine->tolerance));

@@ -20,6 +20,13 @@ constexpr bool is_flat_cell(std::uint8_t type) {
            type == 69 || type == 70 || type == 76 || type == 77;
 }
 
+/// True for numbers that VTK may give to cells with a volume, linear or not.
+constexpr bool has_a_volume(std::uint8_t type) {
+    constexpr std::uint8_t first_solid = 10, quadratic_edge = 21, cubic_line = 35, lagrange_curve = 68, bezier_curve = 75;
+    return type >= first_solid && !is_flat_cell(type) && type != quadratic_edge && type != cubic_line &&
+           type != lagrange_curve && type != bezier_curve;
+}
+
 /// Gathers faces.
 class PatchList {
 public:

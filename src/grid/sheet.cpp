@@ -32,18 +32,11 @@ enum FlatType : std::uint8_t {
     quadratic_linear_quad = 30,
     biquadratic_triangle = 34,
     quadratic_polygon = 36,
-    lagrange_curve_last = 68,
     lagrange_triangle = 69,
     lagrange_quadrilateral = 70,
     bezier_triangle = 76,
     bezier_quadrilateral = 77
 };
-
-constexpr bool has_a_volume(std::uint8_t type) {
-    constexpr std::uint8_t first_solid = 10, bezier_curve = 75;
-    return type >= first_solid && !is_flat_cell(type) && type != 21 && type != 35 && type != lagrange_curve_last &&
-           type != bezier_curve;
-}
 
 constexpr std::uint64_t nodes_needed(std::uint8_t type) {
     switch (type) {

@@ -40,6 +40,7 @@ private:
     ExtractJob chosen_; ///< what planning takes: fields, steps, names of outputs
     std::optional<GridSource> source_;
     ExtractPlan plan_;
+    std::uint64_t emptied_ = 0; ///< cells that were not chosen
     bool refines_ = true;
     std::vector<CollectionEntry> series_;
     std::vector<std::size_t> skipped_; ///< steps without the field
@@ -110,6 +111,7 @@ Result<std::optional<ContourInput>> ClipRun::load(std::size_t step) {
     if (!fields) return fields.error();
     numbers_.read_seconds += reading.seconds();
     numbers_.cells = grid->cells.count();
+    emptied_ = emptied_cells(*grid, job_.grid);
     numbers_.averaged = field->averaged;
     refines_ = !field->averaged || job_.refine_averaged;
     if (const std::string note = cells_left_out_note(*grid); !note.empty()) caller_.note(note);
@@ -178,7 +180,7 @@ Result<void> ClipRun::clip_step(std::size_t step) {
     caller_.notes(clipped->contour.notes);
     numbers_.field = clipped->contour.field;
     numbers_.method = clipped->contour.method;
-    numbers_.cells_left_out = clipped->contour.cells_left_out;
+    numbers_.cells_left_out = clipped->contour.cells_left_out - std::min(clipped->contour.cells_left_out, emptied_);
     numbers_.refinement = clipped->contour.refinement;
     if (auto some = check_that_some_are_kept(*clipped); !some) return some;
     ClipStepNumbers numbers;

@@ -348,10 +348,10 @@ Result<void> ExtractRun::open_packed() {
     Result<PackedFile> file = PackedFile::open(job_.grid.file, {job_.memory.value_or(0)}, caller_.run());
     if (!file) return file.error();
     const PackedFileInfo& info = file->info();
-    const bool reworks_cells = job_.piece || job_.solid || plan_.touched || job_.volumes || !job_.shares.empty() ||
-                               job_.exact_vertices || job_.split_cells || job_.grid.merge_points ||
-                               !job_.grid.displace.empty() || job_.method == Method::direct ||
-                               job_.engine == EngineChoice::reference || job_.field.shape;
+    const bool reworks_cells =
+        job_.piece || job_.solid || plan_.touched || job_.volumes || !job_.shares.empty() || job_.exact_vertices ||
+        job_.split_cells || job_.grid.merge_points || !job_.grid.displace.empty() || !job_.grid.cells.empty() ||
+        job_.method == Method::direct || job_.engine == EngineChoice::reference || job_.field.shape;
     const auto has_field = [&](const PackedFieldInfo& field) {
         return field.report.name == plan_.field.name && (job_.normals != Normals::gradient || field.gradients);
     };
@@ -532,7 +532,8 @@ Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> is
     numbers_.method = result->method;
     numbers_.engine = result->engine;
     numbers_.field = result->field;
-    numbers_.cells_left_out = result->cells_left_out;
+    numbers_.cells_left_out =
+        result->cells_left_out - std::min(result->cells_left_out, emptied_cells(grid_, job_.grid));
     numbers_.pack_seconds += result->pack_seconds;
     if (const auto packed = contour_->packed()) numbers_.pack = packed->report();
     coarse_tets_ += result->coarse_tets;
@@ -576,7 +577,8 @@ Result<std::vector<Surface>> ExtractRun::extract_solid(double isovalue, std::siz
     numbers_.method = made->contour.method;
     numbers_.engine = made->contour.engine;
     numbers_.field = made->contour.field;
-    numbers_.cells_left_out = made->contour.cells_left_out;
+    numbers_.cells_left_out =
+        made->contour.cells_left_out - std::min(made->contour.cells_left_out, emptied_cells(grid_, job_.grid));
     numbers_.pack_seconds += made->contour.pack_seconds;
     coarse_tets_ += made->contour.coarse_tets;
     numbers_.refinement = made->contour.refinement;

@@ -89,7 +89,8 @@ constexpr std::size_t most_isovalues_of_active_cells = 8;
 
 std::optional<ReadActiveCells> plan_active_cells(const ExtractJob& job, const ExtractPlan& plan) {
     const bool has_components = plan.color || (plan.carried && !plan.carried->components.empty());
-    const bool needs_all = plan.field.neighbours || job.piece || job.solid || job.volumes || job.grid.merge_points;
+    const bool needs_all = plan.field.neighbours || job.piece || job.solid || job.volumes || job.grid.merge_points ||
+                           !job.grid.cells.empty();
     if (needs_all || has_components || !plan.read.cell || !plan.read.cell->empty() ||
         plan.contour.expected_isovalues.size() > most_isovalues_of_active_cells ||
         !Contour::can_do_with_active_cells(plan.contour))

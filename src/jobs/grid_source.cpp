@@ -22,6 +22,7 @@
 #include <isotet/slice.hpp>
 
 #include "grid/orientation.hpp"
+#include "jobs/cell_choice.hpp"
 #include "jobs/refuse.hpp"
 
 namespace isotet::jobs {
@@ -225,6 +226,7 @@ Result<GridSource> GridSource::open(const GridOptions& options, Caller& caller) 
         source.info_ = info_of(*made);
         source.info_.files = options.other_inputs;
         source.made_ = *std::move(made);
+        if (auto choices = parse_cell_choices(options.cells, {}); !choices) return choices.error();
         return source;
     }
     ReadOptions& read_options = source.read_options_;
@@ -265,6 +267,10 @@ Result<GridSource> GridSource::open(const GridOptions& options, Caller& caller) 
         error.message = "`displace` takes a point field: " + error.message;
         return error;
     }
+    const auto choices = parse_cell_choices(options.cells, source.names(Association::cell));
+    if (!choices) return choices.error();
+    if (!source.info_.regions.empty())
+        if (auto checked = check_cell_choices(*choices, source.info_.regions); !checked) return checked.error();
     return source;
 }
 
@@ -404,19 +410,47 @@ Result<ReadResult> GridSource::read_unclosed(const FieldsToRead& fields, std::si
         return result;
     }
     ReadOptions options = read_options_;
-    if (cells == CellsToRead::some && is_packed_file() && !options_.merge_points && options_.displace.empty())
+    if (cells == CellsToRead::some && is_packed_file() && !options_.merge_points && options_.displace.empty() &&
+        options_.cells.empty())
         options.some_cells = FieldSample::max_cells;
     Result<ReadResult> result = read_file(fields, step, std::move(options), run);
     if (result) caller.notes(result->notes);
     return result;
 }
 
+/// Empties the other cells, and notes how many are left. A number that a step of several lacks is noted, else an error.
+Result<void> GridSource::choose(ReadResult& read, Caller& caller) const {
+    if (options_.cells.empty()) return {};
+    const auto choices = parse_cell_choices(options_.cells, names(Association::cell));
+    if (!choices) return choices.error();
+    const std::vector<RegionName>& regions = read.info.regions.empty() ? info_.regions : read.info.regions;
+    Result<ChosenCells> chosen = choose_cells(std::move(read.grid), *choices, regions);
+    if (!chosen) return chosen.error();
+    if (!chosen->missing.empty() && info_.times.size() < 2)
+        return Error{ErrorCode::invalid_argument, chosen->missing.front()};
+    caller.notes(chosen->missing);
+    read.grid = std::move(chosen->grid);
+    caller.note(
+        fmt::format("{} of {} are in {}", grouped(chosen->count), counted(chosen->of, "cell"), text_of(*choices)));
+    return {};
+}
+
 Result<ReadResult> GridSource::read_cells(const FieldsToRead& fields, std::size_t step, CellsToRead cells,
                                           Caller& caller, const Run& run) const {
     if (kept_)
         if (auto kept = kept_->take(fields, step, cells)) return *std::move(kept);
-    Result<ReadResult> result = read_unclosed(fields, step, cells, caller, run);
+    FieldsToRead with_choices = fields;
+    if (!options_.cells.empty() && fields.cell) {
+        const auto choices = parse_cell_choices(options_.cells, names(Association::cell));
+        if (!choices) return choices.error();
+        for (const CellChoice& choice : *choices)
+            if (std::ranges::find(*with_choices.cell, choice.field) == with_choices.cell->end())
+                with_choices.cell->push_back(choice.field);
+    }
+    Result<ReadResult> result = read_unclosed(with_choices, step, cells, caller, run);
     if (!result || result->cells_in_file) return result;
+    if (auto chosen = choose(*result, caller); !chosen) return chosen.error();
+    if (!options_.cells.empty()) leave(result->grid.cell_fields, fields.cell);
     if (options_.merge_points) {
         Result<Grid> joined = merged(result->grid, {*options_.merge_points, options_.merge_values}, caller, run);
         if (!joined) return joined.error();
@@ -443,7 +477,7 @@ Result<ReadResult> GridSource::read_some(const FieldsToRead& fields, std::size_t
 
 Result<ReadResult> GridSource::read_active(const FieldsToRead& fields, std::size_t step, const ReadActiveCells& active,
                                            Caller& caller) const {
-    if (made_ || surface_ || options_.merge_points || (kept_ && kept_->is_there())) {
+    if (made_ || surface_ || options_.merge_points || !options_.cells.empty() || (kept_ && kept_->is_there())) {
         Result<Grid> grid = read(fields, step, caller);
         if (!grid) return grid.error();
         ReadResult result;
@@ -514,10 +548,17 @@ std::string cells_left_out_note(const Grid& grid) {
     };
     std::string list;
     for (const auto& [type, count] : count_cells_by_type(grid.cells)) {
-        if (is_split(type)) continue; // the session tells about these
+        if (type == 0 || is_split(type)) continue; // not chosen, or the session tells about these
         list += fmt::format("{}{} {}", list.empty() ? "" : ", ", grouped(count), name_of_cell_type(type));
     }
     return list.empty() ? list : "cells left out, their types are not contoured: " + list;
+}
+
+std::uint64_t emptied_cells(const Grid& grid, const GridOptions& options) {
+    if (options.cells.empty()) return 0;
+    const auto counts = count_cells_by_type(grid.cells);
+    const auto empty = counts.find(0);
+    return empty == counts.end() ? 0 : empty->second;
 }
 
 std::optional<double> time_of(const FileInfo& info, std::size_t step) {

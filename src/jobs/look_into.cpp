@@ -20,19 +20,14 @@ namespace isotet::jobs {
 
 namespace {
 
-/// Points, lines and faces, by VTK's numbers.
-bool has_no_volume(std::uint8_t type) {
-    return type <= 4 || type == 21 || type == 35 || type == 68 || type == 75 || core::is_flat_cell(type);
-}
-
 /// Which cells have a volume; nothing where all have.
 std::vector<std::size_t> solid_cells(const Cells& cells) {
     if (cells.types.type() != ScalarType::uint8) return {};
     const auto types = cells.types.as<std::uint8_t>();
-    if (std::ranges::none_of(types, has_no_volume)) return {};
+    if (std::ranges::all_of(types, core::has_a_volume)) return {};
     std::vector<std::size_t> solid;
     for (std::size_t cell = 0; cell < types.size(); ++cell)
-        if (!has_no_volume(types[cell])) solid.push_back(cell);
+        if (core::has_a_volume(types[cell])) solid.push_back(cell);
     return solid;
 }
 
@@ -199,6 +194,8 @@ Result<GridSummary> look_into(const InfoJob& job, Caller& caller) {
     Result<GridReport> surveyed = survey(*grid, {.faces = job.survey}, caller.run());
     if (!surveyed) return surveyed.error();
     summary.report = *std::move(surveyed);
+    summary.report.cells_left_out -=
+        std::min<std::uint64_t>(summary.report.cells_left_out, emptied_cells(*grid, options));
     summary.surveyed = job.survey && summary.report.tets > 0;
     if (summary.surveyed) {
         const Result<std::uint64_t> hanging = count_hanging_points(*grid, caller.run());

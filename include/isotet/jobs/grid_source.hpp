@@ -41,6 +41,7 @@ struct GridOptions {
     bool patches = false; ///< ReadOptions::patches
     std::string displace;
     std::vector<std::string> blocks;       ///< names or numbers; empty: all
+    std::vector<std::string> cells;        ///< "FIELD=LIST" each: others become empty cells, and all keep their numbers
     std::vector<std::string> more_files;   ///< of further time steps
     std::vector<std::string> other_inputs; ///< files that the caller read: no output may be one
 };
@@ -87,8 +88,8 @@ public:
     /// A step that was read is given out by the next call that reads of the same step no more than these fields and cells.
     void keep(ReadResult read, const FieldsToRead& fields, std::size_t step);
 
-    /// Reads one time step, merges points if asked to, closes the grid at hanging points, and notes what the reader reports, and
-    /// points that coincide.
+    /// Reads one time step, empties cells that are not chosen, merges points if asked to, closes the grid at hanging points,
+    /// and notes what the reader reports, and points that coincide.
     Result<Grid> read(const FieldsToRead& fields, std::size_t step, Caller& caller) const {
         return read(fields, step, caller, caller.run());
     }
@@ -97,8 +98,8 @@ public:
     /// The same, for looking at fields: of a packed file some cells, spread evenly (ReadResult::cells_in_file).
     Result<ReadResult> read_some(const FieldsToRead& fields, std::size_t step, Caller& caller, const Run& run) const;
 
-    /// The same; where that can be done, only the active cells (ReadResult::cells_in_file). Points are never merged then; where
-    /// some of the cells may have hanging points, all are read.
+    /// The same; where that can be done, only the active cells (ReadResult::cells_in_file). Points are never merged and cells
+    /// never chosen then; where some of the cells may have hanging points, all are read.
     Result<ReadResult> read_active(const FieldsToRead& fields, std::size_t step, const ReadActiveCells& active,
                                    Caller& caller) const;
     /// The grid of which read_active() gave some cells. Nothing is noted again.
@@ -114,6 +115,7 @@ private:
                                   const Run& run) const;
     Result<ReadResult> read_unclosed(const FieldsToRead& fields, std::size_t step, CellsToRead cells, Caller& caller,
                                      const Run& run) const;
+    Result<void> choose(ReadResult& read, Caller& caller) const;
     Result<ReadResult> read_file(const FieldsToRead& fields, std::size_t step, ReadOptions options,
                                  const Run& run) const;
 
@@ -136,8 +138,12 @@ enum class Steps { one, all };
 Result<std::vector<std::size_t>> choose_steps(const FileInfo& info, const GridOptions& options, Steps steps,
                                               Caller& caller);
 
-/// "cells left out, their types are not contoured: 12 triangle, 40 polyhedron"; empty when there are none.
+/// "cells left out, their types are not contoured: 12 triangle, 40 polyhedron"; empty when there are none. Empty
+/// cells are not told of.
 std::string cells_left_out_note(const Grid& grid);
+
+/// How many cells GridOptions::cells left as empty ones.
+std::uint64_t emptied_cells(const Grid& grid, const GridOptions& options);
 
 /// The time of a step; nothing where the file knows no time.
 std::optional<double> time_of(const FileInfo& info, std::size_t step);

@@ -96,16 +96,20 @@ constexpr std::array<std::string_view, 12> class_colors{"#4477aa", "#ee6677", "#
                                                         "#66ccee", "#aa3377", "#ee8866", "#44bb99",
                                                         "#99ddff", "#ffaabb", "#aaaa00", "#777777"};
 
-/// The whole numbers of the cells that are contoured, where they are few and all there is.
+/// The whole numbers of the cells that are contoured, where they are few and all there is. Empty cells count, too: cells that
+/// were not chosen leave others their colours.
 std::set<double> few_whole_numbers(const Array& values, const Cells& cells) {
-    const auto contoured = [&](std::size_t cell) {
-        return cells.types.empty() || is_contoured(cells.types.as<std::uint8_t>()[cell]);
+    const std::span<const std::uint8_t> types =
+        cells.types.empty() ? std::span<const std::uint8_t>() : cells.types.as<std::uint8_t>();
+    if (!types.empty() && std::ranges::none_of(types, [](std::uint8_t type) { return is_contoured(type); })) return {};
+    const auto counts = [&](std::size_t cell) {
+        return types.empty() || types[cell] == 0 || is_contoured(types[cell]);
     };
     std::set<double> numbers;
     const bool few = values.visit([&](auto scalars) {
         for (std::size_t i = 0; i < scalars.size(); ++i) {
             const auto value = static_cast<double>(scalars[i]);
-            if (std::isnan(value) || !contoured(i)) continue;
+            if (std::isnan(value) || !counts(i)) continue;
             if (value != std::floor(value)) return false;
             if (numbers.insert(value).second && numbers.size() > class_colors.size()) return false;
         }

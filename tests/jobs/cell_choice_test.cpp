@@ -1,0 +1,335 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// GridOptions::cells: cells chosen by the values of a cell field.
+#include <algorithm>
+#include <cstring>
+
+#include <gtest/gtest.h>
+
+#include <isotet/boundary.hpp>
+#include <isotet/color_field.hpp>
+#include <isotet/grid_counts.hpp>
+#include <isotet/jobs/clip_files.hpp>
+#include <isotet/jobs/draw_files.hpp>
+#include <isotet/jobs/extract_files.hpp>
+#include <isotet/jobs/grid_source.hpp>
+#include <isotet/jobs/look_into.hpp>
+#include <isotet/jobs/pack_file.hpp>
+#include <isotet/read.hpp>
+#include <isotet/write.hpp>
+
+#include "jobs/listener.hpp"
+#include "support/run_program.hpp"
+#include "support/small_grid.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace isotet::jobs {
+namespace {
+
+using test::Listener;
+
+/// Layers along x, from 0.
+std::vector<std::int32_t> layers_of(const Grid& grid, std::size_t layers) {
+    std::vector<std::int32_t> numbers(grid.cells.count());
+    const auto points = grid.points.as<float>();
+    float lower = points[0], upper = points[0];
+    for (std::size_t i = 0; i < points.size(); i += 3) {
+        lower = std::min(lower, points[i]);
+        upper = std::max(upper, points[i]);
+    }
+    for (std::size_t cell = 0; cell < numbers.size(); ++cell) {
+        const auto at = [&](std::size_t i) {
+            return grid.cells.offsets.empty() ? 4 * i : static_cast<std::size_t>(grid.cells.offsets.at(i));
+        };
+        double x = 0;
+        for (std::size_t i = at(cell); i < at(cell + 1); ++i)
+            x += static_cast<double>(points[3 * static_cast<std::size_t>(grid.cells.connectivity.at(i))]);
+        x = x / static_cast<double>(at(cell + 1) - at(cell)) - static_cast<double>(lower);
+        numbers[cell] = static_cast<std::int32_t>(x * static_cast<double>(layers) / static_cast<double>(upper - lower));
+    }
+    return numbers;
+}
+
+Grid layered(const std::string& shape, std::uint64_t side = 6, std::size_t layers = 3) {
+    Grid grid = test::made_grid(shape, side, {"sphere", "gyroid"});
+    grid.cell_fields = {{"layer", Array::own(layers_of(grid, layers))}};
+    std::vector<float> tenths;
+    for (const std::int32_t layer : grid.cell_fields[0].values.as<std::int32_t>())
+        tenths.push_back(static_cast<float>(layer) / 10);
+    grid.cell_fields.push_back({"tenth", Array::own(std::move(tenths))});
+    return grid;
+}
+
+std::string written(const test::TemporaryFolder& folder, const Grid& grid, const std::string& name = "grid.vtu") {
+    EXPECT_TRUE(write_grid(grid, folder.file(name)));
+    return folder.file(name);
+}
+
+Result<Grid> read_chosen(const std::string& file, std::vector<std::string> cells, Listener& listener) {
+    GridOptions options;
+    options.file = file;
+    options.cells = std::move(cells);
+    Result<GridSource> source = GridSource::open(options, listener);
+    if (!source) return source.error();
+    return source->read({}, 0, listener);
+}
+
+Grid chosen(const std::string& file, std::vector<std::string> cells) {
+    Listener listener;
+    return read_chosen(file, std::move(cells), listener).value();
+}
+
+std::string refused(const std::string& file, std::vector<std::string> cells) {
+    Listener listener;
+    const Result<Grid> grid = read_chosen(file, std::move(cells), listener);
+    if (grid) return "";
+    EXPECT_EQ(grid.error().code, ErrorCode::invalid_argument);
+    return grid.error().message;
+}
+
+std::vector<bool> kept(const Grid& grid) {
+    std::vector<bool> flags(grid.cells.count(), true);
+    for (std::size_t cell = 0; cell < flags.size() && !grid.cells.types.empty(); ++cell)
+        flags[cell] = grid.cells.types.as<std::uint8_t>()[cell] != 0;
+    return flags;
+}
+
+Surface surface_of(const std::string& file, std::vector<std::string> cells, Listener& listener,
+                   std::optional<Method> method = {}) {
+    const test::TemporaryFolder folder;
+    ExtractJob job;
+    job.grid.file = file;
+    job.grid.cells = std::move(cells);
+    job.out = folder.file("out.vtp");
+    job.field.name = "sphere";
+    job.isovalues = {0.5};
+    job.method = method;
+    job.source_cells = true;
+    EXPECT_TRUE(extract_files(job, listener));
+    return read_surface(job.out).value().surface;
+}
+
+std::vector<std::int64_t> cells_of(const Surface& surface) {
+    const auto cells = surface.source_cells.as<std::int64_t>();
+    return {cells.begin(), cells.end()};
+}
+
+class ChosenCellsOf : public testing::TestWithParam<const char*> {};
+
+TEST_P(ChosenCellsOf, AllNumbersAreTheWholeGrid) {
+    const test::TemporaryFolder folder;
+    const std::string file = written(folder, layered(GetParam()));
+    Listener listener;
+    const Surface whole = surface_of(file, {}, listener);
+    for (const char* all : {"layer=0,1,2", "layer=0:2", "layer=0:", "layer=:1,2"}) {
+        const Surface same = surface_of(file, {all}, listener);
+        ASSERT_EQ(same.positions.bytes(), whole.positions.bytes()) << all;
+        EXPECT_EQ(std::memcmp(same.positions.data(), whole.positions.data(), whole.positions.bytes()), 0) << all;
+        EXPECT_EQ(cells_of(same), cells_of(whole)) << all;
+    }
+}
+
+/// Source cells are those of the whole grid, whatever method makes the surface.
+TEST_P(ChosenCellsOf, DisjointChoicesMakeUpTheSurface) {
+    const test::TemporaryFolder folder;
+    const std::string file = written(folder, layered(GetParam()));
+    for (const std::optional<Method> method : {std::optional<Method>(), {Method::direct}, {Method::clusters}}) {
+        Listener listener;
+        std::vector<std::int64_t> whole = cells_of(surface_of(file, {}, listener, method)), parts;
+        for (const char* choice : {"layer=0", "!layer=0,2", "layer=2:9"}) {
+            const auto some = cells_of(surface_of(file, {choice}, listener, method));
+            EXPECT_FALSE(some.empty());
+            EXPECT_LT(some.size(), whole.size());
+            parts.insert(parts.end(), some.begin(), some.end());
+        }
+        std::ranges::sort(whole);
+        std::ranges::sort(parts);
+        EXPECT_EQ(parts, whole);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, ChosenCellsOf, testing::Values("kuhn", "mixed"),
+                         [](const auto& shape) { return std::string(shape.param); });
+
+TEST(ChosenCells, HaveTheFacesBetweenRegionsAsBoundary) {
+    const test::TemporaryFolder folder;
+    const std::string file = written(folder, layered("kuhn", 4, 2));
+    EXPECT_EQ(boundary_of(chosen(file, {})).value().triangle_count(), 6u * 32);
+    EXPECT_EQ(boundary_of(chosen(file, {"layer=1"})).value().triangle_count(), 2u * 32 + 4 * 16);
+}
+
+TEST(ChosenCells, LeaveAllNumbersAsTheyAre) {
+    const test::TemporaryFolder folder;
+    const std::string file = written(folder, layered("mixed"));
+    const Grid whole = chosen(file, {}), some = chosen(file, {"layer=1"});
+    EXPECT_EQ(some.points.tuples(), whole.points.tuples());
+    ASSERT_EQ(some.cells.count(), whole.cells.count());
+    for (std::size_t cell = 0; cell < some.cells.count(); ++cell)
+        EXPECT_EQ(some.cells.types.at(cell),
+                  whole.cell_fields[0].values.at(cell) == 1 ? whole.cells.types.at(cell) : 0);
+    ASSERT_EQ(some.cell_fields.size(), whole.cell_fields.size());
+    EXPECT_EQ(some.cell_fields[0].values.bytes(), whole.cell_fields[0].values.bytes());
+}
+
+TEST(ChosenCells, AreInAllChoices) {
+    const test::TemporaryFolder folder;
+    const std::string file = written(folder, layered("kuhn"));
+    EXPECT_EQ(kept(chosen(file, {"layer=1:", "!layer=2"})), kept(chosen(file, {"layer=1"})));
+    EXPECT_EQ(kept(chosen(file, {"tenth=0.1"})), kept(chosen(file, {"layer=1"}))) << "0.1 as the field's float";
+    EXPECT_EQ(kept(chosen(file, {"tenth=0.05:0.25"})), kept(chosen(file, {"layer=1,2"})));
+}
+
+TEST(ChosenCells, AreToldOfWithoutEmptyCells) {
+    const test::TemporaryFolder folder;
+    ExtractJob job;
+    job.grid.file = written(folder, layered("kuhn"));
+    job.grid.cells = {"layer=1", "tenth=:0.2"};
+    job.field.name = "sphere";
+    job.isovalues = {0.5};
+    Listener listener;
+    EXPECT_EQ(extract_files(job, listener).value().cells_left_out, 0u);
+    EXPECT_EQ(listener.noted, std::vector<std::string>{"432 of 1,296 cells are in layer=1 and tenth=:0.2"});
+    ClipJob clip;
+    clip.grid = job.grid;
+    clip.field.name = "sphere";
+    clip.range = SolidRange::above(0.5);
+    EXPECT_EQ(clip_files(clip, listener).value().cells_left_out, 0u);
+    InfoJob look;
+    look.grid = job.grid;
+    EXPECT_EQ(look_into(look, listener).value().report.cells_left_out, 0u);
+}
+
+TEST(ChosenCells, RefuseWhatTheGridDoesNotHave) {
+    const test::TemporaryFolder folder;
+    Grid grid = layered("kuhn");
+    grid.cell_fields.push_back({"u", Array::own(std::vector<float>(2 * grid.cells.count()), 2)});
+    const std::string file = written(folder, grid);
+    EXPECT_EQ(refused(file, {"layer"}),
+              "`cells` got 'layer', but takes FIELD=NUMBERS, such as region=2,5, or FIELD=A:B");
+    EXPECT_EQ(refused(file, {"layr=1"}),
+              "`cells` got 'layr=1', but there is no cell field 'layr': the grid has 'layer', 'u', 'tenth'");
+    EXPECT_EQ(refused(file, {"layer=7"}), "`cells` got 'layer=7', but no cell has 7: 'layer' has 0, 1, 2");
+    EXPECT_EQ(refused(file, {"layer=1,sand"}),
+              "`cells` got 'layer=1,sand', but 'sand' is no number, no range A:B that ascends and no region: the file "
+              "names none of 'layer'");
+    EXPECT_NE(refused(file, {"layer=2:1"}), "");
+    EXPECT_NE(refused(file, {"layer=:nan"}), "");
+    EXPECT_NE(refused(file, {"layer=1,"}), "");
+    EXPECT_EQ(refused(file, {"layer=1", "layer=2"}), "`cells`: none of 1,296 cells is in layer=1 and layer=2");
+    EXPECT_EQ(refused(file, {"!layer=0:2"}), "`cells`: none of 1,296 cells is in !layer=0:2");
+    EXPECT_NE(refused(file, {"u=1"}).find("'u' has 2 components"), std::string::npos);
+    EXPECT_NE(refused("make:kuhn:2", {"layer=1"}).find("the grid has none"), std::string::npos);
+}
+
+/// The file's triangles have numbers, too: they are left as they are, beside tets that are chosen.
+TEST(ChosenCells, OfGmshAreNamedByPhysicalGroups) {
+    for (const char* name : {"inclusions_v22_ascii.msh", "inclusions_v41_ascii.msh", "inclusions_v41_binary.msh"}) {
+        const std::string file = test::source_folder().string() + "/data/msh/" + name;
+        const Grid grid = chosen(file, {"gmsh:physical=inclusions"});
+        const auto counts = count_cells_by_type(grid.cells), all = count_cells_by_type(chosen(file, {}).cells);
+        EXPECT_EQ(counts.at(5), all.at(5)) << name;
+        EXPECT_EQ(counts.at(10) + counts.at(0), all.at(10)) << name;
+        EXPECT_EQ(kept(grid), kept(chosen(file, {"gmsh:physical=2"}))) << name;
+        EXPECT_EQ(count_cells_by_type(chosen(file, {"gmsh:physical=inclusions,domain"}).cells), all) << name;
+        EXPECT_NE(refused(file, {"gmsh:physical=inclusion"}).find("the file has 'inclusions', 'domain'"),
+                  std::string::npos);
+        const auto triangles = count_cells_by_type(chosen(file, {"gmsh:physical=3"}).cells);
+        EXPECT_EQ(triangles.at(5), all.at(5)) << "of which there are no tets";
+        EXPECT_EQ(triangles.at(0), all.at(10)) << name;
+    }
+}
+
+TEST(ChosenCells, OfGocadAreNamedByVolumes) {
+    const std::string file = test::source_folder().string() + "/data/gocad/geomodel3d_tsolid.so";
+    EXPECT_EQ(kept(chosen(file, {"tvolume=Region_2,h1_model1_1"})), kept(chosen(file, {"tvolume=0,3"})));
+    EXPECT_EQ(kept(chosen(file, {"!tvolume=Region_2"})), kept(chosen(file, {"tvolume=1:"})));
+}
+
+TEST(ChosenCells, OfAPackedFileAreThoseOfItsGrid) {
+    const test::TemporaryFolder folder;
+    PackJob pack;
+    pack.grid.file = written(folder, layered("mixed"));
+    pack.out = folder.file("grid.isotet");
+    pack.fields = {"sphere"};
+    pack.cell_fields = {"layer"};
+    Listener listener;
+    ASSERT_TRUE(pack_file(pack, listener));
+    EXPECT_EQ(cells_of(surface_of(pack.out, {"layer=1"}, listener)).size(),
+              cells_of(surface_of(pack.grid.file, {"layer=1"}, listener)).size());
+
+    pack.out = folder.file("some.isotet");
+    pack.grid.cells = {"layer=1"};
+    ASSERT_TRUE(pack_file(pack, listener));
+    std::vector<std::int64_t> packed = cells_of(surface_of(pack.out, {}, listener)),
+                              direct = cells_of(surface_of(pack.grid.file, {"layer=1"}, listener));
+    std::ranges::sort(packed); // of clusters
+    std::ranges::sort(direct);
+    EXPECT_EQ(packed, direct);
+}
+
+/// A step need not have all numbers, but some cell.
+TEST(ChosenCells, OfASeriesAreThoseOfEachStep) {
+    const test::TemporaryFolder folder;
+    Grid grid = layered("kuhn");
+    written(folder, grid, "a.vtu");
+    std::vector<std::int32_t> moved = layers_of(grid, 3);
+    for (std::int32_t& layer : moved) layer = layer == 2 ? 5 : 2 - layer;
+    grid.cell_fields[0].values = Array::own(std::move(moved));
+    written(folder, grid, "b.vtu");
+    ExtractJob job;
+    job.grid.file = folder.write("run.pvd", R"(<VTKFile type="Collection"><Collection>
+<DataSet timestep="0" file="a.vtu"/><DataSet timestep="1" file="b.vtu"/></Collection></VTKFile>)");
+    job.grid.cells = {"layer=0,1"};
+    job.field.name = "gyroid";
+    job.isovalues = {0.5};
+    job.all_steps = true;
+    job.out = folder.file("out-{step}.vtp");
+    job.source_cells = true;
+    Listener listener;
+    ASSERT_TRUE(extract_files(job, listener));
+    for (const char* step : {"0", "1"}) {
+        const Grid read = isotet::read(folder.file(*step == '0' ? "a.vtu" : "b.vtu"), {}).value().grid;
+        for (const std::int64_t cell :
+             cells_of(read_surface(folder.file("out-" + std::string(step) + ".vtp")).value().surface))
+            EXPECT_LE(read.cell_fields[0].values.at(static_cast<std::size_t>(cell)), 1) << step;
+    }
+    EXPECT_NE(std::ranges::find(listener.noted, "`cells` got 'layer=0,1', but no cell has 0: 'layer' has 1, 2, 5"),
+              listener.noted.end());
+    job.grid.cells = {"layer=0"};
+    EXPECT_FALSE(extract_files(job, listener)) << "nothing is left of step 1";
+}
+
+TEST(ChosenCells, KeepTheColoursOfTheirClasses) {
+    const test::TemporaryFolder folder;
+    const std::string file = written(folder, layered("mixed"));
+    const ColorField whole = find_colors(chosen(file, {}), "layer").value().field;
+    const ColorField some = find_colors(chosen(file, {"layer=2"}), "layer").value().field;
+    EXPECT_EQ(some.classes, whole.classes);
+    EXPECT_EQ(some.scale.lower, whole.scale.lower);
+    EXPECT_EQ(some.scale.upper, whole.scale.upper);
+    const std::string gmsh = test::source_folder().string() + "/data/msh/inclusions_v41_ascii.msh";
+    EXPECT_EQ(find_colors(chosen(gmsh, {"gmsh:physical=2"}), "gmsh:physical").value().field.classes,
+              find_colors(chosen(gmsh, {}), "gmsh:physical").value().field.classes);
+}
+
+/// The field that chooses is not one that is drawn.
+TEST(ChosenCells, AreDrawn) {
+    const test::TemporaryFolder folder;
+    DrawJob job;
+    job.grid.file = written(folder, layered("kuhn"));
+    job.grid.cells = {"layer=1"};
+    job.field.name = "sphere";
+    job.isovalues = {0.5};
+    job.picture.width = 160;
+    job.picture.height = 120;
+    job.boundary = 0;
+    job.out = folder.file("a.png");
+    Listener listener;
+    const DrawReport some = draw_files(job, listener).value();
+    job.grid.cells = {};
+    const DrawReport whole = draw_files(job, listener).value();
+    EXPECT_LT(some.input.scene->surfaces().at(0).triangles, whole.input.scene->surfaces().at(0).triangles);
+    EXPECT_GT(some.input.scene->surfaces().at(0).triangles, 0u);
+}
+
+} // namespace
+} // namespace isotet::jobs
