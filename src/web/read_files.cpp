@@ -13,6 +13,7 @@
 #include "io/formats.hpp"
 #include "module.hpp"
 #include "page.hpp"
+#include "view/greeting.hpp"
 
 namespace isotet::web {
 
