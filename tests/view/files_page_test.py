@@ -50,6 +50,12 @@ def ready(browser, name):
                  ' && Number(document.body.dataset.triangles) > 0 && document.body.dataset.preview === "false"', 60)
 
 
+def ready_as_boundary(browser, name):
+    """No field of the file varies."""
+    browser.wait(f'document.getElementById("file").textContent === {json.dumps(name)} && document.body.dataset.step === "ready"'
+                 ' && document.body.dataset.kinds === "boundary"', 60)
+
+
 def check_triangles(browser, path):
     """Those that the program extracts at the page's value."""
     field, value = browser.value('[document.body.dataset.field, document.body.dataset.shown]')
@@ -71,6 +77,8 @@ def test_files_are_chosen_and_dropped(browser, path, folder):
     check_triangles(browser, ARTERY)
     # Another grid in its place.
     drop(browser, TETGEN)
+    ready_as_boundary(browser, 'ellipsoid_16k.node')
+    browser.click('#isosurfaces')
     ready(browser, 'ellipsoid_16k.node')
     check_triangles(browser, TETGEN[0])
     check(browser.value('document.getElementById("drop").hidden'), 'the picture is not covered')
@@ -90,7 +98,7 @@ def test_broken_files_are_sentences(browser, path, folder):
         check(name in sentence(browser), f'the sentence names the file: {sentence(browser)}')
     # And then one that is whole.
     choose(browser, TETGEN)
-    ready(browser, 'ellipsoid_16k.node')
+    ready_as_boundary(browser, 'ellipsoid_16k.node')
 
 
 def test_names_are_text(browser, path, folder):
