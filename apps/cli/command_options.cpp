@@ -178,6 +178,7 @@ Ctrl-C ends it. Press ? in the page for its keys.
 Examples:
   isotet view grid.vtu
   isotet view grid.vtu -f pressure -i 0.5 --color-by temperature
+  isotet view coarse.vtu --beside fine.vtu
   isotet view make:kuhn:64:sphere,gyroid
   isotet view grid.vtu --no-browser --port 8123
 )";
@@ -354,6 +355,8 @@ void add_view(const Command& program, ViewCommand& view) {
         "The field to begin with, or an expression such as mag(U); default: the one that info says is shown first");
     add_isovalues(command, view.isovalues, view.shares, &view.decimal_comma);
     command.add_text("--color-by", view.color_by, "FIELD", "Colour by this point or cell field to begin with");
+    command.add_file("--beside", view.beside, "FILE",
+                     "Show this file beside it, read by the same options, with linked cameras and isovalues");
     command.add_count(
         "--port", {1, 65535}, [&](std::uint64_t n) { view.port = n; }, "N",
         "The port of 127.0.0.1 to serve the page at; default: that of the last run with this file, or a free one");
@@ -377,7 +380,7 @@ void add_view(const Command& program, ViewCommand& view) {
     add_time(command, view.grid);
     add_reading(command, view.grid, "--format");
     add_common(command, view.common);
-    command.set_common({"--field", "--isovalue", "--color-by", "--no-browser", "--port", "--out"});
+    command.set_common({"--field", "--isovalue", "--color-by", "--beside", "--no-browser", "--port", "--out"});
     command.set_details(view_details);
 }
 

@@ -2,6 +2,8 @@
 // `isotet view`: a grid in the browser.
 #include <filesystem>
 #include <mutex>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -47,6 +49,81 @@ std::vector<std::string> reading_options(const GridOptions& grid, const RefineCh
     if (refine && refine->distance > 0) add("--distance", shortest(refine->distance));
     if (refine && refine->geometry_tolerance > 0) add("--geometry-tolerance", shortest(refine->geometry_tolerance));
     return words;
+}
+
+/// A file of the command line, and what the viewer is told of it.
+class OpenedFile {
+public:
+    /// `command`   whose grid it is
+    explicit OpenedFile(const ViewCommand& command) : command_(command), console_(command.common) {}
+
+    /// Errors   as GridSource::open() and check_view_fields(); of outputs and steps
+    Result<void> open() {
+        Result<GridSource> source = GridSource::open(command_.grid, console_);
+        if (!source) return source.error();
+        source_ = *std::move(source);
+        if (auto paths = check_output_paths(source_->info().files, {command_.common.json}); !paths)
+            return paths.error();
+        if (Result<void> found = check_view_fields(*source_, command_.field, command_.color_by); !found) return found;
+        if (command_.grid.time || command_.grid.step)
+            if (const auto steps = choose_steps(source_->info(), command_.grid, Steps::one, console_); !steps)
+                return steps.error();
+        return {};
+    }
+
+    /// As open(), but fields that it does not have are only noted; other errors are those of reading it.
+    void open_beside() {
+        Result<void> opened = open();
+        if (!opened && source_ && !check_view_fields(*source_, command_.field, command_.color_by)) {
+            console_.note(command_.grid.file + ": " + opened.error().message);
+            command_.field = {};
+            command_.color_by.clear();
+            command_.isovalues.clear();
+            command_.shares.clear();
+            opened = open();
+        }
+        if (!opened) error_ = opened.error();
+    }
+
+    view::ViewerFile to_view() {
+        view::ViewerFile file;
+        file.name = valid_utf8(command_.grid.file);
+        file.reading = reading_options(command_.grid, command_.refine);
+        file.read = [this](const Run& run) -> Result<view::ViewerInput> {
+            if (error_) return *error_;
+            const ViewStart start{command_.grid,   command_.field,        command_.isovalues,
+                                  command_.shares, command_.color_by,     FirstCells::some,
+                                  false,           command_.decimal_comma};
+            return read_view_input(start, *source_, console_, run);
+        };
+        file.read_step = [this](std::size_t step, const Run& run) -> Result<Grid> {
+            const std::lock_guard lock(reading_);
+            Result<ReadResult> read = source_->read_some({}, step, console_, run);
+            if (!read) return read.error();
+            return std::move(read->grid);
+        };
+        file.read_cells = [this](std::size_t step, const Run& run) {
+            const std::lock_guard lock(reading_);
+            return source_->read({}, step, console_, run);
+        };
+        return file;
+    }
+
+    Console& console() noexcept { return console_; }
+
+private:
+    ViewCommand command_;
+    Console console_;
+    std::optional<GridSource> source_;
+    std::optional<Error> error_; ///< of opening it
+    std::mutex reading_;         ///< steps are read by several threads
+};
+
+ViewCommand of_second_file(const ViewCommand& command) {
+    ViewCommand second = command;
+    second.grid.file = command.beside;
+    second.grid.more_files.clear();
+    return second;
 }
 
 /// Opens it with the token and port of the last run with this file: addresses stay valid. A line that is not encrypted
@@ -105,17 +182,14 @@ Result<void> tell_address(const ViewCommand& command, const view::Viewer& viewer
 } // namespace
 
 Result<ExitCode> run_view(const ViewCommand& command) {
-    Console console(command.common);
-    Result<GridSource> source = GridSource::open(command.grid, console);
-    if (!source) return source.error();
-    if (auto paths = check_output_paths(source->info().files, {command.common.json}); !paths) return paths.error();
-    if (Result<void> found = check_view_fields(*source, command.field, command.color_by); !found) return found.error();
-    if (command.grid.time || command.grid.step)
-        if (const auto steps = choose_steps(source->info(), command.grid, Steps::one, console); !steps)
-            return steps.error();
+    OpenedFile file(command), second(of_second_file(command));
+    if (Result<void> opened = file.open(); !opened) return opened.error();
     view::ViewerOptions options;
-    options.file = valid_utf8(command.grid.file);
-    options.reading = reading_options(command.grid, command.refine);
+    options.file = file.to_view();
+    if (!command.beside.empty()) {
+        second.open_beside();
+        options.second = second.to_view();
+    }
     options.refine = command.refine;
     options.port = static_cast<std::uint16_t>(command.port);
     options.hosts = command.hosts;
@@ -130,33 +204,17 @@ Result<ExitCode> run_view(const ViewCommand& command) {
     }
     options.program = "/proc/self/exe";
     options.listen = command.listen;
-    options.read = [&](const Run& run) {
-        const ViewStart start{command.grid,     command.field, command.isovalues, command.shares, command.color_by,
-                              FirstCells::some, false, command.decimal_comma};
-        return read_view_input(start, *source, console, run);
-    };
-    std::mutex reading; // steps are read by several threads
-    options.read_step = [&](std::size_t step, const Run& run) -> Result<Grid> {
-        const std::lock_guard lock(reading);
-        Result<ReadResult> read = source->read_some({}, step, console, run);
-        if (!read) return read.error();
-        return std::move(read->grid);
-    };
-    options.read_cells = [&](std::size_t step, const Run& run) {
-        const std::lock_guard lock(reading);
-        return source->read({}, step, console, run);
-    };
     options.is_left = is_left_by_ssh;
     options.failed = [](const Error& error) { say_error(error.message); };
     auto viewer = open_viewer(command, std::move(options));
     if (!viewer) return viewer.error();
     Browser browser;
-    if (Result<void> told = tell_address(command, **viewer, browser, console); !told) return told.error();
+    if (Result<void> told = tell_address(command, **viewer, browser, file.console()); !told) return told.error();
     take_time_to_stop();
     const Result<void> served = (*viewer)->run(stop_requested);
     if (!served && !stop_requested) return exit_code_of(served.error().code); // told already
     if (!served) return served.error();
-    if (!(*viewer)->reason().empty()) console.note((*viewer)->reason());
+    if (!(*viewer)->reason().empty()) file.console().note((*viewer)->reason());
     return ExitCode::done;
 }
 

@@ -64,6 +64,7 @@ struct ViewCommand {
     std::vector<double> isovalues;  ///< none: the page chooses one
     std::vector<IsovalueShare> shares; ///< more, of the first step
     std::string color_by;           ///< a field; empty: each isovalue has its colour
+    std::string beside;             ///< a second file, read as the first; empty: none
     std::uint64_t port = 0;         ///< 0: a free one
     std::vector<std::string> hosts; ///< names beside localhost by which a browser reaches the page
     bool keep = false;

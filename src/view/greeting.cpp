@@ -33,8 +33,11 @@ void take_first_view(const FirstView& first, ViewState& state) {
     state.colored_boundary = !first.field.empty();
 }
 
-Json welcome_json(const std::string& file, const std::string& version, const std::string& out) {
-    return {{"say", "welcome"}, {"version", version}, {"file", file}, {"maps", maps_json()}, {"out", out}};
+Json welcome_json(const std::string& file, const std::string& version, const std::string& out,
+                  const std::string& other) {
+    Json welcome = {{"say", "welcome"}, {"version", version}, {"file", file}, {"maps", maps_json()}, {"out", out}};
+    if (!other.empty()) welcome["other"] = other;
+    return welcome;
 }
 
 Json grid_json(const GridView& view, const std::string& file, const ViewerInput& input) {

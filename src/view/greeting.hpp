@@ -33,8 +33,10 @@ struct ViewerInput {
 void take_first_view(const FirstView& first, ViewState& state);
 
 /// {"say": "welcome", ...}: 64 colours of each map among it.
-/// `out`   the folder where pages may save files; empty: none
-Json welcome_json(const std::string& file, const std::string& version, const std::string& out);
+/// `out`     the folder where pages may save files; empty: none
+/// `other`   the file that is shown beside it; empty: none
+Json welcome_json(const std::string& file, const std::string& version, const std::string& out,
+                  const std::string& other = {});
 
 /// {"say": "grid", ...}. Of `input` all but the grid, which is in `view`.
 Json grid_json(const GridView& view, const std::string& file, const ViewerInput& input);

@@ -158,7 +158,7 @@ private:
 
     void answer();
     void respond(http::status status, std::string_view type, std::string_view content);
-    void open_socket();
+    void open_socket(std::size_t which);
     void read_next();
     void write_next();
     void finish();
@@ -199,11 +199,12 @@ void Connection::answer() {
         return respond(http::status::forbidden, "text/plain",
                        "This server answers to localhost only; isotet view --allow-host NAME allows another name.\n");
     if (websocket::is_upgrade(request)) {
-        if (last_part(view_of(request.target())) != "socket")
-            return respond(http::status::not_found, "text/plain", "There is no such socket.\n");
+        const auto& sockets = owner_.options.sockets;
+        const auto named = std::ranges::find(sockets, last_part(view_of(request.target())));
+        if (named == sockets.end()) return respond(http::status::not_found, "text/plain", "There is no such socket.\n");
         if (!is_our_origin(owner_.options.hosts, view_of(request[http::field::origin]), host))
             return respond(http::status::forbidden, "text/plain", "Pages of other servers cannot use this one.\n");
-        return open_socket();
+        return open_socket(static_cast<std::size_t>(named - sockets.begin()));
     }
     if (request.method() != http::verb::get && request.method() != http::verb::head)
         return respond(http::status::method_not_allowed, "text/plain", "Only GET and HEAD are answered.\n");
@@ -240,7 +241,7 @@ void Connection::respond(http::status status, std::string_view type, std::string
     });
 }
 
-void Connection::open_socket() {
+void Connection::open_socket(std::size_t which) {
     stream_.expires_never();
     beast::error_code ignored;
     stream_.socket().set_option(tcp::no_delay(true), ignored); // not of a Unix socket
@@ -252,12 +253,12 @@ void Connection::open_socket() {
     socket_->set_option(timeout);
     socket_->read_message_max(owner_.options.max_message);
     socket_->auto_fragment(false);
-    socket_->async_accept(parser_->get(), [self = shared_from_this()](beast::error_code error) {
+    socket_->async_accept(parser_->get(), [self = shared_from_this(), which](beast::error_code error) {
         self->parser_.reset();
         if (error || self->finished_) return self->finish();
         self->opened_ = true;
         self->buffer_.clear();
-        self->owner_.events.opened(self->number_);
+        self->owner_.events.opened(self->number_, which);
         self->read_next();
     });
 }

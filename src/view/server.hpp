@@ -2,6 +2,7 @@
 // HTTP and WebSocket for pages on this machine. The only place with sockets.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -28,7 +29,8 @@ struct ServerOptions {
     std::string
         listen; ///< an IP address of the machine; "unix:PATH": a socket there, for its owner alone; empty: 127.0.0.1
     bool any_address = false; ///< a browser may have reached it by any IP address; so it is where it listens at all
-    std::vector<ServedFile> files;    ///< must outlive the server
+    std::vector<std::string> sockets{"socket"}; ///< names of WebSockets
+    std::vector<ServedFile> files;              ///< must outlive the server
     std::size_t max_connections = 32; ///< at once; more are closed
     std::size_t max_message = 65'536; ///< bytes from a page; a larger one ends its connection
     std::size_t max_waiting = 8;      ///< messages to a page that wait: until they are sent, none of it is read
@@ -44,13 +46,13 @@ enum class Parting : std::uint8_t {
 
 /// What the server tells. Called by the thread of run().
 struct ServerEvents {
-    std::function<void(ConnectionNumber)> opened = {};
+    std::function<void(ConnectionNumber, std::size_t socket)> opened = {}; ///< which of ServerOptions::sockets
     std::function<void(ConnectionNumber, std::string_view)> message = {};
     std::function<void(ConnectionNumber, Parting)> closed = {};
     std::function<bool()> tick = {}; ///< ten times a second; false ends run()
 };
 
-/// Answers GET and HEAD for its files, and opens a WebSocket at "socket" for a browser whose page came from here: Host
+/// Answers GET and HEAD for its files, and opens a WebSocket for a browser whose page came from here: Host
 /// must be this machine's or one of `hosts`, and Origin the same as Host or one of `hosts`. Of a path the last part
 /// counts, so that it works below a proxy's path. Nothing else of the machine can be reached.
 class Server {

@@ -1,48 +1,17 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// A grid in the browser: server, worker and grid together.
+// Grids in the browser: a server, and the files that it shows.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
-#include <functional>
 #include <memory>
-#include <optional>
 #include <string>
-#include <vector>
 
-#include <isotet/progress.hpp>
-#include <isotet/refine.hpp>
 #include <isotet/result.hpp>
 
-#include "view/greeting.hpp"
-#include "view/steps.hpp"
+#include "view/viewer_options.hpp"
 
 namespace isotet::view {
-
-struct ViewerOptions {
-    std::string file;                                    ///< as the command line names it
-    std::vector<std::string> reading;                    ///< options of the command line that say how it is read
-    std::uint16_t port = 0;                              ///< 0: a free one
-    std::vector<std::string> hosts;                      ///< as ServerOptions::hosts
-    std::string listen;                                  ///< as ServerOptions::listen
-    std::string version;                                 ///< shown by the page
-    std::string token;                                   ///< empty: 128 bits of the system's random numbers
-    bool keep = false;                                   ///< goes on when the last page was closed
-    double linger_seconds = 60;                          ///< after the last page was closed, without `keep`
-    double lost_seconds = 1800; ///< after the last page lost its connection, from which it may come back
-    double failure_seconds = 30; ///< that an error of reading waits for a page to tell
-    std::function<bool()> is_left = {}; ///< asked now and then: whether what started it has gone; then run() ends
-    std::function<void(const Error&)> failed = {}; ///< told an error of reading at once, by a thread of its own
-    std::size_t max_pages = 4;                           ///< at once
-    int threads = 0;                                     ///< at most; 0: all
-    std::function<Result<ViewerInput>(const Run&)> read; ///< called by a thread of its own
-    ReadStep read_step;  ///< of any step, as ViewerInput has it; nothing: the file is not read again
-    ReadStep read_cells; ///< the same with all cells, where ViewerInput has some
-    std::optional<RefineOptions> refine =
-        RefineOptions{}; ///< of curved cells where a page rests; nothing: it is not done
-    std::string out;     ///< a folder where pages may save files; empty: they may not
-    std::string program; ///< that writes these files, and those that pages download, by command lines of isotet
-};
 
 /// 128 random bits as 32 hexadecimal digits. Errors   system
 Result<std::string> random_token();
@@ -53,14 +22,15 @@ public:
     static Result<std::unique_ptr<Viewer>> open(ViewerOptions options);
     ~Viewer();
 
-    /// "http://127.0.0.1:PORT/#TOKEN"; with a Unix socket "http://localhost:PORT/#TOKEN" where it is forwarded to
+    /// "http://127.0.0.1:PORT/#TOKEN", with two files "http://127.0.0.1:PORT/beside.html?second#TOKEN"; with a Unix socket
+    /// of localhost, and the port that it is forwarded to
     std::string address() const;
     std::uint16_t port() const noexcept;
     const std::string& token() const noexcept;
 
-    /// Serves pages, reads the file and packs it meanwhile, until `stop`, or until the last page is gone for long.
+    /// Serves pages, reads the files and packs them meanwhile, until `stop`, or until the last page is gone for long.
     ///
-    /// Errors   of reading, which a page was told, if one came
+    /// Errors   of reading where no file could be read; a page was told, if one came
     Result<void> run(const std::atomic<bool>& stop);
 
     /// Why run() ended: a sentence, or empty where it was told to.

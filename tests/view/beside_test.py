@@ -158,6 +158,68 @@ def test_back_undoes_in_both(browser, viewer):
     in_both(browser, 'of.shown === "0.7"')
 
 
+def start_files(browser, viewer):
+    browser.call('Page.navigate', url='about:blank')
+    browser.open(viewer.address)
+    ready(browser)
+
+
+def test_two_files(browser, viewer):
+    """The second one begins as the first; what is changed in one is changed in the other."""
+    with Viewer('make:kuhn:8:sphere,gyroid', '--beside', 'make:kuhn:12:gyroid,sphere', '-f', 'sphere') as two:
+        check('/beside.html?second#' in two.address, two.address)
+        start_files(browser, two)
+        check([browser.value(f'{data(side)}.grid') for side in (0, 1)] == ['729 points, 3072 cells', '2197 points, 10368 cells'], 'each has its file')
+        check(browser.value('document.getElementById("file").textContent') == 'make:kuhn:8:sphere,gyroid | make:kuhn:12:gyroid,sphere', 'both are named')
+        browser.wait(f'{data(0)}.shown === {data(1)}.shown && {same_camera()}')
+        for side in (0, 1):
+            type_value(browser, side, f'0.{5 + side}')
+            in_both(browser, f'of.shown === "0.{5 + side}"')
+            before = camera(browser, side)
+            x, y = in_middle(browser, side)
+            browser.drag((x, y), (x + 60, y + 30))
+            browser.wait(f'{data(side)}.camera !== "{before}" && {same_camera()}')
+        browser.picture(pictures and f'{pictures}/beside_files.png')
+        settled(browser)
+        browser.value('location.reload()')
+        browser.wait(f'{data(0)}?.shown === "0.6" && {data(1)}?.shown === "0.6" && {data(1)}.grid === "2197 points, 10368 cells"')
+        x, y = in_middle(browser, 1)
+        browser.drag((x, y), (x + 60, y))
+        browser.key('2')
+        browser.wait('location.pathname === "/" && document.body?.dataset.grid === "2197 points, 10368 cells"')
+        browser.key('2')
+        browser.wait('location.pathname === "/beside.html"')
+        in_both(browser, 'of.shown !== undefined')
+        check([browser.value(f'{data(side)}.grid[0]') for side in (0, 1)] == ['7', '2'], 'the files keep their sides')
+        browser.value(f'{frame(1)}.getElementById("copy-render").click()')
+        browser.wait(f'{frame(1)}.getElementById("copied").textContent.startsWith("isotet render make:kuhn:12:gyroid,sphere ")')
+        browser.call('Page.navigate', url='about:blank')
+
+
+def test_files_elsewhere_have_their_own_camera(browser, viewer):
+    with Viewer(os.path.join(DATA, 'vtu/artery_flow_tet_wedge.vtu'), '--beside', GRID, '-f', 'Umag') as two:
+        start_files(browser, two)
+        check(not browser.value('document.getElementById("link-camera").checked'), 'the camera of one sees nothing of the other')
+        check('Umag' in browser.value(f'{frame(1)}.getElementById("notes-list").textContent'), 'it has no such field')
+        browser.call('Page.navigate', url='about:blank')
+
+
+def test_a_file_that_cannot_be_read_says_so_in_its_half(browser, viewer):
+    with tempfile.TemporaryDirectory() as folder:
+        broken = os.path.join(folder, 'broken.vtu')
+        with open(broken, 'w') as file:
+            file.write('<VTKFile type="UnstructuredGrid"')
+        with Viewer(GRID, '--beside', broken, '-f', 'sphere') as two:
+            browser.call('Page.navigate', url='about:blank')
+            browser.open(two.address)
+            browser.wait(f'{data(0)}?.step === "ready" && {frame(1)}?.getElementById("message").textContent.includes("broken.vtu")')
+            settled(browser)
+            type_value(browser, 0, '0.5')
+            browser.wait(f'{data(0)}.shown === "0.5"')
+            check(browser.value(f'{frame(1)}.getElementById("lost").hidden'), 'the server goes on')
+            browser.call('Page.navigate', url='about:blank')
+
+
 def test_keys(browser, viewer):
     """2 shows two, and from one of them that one; what Tab reaches first are the links."""
     browser.call('Page.navigate', url='about:blank')

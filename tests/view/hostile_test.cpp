@@ -29,11 +29,11 @@ constexpr const char* right_token = "00112233445566778899aabbccddeeff";
 class RunningViewer {
 public:
     explicit RunningViewer(double linger_seconds = 60, ViewerOptions options = {}) {
-        options.file = "grid.vtu";
+        options.file.name = "grid.vtu";
         options.token = right_token;
         options.hosts = {"hub.example.org"};
         options.linger_seconds = linger_seconds;
-        options.read = [](const Run& run) -> Result<ViewerInput> {
+        options.file.read = [](const Run& run) -> Result<ViewerInput> {
             MakeOptions made;
             made.shape = "kuhn";
             made.side = 6;
@@ -385,7 +385,9 @@ TEST(Viewer, TheAddressHoldsATokenOfItsOwnEachTime) {
 TEST(Viewer, AFileThatCannotBeReadIsToldToThePageAndToTheCaller) {
     ViewerOptions options;
     options.token = right_token;
-    options.read = [](const isotet::Run&) -> Result<ViewerInput> { return Error{ErrorCode::file, "it is not there"}; };
+    options.file.read = [](const isotet::Run&) -> Result<ViewerInput> {
+        return Error{ErrorCode::file, "it is not there"};
+    };
     const auto viewer = Viewer::open(std::move(options)).value();
     std::atomic<bool> stop{false};
     Result<void> result;
@@ -398,11 +400,45 @@ TEST(Viewer, AFileThatCannotBeReadIsToldToThePageAndToTheCaller) {
     EXPECT_EQ(result.error().message, "it is not there");
 }
 
+TEST(Viewer, OfTwoFilesOneIsShownWhereTheOtherCannotBeRead) {
+    ViewerOptions options;
+    options.second.emplace();
+    options.second->name = "other.vtu";
+    options.second->read = [](const isotet::Run&) -> Result<ViewerInput> {
+        return Error{ErrorCode::file, "it is not there"};
+    };
+    const RunningViewer viewer(60, std::move(options));
+    EXPECT_EQ(viewer.viewer().address(),
+              "http://127.0.0.1:" + std::to_string(viewer.port()) + "/beside.html?second#" + right_token);
+    const auto say_hello_to = [](RawPage& page, const char* socket, const std::string& token) {
+        return page.open_socket("http://" + page.host(), page.host(), socket) &&
+               page.send_text(R"({"do":"hello","token":")" + token + R"("})");
+    };
+    RawPage first(viewer.port()), second(viewer.port()), wrong(viewer.port());
+    ASSERT_TRUE(say_hello_to(second, "/proxy/second", right_token));
+    EXPECT_TRUE(message_with(second, R"("other":"grid.vtu")"));
+    EXPECT_TRUE(message_with(second, "it is not there"));
+    ASSERT_TRUE(say_hello_to(first, "/proxy/socket", right_token));
+    EXPECT_TRUE(message_with(first, R"("other":"other.vtu")"));
+    EXPECT_TRUE(message_with(first, R"("say":"grid")"));
+    ASSERT_TRUE(say_hello_to(wrong, "/second", "00000000000000000000000000000000"));
+    EXPECT_TRUE(message_with(wrong, R"("about":"token")"));
+    EXPECT_TRUE(message_with(second, R"("say":"alive")")) << "the server goes on";
+}
+
+TEST(Viewer, OfOneFileThereIsNoSecondOne) {
+    const RunningViewer viewer;
+    RawPage page(viewer.port());
+    EXPECT_FALSE(page.open_socket("http://" + page.host(), page.host(), "/second"));
+}
+
 TEST(Viewer, AFileThatCannotBeReadIsToldAtOnceAndWaitsForAPage) {
     std::promise<std::string> told;
     ViewerOptions options;
     options.token = right_token;
-    options.read = [](const isotet::Run&) -> Result<ViewerInput> { return Error{ErrorCode::file, "it is not there"}; };
+    options.file.read = [](const isotet::Run&) -> Result<ViewerInput> {
+        return Error{ErrorCode::file, "it is not there"};
+    };
     options.failed = [&](const Error& error) { told.set_value(error.message); };
     const auto viewer = Viewer::open(std::move(options)).value();
     std::atomic<bool> stop{false};
@@ -418,7 +454,9 @@ TEST(Viewer, AFileThatCannotBeReadIsToldAtOnceAndWaitsForAPage) {
 
 TEST(Viewer, DoesNotWaitForeverToTellThatAFileCannotBeRead) {
     ViewerOptions options;
-    options.read = [](const isotet::Run&) -> Result<ViewerInput> { return Error{ErrorCode::file, "it is not there"}; };
+    options.file.read = [](const isotet::Run&) -> Result<ViewerInput> {
+        return Error{ErrorCode::file, "it is not there"};
+    };
     options.failure_seconds = 0.1;
     const auto viewer = Viewer::open(std::move(options)).value();
     const std::atomic<bool> stop{false};

@@ -48,7 +48,7 @@ public:
         };
         if (!events.closed) events.closed = [](ConnectionNumber, Parting) {};
         for (auto* missing : {&events.opened})
-            if (!*missing) *missing = [](ConnectionNumber) {};
+            if (!*missing) *missing = [](ConnectionNumber, std::size_t) {};
         if (!events.message) events.message = [](ConnectionNumber, std::string_view) {};
         server_.emplace(Server::open(std::move(options), std::move(events)).value());
         thread_ = std::thread([this] { server_->run(); });
@@ -74,7 +74,7 @@ private:
 TEST(ServerNews, TheLastNewsIsSentOnceNothingElseWaits) {
     std::atomic<ConnectionNumber> connection{0};
     ServerEvents events;
-    events.opened = [&](ConnectionNumber which) { connection = which; };
+    events.opened = [&](ConnectionNumber which, std::size_t) { connection = which; };
     RunningServer running({}, std::move(events));
     RawPage page(running.port());
     ASSERT_TRUE(page.open_socket());

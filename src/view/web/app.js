@@ -6,6 +6,9 @@ import {fromAddress} from './state.js';
 export const id = (name) => document.getElementById(name);
 export const css = (name) => getComputedStyle(document.documentElement).getPropertyValue('--' + name).trim();
 
+/** Of two files that isotet view has been given, this page shows the second. */
+export const isSecond = new URLSearchParams(location.search).has('second');
+
 const [token, ...rest] = location.hash.slice(1).split('&');
 
 export const app = {
@@ -17,6 +20,7 @@ export const app = {
   number: 0, sent: null, sentAt: new Map(), // wishes: the last number, what it asked for, and when each went
   large: 0,                                 // triangles, where they are too many for the browser
   picked: null,
+  other: '', // the name of the file that is shown beside it
   changed() {}, // called where something else is to be seen
 };
 

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // One of the two frames of beside.html: tells what it shows, and follows the other one.
-import {app, id} from './app.js';
+import {app, id, isSecond} from './app.js';
 import {setValue, valuePlayer} from './level.js';
 import {showCamera} from './looking.js';
 import {toAddress} from './state.js';
@@ -15,7 +15,8 @@ function tellPair(always = false) {
   const camera = app.camera.text(), state = toAddress({...app.state, camera}), {field, value, step} = app.state;
   if (state === toldPair.state && !always) return;
   toldPair.state = state;
-  pair.postMessage({taken: toldPair.taken, camera, field, value, step, steps: app.time.times.length, file: id('file').textContent}, location.origin);
+  const {title: path, textContent: file} = id('file'), {lower, upper} = app.grid;
+  pair.postMessage({taken: toldPair.taken, camera, field, value, step, steps: app.time.times.length, file, path, lower, upper}, location.origin);
 }
 
 function takeChange({number, camera, value, step}) {
@@ -43,13 +44,13 @@ if (pair) {
   });
 }
 
-/** Two pictures that begin as this one, or this one alone. */
+/** Two pictures that begin as this one, this one and that of the other file, or this one alone. */
 export function toggleBeside() {
   if (!app.grid || app.grid.saved) return;
   commit();
-  const state = toAddress(app.state);
-  if (pair) pair.location.assign(`${location.pathname}#${app.token}&${state}`);
-  else location.assign(`beside.html#${app.token}&${new URLSearchParams({left: state, right: state})}`);
+  const state = toAddress(app.state), other = app.other ? new URLSearchParams({camera: app.state.camera}).toString() : state;
+  if (pair) pair.location.assign(`${location.pathname}${isSecond ? '?second' : ''}#${app.token}&${state}`);
+  else location.assign(`beside.html${app.other ? '?second' : ''}#${app.token}&${new URLSearchParams(isSecond ? {left: other, right: state} : {left: state, right: other})}`);
 }
 
 id('beside').addEventListener('click', toggleBeside);

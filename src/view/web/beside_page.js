@@ -1,18 +1,26 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Two pages in frames. What one of them changes is passed on to the other one where it is linked.
-// The address: #TOKEN&left=STATE&right=STATE&link=camera,value.
+// The address: #TOKEN&left=STATE&right=STATE&link=camera,value; with ?second the right one is of the second file.
 
 const id = (name) => document.getElementById(name);
 const links = ['camera', 'value', 'step'];
 const [token, ...rest] = location.hash.slice(1).split('&'), start = new URLSearchParams(rest.join('&'));
 const linked = (start.get('link') ?? 'camera,value').split(',');
+const hasSecond = new URLSearchParams(location.search).has('second');
 for (const link of links) id(`link-${link}`).checked = linked.includes(link);
+
+/** The second file begins as the first one, until something is chosen in one of them. */
+let followsFirst = hasSecond && !start.has('left') && !start.has('right');
 
 function frameOf(side) {
   const element = document.createElement('iframe');
   element.title = `${side === 'left' ? 'Left' : 'Right'} picture`;
-  element.src = `./?beside#${token}&${start.get(side) ?? ''}`;
+  element.src = `./?beside${hasSecond && side === 'right' ? '&second' : ''}#${token}&${start.get(side) ?? ''}`;
   id('frames').append(element);
+  if (followsFirst)
+    element.addEventListener('load', () => {
+      for (const kind of ['pointerdown', 'wheel', 'keydown', 'input', 'change']) element.contentWindow.addEventListener(kind, () => { followsFirst = false; }, true);
+    });
   return {side, element, shown: null, sent: 0, address: start.get(side) ?? ''}; // shown: as it told it last; sent: changes
 }
 
@@ -31,6 +39,21 @@ function passOn(from) {
   if (message.step >= to.shown.steps) delete message.step;
   if (Object.keys(message).length === 0) return;
   say(to, {...message, number: ++to.sent});
+}
+
+/** Whether what one camera sees is seen by the other one: boxes of about the same size at about the same place. */
+function areAlike(one, other) {
+  const [size, otherSize] = [one, other].map(({lower, upper}) => Math.hypot(...upper.map((u, i) => u - lower[i])));
+  const apart = Math.hypot(...one.lower.map((l, i) => (l + one.upper[i] - other.lower[i] - other.upper[i]) / 2));
+  return Math.max(size, otherSize) <= 2 * Math.min(size, otherSize) && apart <= size / 2;
+}
+
+/** With folders where the files have the same name. */
+function showNames() {
+  const shown = frames.map((one) => one.shown).filter(Boolean);
+  const names = (of) => [...new Set(shown.map(of))].join(' | ');
+  id('file').textContent = hasSecond && new Set(shown.map(({file}) => file)).size < 2 ? names(({path}) => path) : names(({file}) => file);
+  document.title = `${id('file').textContent} – isotet`;
 }
 
 let nameTimer = 0;
@@ -57,14 +80,17 @@ addEventListener('message', ({source, origin, data}) => {
   if (data.taken === 0 && from.shown?.taken > 0) Object.assign(from, {shown: null, sent: 0}); // it was loaded again
   // What it told before it took a change is past; what it tells when it takes one is no change of its own.
   const own = from.shown && data.taken === from.sent && data.taken === from.shown.taken;
+  const isFirst = !from.shown;
   if (data.taken === from.sent) from.shown = data;
-  if (own) {
+  if (followsFirst) {
+    if (isFirst && frames.every(({shown}) => shown) && !areAlike(...frames.map(({shown}) => shown))) id('link-camera').checked = false;
+    if (isFirst || own) passOn(frames[0]);
+  } else if (own) {
     latest = from;
     passOn(from);
   }
   id('step-choice').hidden = !frames.every(({shown}) => shown?.steps > 1);
-  id('file').textContent = data.file;
-  document.title = `${id('file').textContent} – isotet`;
+  showNames();
   nameSoon();
 });
 

@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // The WebSocket to the server, opened again whenever it is lost.
+import {isSecond} from './app.js';
 import {beginsWith, readFrame} from './frame.js';
 
 export class Link {
@@ -26,7 +27,7 @@ export class Link {
   connect() {
     this.timer = null;
     this.heard = performance.now();
-    const address = new URL('socket', location.href.split('#')[0]);
+    const address = new URL(isSecond ? 'second' : 'socket', location.href.split('#')[0]);
     address.protocol = address.protocol.replace('http', 'ws');
     const socket = this.socket = new WebSocket(address);
     socket.binaryType = 'arraybuffer';

@@ -187,6 +187,7 @@ const messages = {
   welcome(message) {
     app.maps = message.maps;
     app.save.out = message.out;
+    app.other = message.other ?? '';
     fill(id('map'), Object.keys(app.maps).map((name) => [name, name]), app.state.map in app.maps ? app.state.map : (app.state.map = 'viridis'));
     const name = message.file.split('/').pop();
     id('file').textContent = name;
