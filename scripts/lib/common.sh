@@ -44,7 +44,8 @@ measured() {
 }
 
 # in_log NAME LOG COMMAND...: runs the command with its output in LOG, says every half minute how far ninja is, and shows
-# the end of LOG when the command fails.
+# the end of LOG when the command fails; failed_log is LOG then.
+failed_log=
 in_log() {
     local name=$1 log=$2
     shift 2
@@ -63,6 +64,7 @@ in_log() {
     local status=0
     wait "$child" || status=$?
     if ((status != 0)); then
+        failed_log=$log
         fail "$name failed with status $status; the end of $log:"
         tail -n 60 "$log" >&2
     fi
@@ -86,8 +88,13 @@ build() {
     say "$name: configures"
     measured "$name: configure" in_log "$name: configure" "$folder.configure.log" \
         cmake -G Ninja -S "${build_source:-$root}" -B "$folder" "$@" || return
+    local compile=(cmake --build "$folder" --target "${build_target:-all}" -j)
     say "$name: builds, $(jobs_that_fit) files at a time"
-    measured "$name: build" in_log "$name: build" "$folder.build.log" \
-        cmake --build "$folder" -j "$(jobs_that_fit)" --target "${build_target:-all}" || return
+    if ! measured "$name: build" in_log "$name: build" "$folder.build.log" "${compile[@]}" "$(jobs_that_fit)"; then
+        # The system ends a compiler where other programs take the memory that was free.
+        grep -q 'Killed signal' "$folder.build.log" || return
+        say "$name: a compiler was ended; builds one file at a time"
+        measured "$name: build" in_log "$name: build" "$folder.build.log" "${compile[@]}" 1 || return
+    fi
     say "$name: built"
 }
