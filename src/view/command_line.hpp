@@ -44,7 +44,8 @@ struct PastedCommand {
     std::vector<std::string> left_out; ///< options that change what is seen and that the page lacks, with their values
 };
 
-/// A command line for render, extract, view or slice, or options alone. A slice has the planes of --plane, and no isosurfaces.
+/// A command line for render, extract, view or slice, or options alone. Slices come without isosurfaces where no isovalue is
+/// given, as isotet render draws them.
 /// `reading`   options that the page's file is read with: they are not left out
 ///
 /// Errors   invalid_argument: another program; an option of the page without its value, or with a wrong one

@@ -364,10 +364,10 @@ std::size_t pass_over(const std::vector<std::string>& words, std::size_t i, cons
 }
 
 /// What a page takes that cannot be said option by option.
-void finish(Pasting& pasting, OptionsOf command) {
+void finish(Pasting& pasting) {
     ViewState& state = pasting.pasted.state;
     if (state.volume) state.volume->surfaces = !state.isovalues.empty();
-    if (command == OptionsOf::slice) state.isosurfaces = false;
+    if (!state.slices.empty() && state.isovalues.empty() && !state.colored_boundary) state.isosurfaces = false;
     if (state.colored_boundary && state.field.empty() && state.isovalues.empty()) {
         state.isosurfaces = false;
         state.field = state.color_by;
@@ -407,7 +407,7 @@ Result<PastedCommand> state_of_command(std::string_view text, const std::vector<
             return Error{ErrorCode::invalid_argument,
                          fmt::format("{} got '{}', but it takes {}", option->name, value, option->rule)};
     }
-    finish(pasting, command);
+    finish(pasting);
     ViewState& state = pasting.pasted.state;
     if (state.boundary == not_given) state.boundary = state.colored_boundary ? 1 : usual_boundary(state);
     return std::move(pasting.pasted);

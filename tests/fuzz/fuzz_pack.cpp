@@ -128,8 +128,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const PointField field{"value", grid.point_fields[0].values, false, {}};
     const auto report = survey(grid, {.faces = true}, {.threads = 1});
     const auto packed = pack(grid, field, {.precision = precision, .gradients = true}, {.threads = 1});
-    // A survey takes grids so small that coordinates would vanish, packing does not.
-    expect(report ? packed || packed.error().message.find("smaller unit") != std::string::npos : !packed);
+    // A survey takes grids without tets, or so small that coordinates would vanish; packing does not.
+    expect(report ? packed || report->tets == 0 || packed.error().message.find("smaller unit") != std::string::npos
+                  : !packed);
     if (std::isfinite(isovalue))
         for (const Ties ties : {Ties::merge, Ties::keep})
             expect_same_once(grid, field, packed, isovalue, precision, ties);

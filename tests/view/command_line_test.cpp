@@ -166,7 +166,14 @@ TEST(StateOfCommand, TakesThePlanesOfSlices) {
         const PastedCommand none = slice_of(fmt::format("isotet slice x.vtu --plane {}", plane).c_str());
         EXPECT_TRUE(none.state.slices.empty()) << plane;
         EXPECT_EQ(none.left_out, std::vector<std::string>{fmt::format("--plane {}", plane)});
+        EXPECT_TRUE(none.state.isosurfaces) << "something is seen";
     }
+}
+
+TEST(StateOfCommand, DrawsIsosurfacesBesideSlicesOnlyWithIsovalues) {
+    EXPECT_FALSE(state_of_command("isotet render x.vtu --slice x=1")->state.isosurfaces);
+    EXPECT_TRUE(state_of_command("isotet render x.vtu --slice x=1 -i 2")->state.isosurfaces);
+    EXPECT_TRUE(state_of_command("isotet render x.vtu --clip x=1")->state.isosurfaces);
 }
 
 TEST(StateOfCommand, SaysWhatIsWrong) {
