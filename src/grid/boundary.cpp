@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -15,7 +14,6 @@
 
 #include "base/carry_out.hpp"
 #include "base/memory.hpp"
-#include "base/parallel.hpp"
 #include "grid/boundary_faces.hpp"
 #include "grid/faces.hpp"
 #include "grid/sheet.hpp"
@@ -26,32 +24,11 @@ namespace core {
 
 namespace {
 
-/// Positions of some points, in the type of the grid's.
-Array positions_of(const Array& all, const std::vector<std::uint64_t>& points) {
-    const auto gathered = [&]<class Real>(Real) {
-        const std::span<const Real> from = all.as<Real>();
-        std::vector<Real> out(3 * points.size());
-        parallel_each(points.size(), 1 << 14, [&](std::size_t i) {
-            for (std::size_t axis = 0; axis < 3; ++axis) out[3 * i + axis] = from[3 * points[i] + axis];
-        });
-        return Array::own(std::move(out), 3);
-    };
-    return all.type() == ScalarType::float32 ? gathered(float{}) : gathered(double{});
-}
-
-/// Each point as both ends of an edge: edge_ends of vertices that are points.
-Array both_ends(const std::vector<std::uint64_t>& points) {
-    std::vector<std::int64_t> ends(2 * points.size());
-    parallel_each(ends.size(), 1 << 14, [&](std::size_t i) { ends[i] = static_cast<std::int64_t>(points[i / 2]); });
-    return Array::own(std::move(ends), 2);
-}
-
 Surface surface_of(const Array& all_points, const std::vector<BoundaryFace>& faces) {
     const std::vector<std::uint64_t> points = points_of_faces(faces);
     Surface surface;
-    surface.positions = positions_of(all_points, points);
+    place_vertices(surface, all_points, points);
     surface.triangles = triangles_of_faces(faces, points);
-    surface.edge_ends = both_ends(points);
     return surface;
 }
 

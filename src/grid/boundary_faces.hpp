@@ -18,6 +18,9 @@ namespace isotet::core {
 /// Ascending, each once.
 std::vector<std::uint64_t> each_once(std::vector<std::uint64_t> points);
 
+/// Makes some of `all` points the vertices, each both ends of an edge; positions keep the type of the points.
+void place_vertices(Surface& surface, const Array& all, const std::vector<std::uint64_t>& points);
+
 /// The points of some faces, ascending, each once.
 /// `Face`   with three points
 template <class Face>

@@ -14,6 +14,7 @@
 #include <isotet/grid_counts.hpp>
 
 #include "base/errors.hpp"
+#include "grid/boundary_faces.hpp"
 #include "grid/cells.hpp"
 #include "grid/patches.hpp"
 
@@ -153,19 +154,6 @@ Result<void> check_places(const Array& points, const std::vector<std::uint64_t>&
                                 "must be finite and below 2^91",
                                 point, "xyz"[axis], x));
     return {};
-}
-
-/// Of some points; both ends of edges are the points.
-void place_vertices(Surface& surface, const Array& points, const std::vector<std::uint64_t>& used) {
-    std::vector<std::int64_t> ends(2 * used.size());
-    for (std::size_t i = 0; i < ends.size(); ++i) ends[i] = static_cast<std::int64_t>(used[i / 2]);
-    surface.edge_ends = Array::own(std::move(ends), 2);
-    const auto gathered = [&]<class Real>(Real) {
-        std::vector<Real> out(3 * used.size());
-        for (std::size_t i = 0; i < out.size(); ++i) out[i] = static_cast<Real>(points.at(used[i / 3], i % 3));
-        return Array::own(std::move(out), 3);
-    };
-    surface.positions = points.type() == ScalarType::float32 ? gathered(float{}) : gathered(double{});
 }
 
 } // namespace

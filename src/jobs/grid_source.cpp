@@ -226,7 +226,7 @@ Result<GridSource> GridSource::open(const GridOptions& options, Caller& caller) 
         source.info_ = info_of(*made);
         source.info_.files = options.other_inputs;
         source.made_ = *std::move(made);
-        if (auto choices = parse_cell_choices(options.cells, {}); !choices) return choices.error();
+        if (auto taken = source.take_choices(); !taken) return taken.error();
         return source;
     }
     ReadOptions& read_options = source.read_options_;
@@ -267,11 +267,18 @@ Result<GridSource> GridSource::open(const GridOptions& options, Caller& caller) 
         error.message = "`displace` takes a point field: " + error.message;
         return error;
     }
-    const auto choices = parse_cell_choices(options.cells, source.names(Association::cell));
-    if (!choices) return choices.error();
-    if (!source.info_.regions.empty())
-        if (auto checked = check_cell_choices(*choices, source.info_.regions); !checked) return checked.error();
+    if (auto taken = source.take_choices(); !taken) return taken.error();
     return source;
+}
+
+Result<void> GridSource::take_choices() {
+    if (options_.cells.empty()) return {};
+    Result<std::vector<CellChoice>> choices = parse_cell_choices(options_.cells, names(Association::cell));
+    if (!choices) return choices.error();
+    if (!info_.regions.empty())
+        if (auto checked = check_cell_choices(*choices, info_.regions); !checked) return checked.error();
+    choices_ = std::make_shared<const std::vector<CellChoice>>(*std::move(choices));
+    return {};
 }
 
 Result<void> GridSource::look_at(std::size_t step, const Run& run) {
@@ -420,18 +427,16 @@ Result<ReadResult> GridSource::read_unclosed(const FieldsToRead& fields, std::si
 
 /// Empties the other cells, and notes how many are left. A number that a step of several lacks is noted, else an error.
 Result<void> GridSource::choose(ReadResult& read, Caller& caller) const {
-    if (options_.cells.empty()) return {};
-    const auto choices = parse_cell_choices(options_.cells, names(Association::cell));
-    if (!choices) return choices.error();
+    if (!choices_) return {};
     const std::vector<RegionName>& regions = read.info.regions.empty() ? info_.regions : read.info.regions;
-    Result<ChosenCells> chosen = choose_cells(std::move(read.grid), *choices, regions);
+    Result<ChosenCells> chosen = choose_cells(std::move(read.grid), *choices_, regions);
     if (!chosen) return chosen.error();
     if (!chosen->missing.empty() && info_.times.size() < 2)
         return Error{ErrorCode::invalid_argument, chosen->missing.front()};
     caller.notes(chosen->missing);
     read.grid = std::move(chosen->grid);
     caller.note(
-        fmt::format("{} of {} are in {}", grouped(chosen->count), counted(chosen->of, "cell"), text_of(*choices)));
+        fmt::format("{} of {} are in {}", grouped(chosen->count), counted(chosen->of, "cell"), text_of(*choices_)));
     return {};
 }
 
@@ -440,17 +445,15 @@ Result<ReadResult> GridSource::read_cells(const FieldsToRead& fields, std::size_
     if (kept_)
         if (auto kept = kept_->take(fields, step, cells)) return *std::move(kept);
     FieldsToRead with_choices = fields;
-    if (!options_.cells.empty() && fields.cell) {
-        const auto choices = parse_cell_choices(options_.cells, names(Association::cell));
-        if (!choices) return choices.error();
-        for (const CellChoice& choice : *choices)
+    if (choices_ && fields.cell) {
+        for (const CellChoice& choice : *choices_)
             if (std::ranges::find(*with_choices.cell, choice.field) == with_choices.cell->end())
                 with_choices.cell->push_back(choice.field);
     }
     Result<ReadResult> result = read_unclosed(with_choices, step, cells, caller, run);
     if (!result || result->cells_in_file) return result;
     if (auto chosen = choose(*result, caller); !chosen) return chosen.error();
-    if (!options_.cells.empty()) leave(result->grid.cell_fields, fields.cell);
+    if (choices_) leave(result->grid.cell_fields, fields.cell);
     if (options_.merge_points) {
         Result<Grid> joined = merged(result->grid, {*options_.merge_points, options_.merge_values}, caller, run);
         if (!joined) return joined.error();

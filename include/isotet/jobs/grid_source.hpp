@@ -19,6 +19,8 @@
 
 namespace isotet::jobs {
 
+struct CellChoice;
+
 /// What becomes of cells that have hanging points (hanging_points.hpp).
 enum class HangingChoice : std::uint8_t {
     close,       ///< they list them
@@ -115,6 +117,7 @@ private:
                                   const Run& run) const;
     Result<ReadResult> read_unclosed(const FieldsToRead& fields, std::size_t step, CellsToRead cells, Caller& caller,
                                      const Run& run) const;
+    Result<void> take_choices();
     Result<void> choose(ReadResult& read, Caller& caller) const;
     Result<ReadResult> read_file(const FieldsToRead& fields, std::size_t step, ReadOptions options,
                                  const Run& run) const;
@@ -124,6 +127,7 @@ private:
     GridOptions options_;
     std::optional<MakeOptions> made_;
     std::shared_ptr<const Grid> surface_; ///< where the file is a surface: its triangles as cells
+    std::shared_ptr<const std::vector<CellChoice>> choices_; ///< those of GridOptions::cells; null: none
     FileInfo info_;
     std::optional<std::size_t> described_;                      ///< the step whose fields info_ has; nothing: of several
     std::map<std::size_t, std::vector<FieldInfo>> step_fields_; ///< of the steps that were looked at
