@@ -38,7 +38,7 @@ struct SolidPatch {
 
 /// A solid and what is told of it.
 ///
-/// `surface`   triangles face outwards: those of the isosurfaces first, as extract() gives them, then the boundary. Its
+/// `surface`   triangles face outwards: those of the isosurfaces first, in the order of extract(), then the boundary. Its
 ///             last cell field is "boundary", uint8, a SolidPart. Where the grid has patches, "patch" is their number on the
 ///             boundary, else -1. Where 2D cells of the grid lie on its boundary, "patch_cell" is the number of the first
 ///             one, and "patch_NAME" what it has of each carried cell field NAME of whole numbers. Vertices: those of the
@@ -78,7 +78,8 @@ ISOTET_API Result<SolidMeasure> measure_solid(const Surface& surface);
 /// curved cells are taken as linear cells, curved ones refined for all isovalues. Faces on the side of the solid stay
 /// whole, those that the isosurface crosses are cut where it crosses their edges, and share its vertices there. So both
 /// together are closed: also at ties, beside cells without data, and where cells do not fit together, whose faces are
-/// then boundary on both sides. A quadrilateral that is not flat gets a vertex inside each of its parts where it is
+/// then boundary on both sides. Triangles of the isosurface that lie back to back with others, where faces of cells are tied,
+/// are left out with these. A quadrilateral that is not flat gets a vertex inside each of its parts where it is
 /// cut, so placed that the solids above and below an isovalue have the volume of the grid together.
 ///
 /// Threads   one call at a time

@@ -17,7 +17,7 @@
 #include "base/parallel.hpp"
 #include "check/components.hpp"
 #include "check/mesh.hpp"
-#include "check/surface_rows.hpp"
+#include "grid/surface_rows.hpp"
 
 namespace isotet {
 
@@ -266,20 +266,12 @@ Result<Surface> keep_parts(const Surface& surface, const SurfaceParts& parts, co
         std::erase_if(numbered.cell_fields, [](const Field& field) { return field.name == "part"; });
         numbered.cell_fields.push_back({"part", parts.numbers});
         if (surface.triangle_count() == 0) return numbered;
-        const Result<checking::Mesh> mesh = checking::Mesh::open(surface);
-        if (!mesh) return mesh.error();
         const auto numbers = parts.numbers.as<std::uint32_t>();
-        std::vector<std::uint8_t> used(surface.vertex_count());
-        std::vector<std::uint64_t> triangles, vertices;
-        for (std::uint64_t i = 0; i < numbers.size(); ++i) {
-            if (!keep[numbers[i]]) continue;
-            triangles.push_back(i);
-            for (const std::uint64_t vertex : mesh->corners(i)) used[vertex] = 1;
-        }
-        for (std::uint64_t vertex = 0; vertex < used.size(); ++vertex)
-            if (used[vertex]) vertices.push_back(vertex);
+        std::vector<std::uint64_t> triangles;
+        for (std::uint64_t i = 0; i < numbers.size(); ++i)
+            if (keep[numbers[i]]) triangles.push_back(i);
         if (triangles.size() == numbers.size()) return numbered;
-        return checking::with_rows(numbered, vertices, triangles);
+        return core::with_triangles(numbered, triangles);
     });
 }
 

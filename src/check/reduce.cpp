@@ -17,7 +17,7 @@
 #include "base/errors.hpp"
 #include "base/memory.hpp"
 #include "check/mesh.hpp"
-#include "check/surface_rows.hpp"
+#include "grid/surface_rows.hpp"
 #include "check/triangle_groups.hpp"
 
 namespace isotet {
@@ -215,7 +215,7 @@ Surface surface_of(const Surface& surface, const Left& left) {
     std::ranges::sort(vertices);
     vertices.erase(std::ranges::unique(vertices).begin(), vertices.end());
     Surface out;
-    out.positions = rows_of(surface.positions, vertices);
+    out.positions = core::rows_of(surface.positions, vertices);
     std::vector<std::uint32_t> triangles(left.corners.size());
     for (std::size_t i = 0; i < triangles.size(); ++i)
         triangles[i] =
@@ -223,12 +223,12 @@ Surface surface_of(const Surface& surface, const Left& left) {
     out.triangles = Array::own(std::move(triangles), 3);
     if (surface.normals_kind == Normals::gradient) {
         out.normals_kind = Normals::gradient;
-        out.normals = rows_of(surface.normals, vertices);
+        out.normals = core::rows_of(surface.normals, vertices);
     }
     for (const Field& field : surface.point_fields)
-        out.point_fields.push_back({field.name, rows_of(field.values, vertices)});
+        out.point_fields.push_back({field.name, core::rows_of(field.values, vertices)});
     for (const Field& field : surface.cell_fields)
-        if (is_kept(field)) out.cell_fields.push_back({field.name, rows_of(field.values, left.like)});
+        if (is_kept(field)) out.cell_fields.push_back({field.name, core::rows_of(field.values, left.like)});
     return out;
 }
 

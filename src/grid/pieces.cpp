@@ -14,6 +14,7 @@
 #include "grid/cell_faces.hpp"
 #include "grid/cells.hpp"
 #include "grid/renumber.hpp"
+#include "grid/surface_rows.hpp"
 
 namespace isotet {
 
@@ -202,68 +203,21 @@ Result<Grid> leave_out(const Grid& grid, const Array& marks, std::uint64_t bits)
     return out;
 }
 
-/// Triangles that stay, vertices that these use, and the triangles by the new numbers of the vertices.
-struct KeptParts {
-    core::Buffer<std::uint64_t> triangles, vertices;
-    Array corners;
-};
-
-template <class Index>
-KeptParts keep_unmarked(const Surface& surface, std::span<const Index> corners,
-                        const std::vector<std::uint8_t>& out_of) {
-    const auto source = surface.source_cells.as<std::int64_t>();
-    std::vector<std::uint64_t> triangles, vertices;
-    std::vector<std::uint64_t> place(surface.vertex_count(), 0); // plus one
-    for (std::size_t t = 0; t < surface.triangle_count(); ++t) {
-        if (out_of[static_cast<std::size_t>(source[t])]) continue;
-        triangles.push_back(t);
-        for (std::size_t k = 0; k < 3; ++k) place[corners[3 * t + k]] = 1;
-    }
-    for (std::size_t v = 0; v < place.size(); ++v)
-        if (place[v]) {
-            vertices.push_back(v);
-            place[v] = vertices.size();
-        }
-    KeptParts out{core::Buffer<std::uint64_t>(triangles.size()), core::Buffer<std::uint64_t>(vertices.size()), {}};
-    std::copy(triangles.begin(), triangles.end(), out.triangles.begin());
-    std::copy(vertices.begin(), vertices.end(), out.vertices.begin());
-    core::Buffer<Index> renumbered(3 * triangles.size());
-    for (std::size_t i = 0; i < triangles.size(); ++i)
-        for (std::size_t k = 0; k < 3; ++k)
-            renumbered[3 * i + k] = static_cast<Index>(place[corners[3 * triangles[i] + k]] - 1);
-    out.corners = std::move(renumbered).to_array(3);
-    return out;
-}
-
 Result<Surface> leave_out(const Surface& surface, const Array& marks, std::uint64_t bits) {
     const auto out_of = marked(marks, bits);
     if (!out_of) return out_of.error();
     if (surface.source_cells.tuples() != surface.triangle_count() || surface.source_cells.type() != ScalarType::int64)
         return invalid_argument(fmt::format("the surface has {} source cells for {} triangles, but each needs one",
                                             surface.source_cells.tuples(), surface.triangle_count()));
-    for (const std::int64_t cell : surface.source_cells.as<std::int64_t>())
+    const auto source = surface.source_cells.as<std::int64_t>();
+    for (const std::int64_t cell : source)
         if (static_cast<std::uint64_t>(cell) >= out_of->size())
             return invalid_argument(
                 fmt::format("the surface has triangles of cell {}, but there are {} marks", cell, out_of->size()));
-    const bool narrow = surface.triangles.type() == ScalarType::uint32;
-    const KeptParts kept = narrow ? keep_unmarked(surface, surface.triangles.as<std::uint32_t>(), *out_of)
-                                  : keep_unmarked(surface, surface.triangles.as<std::uint64_t>(), *out_of);
-    Surface out = surface;
-    out.triangles = kept.corners;
-    const auto of_vertices = [&](const Array& values) {
-        return values.empty() ? values : core::in_order(values, kept.vertices);
-    };
-    const auto of_triangles = [&](const Array& values) {
-        return values.empty() ? values : core::in_order(values, kept.triangles);
-    };
-    out.positions = of_vertices(surface.positions);
-    out.edge_ends = of_vertices(surface.edge_ends);
-    out.edge_weights = of_vertices(surface.edge_weights);
-    out.source_cells = of_triangles(surface.source_cells);
-    out.normals = surface.normals_kind == Normals::face ? of_triangles(surface.normals) : of_vertices(surface.normals);
-    out.point_fields = in_order(surface.point_fields, kept.vertices);
-    out.cell_fields = in_order(surface.cell_fields, kept.triangles);
-    return out;
+    std::vector<std::uint64_t> kept;
+    for (std::size_t i = 0; i < source.size(); ++i)
+        if (!(*out_of)[static_cast<std::size_t>(source[i])]) kept.push_back(i);
+    return core::with_triangles(surface, kept);
 }
 
 } // namespace

@@ -23,6 +23,7 @@
 #include "solid/assemble.hpp"
 #include "solid/boundary_faces.hpp"
 #include "solid/cap.hpp"
+#include "solid/flat_walls.hpp"
 #include "solid/patches.hpp"
 #include "solid/rim.hpp"
 #include "solid/solid_input.hpp"
@@ -42,6 +43,7 @@ struct Solids::Data {
     std::vector<std::string> notes; ///< of making cells linear, told once
     std::optional<std::array<double, 3>> origin; ///< of volumes of a piece
     std::uint64_t ghosts = 0;                    ///< cells of other pieces
+    std::optional<Contour> of_ghosts;            ///< of these alone
 
     double volume_of(const Surface& surface) const {
         return origin ? solid::enclosed_volume(surface, *origin) : solid::enclosed_volume(surface);
@@ -132,6 +134,57 @@ void drop_faces_of_ghosts(const Array& ghosts, solid::BoundaryFaces& boundary) {
     boundary.walls = std::move(walls);
 }
 
+/// Their isosurfaces, without anything that is carried.
+Result<Contour> contour_of_ghosts(const ContourInput& all, const Array& marks, const ContourOptions& options,
+                                  const Run& run) {
+    std::vector<std::uint8_t> own(marks.tuples());
+    for (std::size_t cell = 0; cell < own.size(); ++cell) own[cell] = marks.at(cell) == 0;
+    ContourInput bare = all;
+    Result<Grid> others = leave_out_cells(all.grid, Array::own(std::move(own)), 1, run);
+    if (!others) return others.error();
+    bare.grid = *std::move(others);
+    bare.point_fields = {};
+    bare.cell_fields = {};
+    ContourOptions same_triangles;
+    same_triangles.precision = options.precision;
+    same_triangles.split_cells = options.split_cells;
+    same_triangles.frame = options.frame;
+    return solid::contour_of(std::move(bare), same_triangles, {});
+}
+
+std::vector<solid::Shell> shells_of(std::vector<Extraction>& surfaces, const SolidRange& range) {
+    std::vector<solid::Shell> shells;
+    for (Extraction& one : surfaces)
+        shells.push_back({std::exchange(one.surface, {}), shells.empty() && std::isfinite(range.lower)});
+    return shells;
+}
+
+/// Triangles of the solid.
+Result<std::vector<std::uint64_t>> flat_walls(const Surface& solid, std::span<const solid::Shell> shells,
+                                              std::optional<Contour>& of_ghosts, const SolidRange& range,
+                                              const Run& run) {
+    if (!solid::has_tied_vertices(shells)) return std::vector<std::uint64_t>();
+    std::vector<solid::Shell> others;
+    if (of_ghosts) {
+        Result<ContourResult> found = of_ghosts->extract(solid::ends_of_range(range), run);
+        if (!found) return found.error();
+        others = shells_of(found->surfaces, range);
+    }
+    return solid::triangles_of_flat_walls(solid, shells, others);
+}
+
+void leave_out_walls(std::span<const std::uint64_t> walls, Solid& out, solid::Cap& cap) {
+    out.surface = solid::without_triangles(out.surface, walls);
+    const auto first_of_cap = std::ranges::lower_bound(walls, out.isosurface_triangles);
+    std::vector<solid::FaceMark> marks;
+    auto wall = first_of_cap;
+    for (std::size_t i = 0; i < cap.marks.size(); ++i)
+        if (wall != walls.end() && *wall == out.isosurface_triangles + i) ++wall;
+        else marks.push_back(cap.marks[i]);
+    cap.marks = std::move(marks);
+    out.isosurface_triangles -= static_cast<std::uint64_t>(first_of_cap - walls.begin());
+}
+
 } // namespace
 
 Result<Solids> Solids::create(ContourInput given, const ContourOptions& options, const Run& run) {
@@ -170,6 +223,11 @@ Result<Solids> Solids::make(ContourInput given, const Array* ghosts, const Conto
         if (ghosts) {
             drop_faces_of_ghosts(marks, data->boundary);
             for (std::size_t cell = 0; cell < marks.tuples(); ++cell) data->ghosts += marks.at(cell) != 0;
+            if (data->ghosts > 0) {
+                Result<Contour> of_ghosts = contour_of_ghosts(data->input, marks, options, inside);
+                if (!of_ghosts) return of_ghosts.error();
+                data->of_ghosts = *std::move(of_ghosts);
+            }
             Result<Grid> own = leave_out_cells(data->input.grid, marks, ~std::uint64_t{0}, inside);
             if (!own) return own.error();
             data->input.grid = *std::move(own);
@@ -204,29 +262,28 @@ Result<Solid> Solids::extract(const SolidRange& range, const Run& run) {
         if (!result) return result.error();
         out.contour = *std::move(result);
         out.contour.cells_left_out -= std::min(out.contour.cells_left_out, data.ghosts);
-        std::vector<solid::Shell> shells;
+        const std::vector<solid::Shell> shells = shells_of(out.contour.surfaces, range);
         std::uint64_t vertices = data.boundary.points.size() + 2 * data.boundary.faces.size(); // with apexes
-        for (std::size_t i = 0; i < isovalues.size(); ++i) {
-            const bool is_lower = i == 0 && std::isfinite(range.lower);
-            shells.push_back({std::exchange(out.contour.surfaces[i].surface, {}), is_lower});
-            vertices += shells.back().surface.vertex_count();
-        }
+        for (const solid::Shell& shell : shells) vertices += shell.surface.vertex_count();
         if (vertices > std::numeric_limits<std::uint32_t>::max())
             return invalid_data(
                 fmt::format("the solid has up to {} vertices, but must have fewer than 2^32", vertices));
         if (auto ok = core::require_memory("closing the isosurface", bytes_to_close(data.input, data.boundary, vertices)); !ok)
             return ok.error();
-        const solid::Cap cap =
+        solid::Cap cap =
             data.options.precision == Precision::float32
                 ? cap_of<float>(data.boundary, data.points, data.input, out.contour.field, range, shells)
                 : cap_of<double>(data.boundary, data.points, data.input, out.contour.field, range, shells);
         out.surface = solid::assemble(shells, cap, data.input, data.user_cell_fields, data.options);
-        if (auto made = add_normals(data.options.normals, out.surface, inside); !made) return made.error();
         out.isosurface_triangles = out.surface.triangle_count() - cap.triangles.size();
-        const auto triangles = out.surface.triangles.as<std::uint32_t>();
         if (!data.origin) // what is open where pieces meet is closed by the others
-            out.open_edges = solid::count_open_edges(cap, triangles.first(3 * out.isosurface_triangles),
-                                                     static_cast<std::uint32_t>(out.surface.vertex_count()));
+            out.open_edges = solid::count_open_edges(
+                cap, out.surface.triangles.as<std::uint32_t>().first(3 * out.isosurface_triangles),
+                static_cast<std::uint32_t>(out.surface.vertex_count()));
+        Result<std::vector<std::uint64_t>> walls = flat_walls(out.surface, shells, data.of_ghosts, range, inside);
+        if (!walls) return walls.error();
+        if (!walls->empty()) leave_out_walls(*walls, out, cap);
+        if (auto made = add_normals(data.options.normals, out.surface, inside); !made) return made.error();
         out.seam_edges = cap.seam_edges;
         out.unfit_edges = cap.unfit_edges;
         out.patches = patches_of(cap, out, data.patch_names);

@@ -122,49 +122,35 @@ private:
 /// Numbers of vertices by what they are: place and edge ends, so that those of a grid and of a solid can be compared.
 class VertexNames {
 public:
-    explicit VertexNames(const SolidRange& range) : range_(range) {}
-
-    /// `value`   of the field there
-    std::uint64_t of(const Array& positions, const Array& ends, const Array& value, std::size_t vertex) {
+    std::uint64_t of(const Array& positions, const Array& ends, std::size_t vertex) {
         const Name name{positions.at(vertex, 0), positions.at(vertex, 1), positions.at(vertex, 2), ends.at(vertex, 0),
                         ends.at(vertex, 1)};
-        const bool is_point = ends.at(vertex, 0) == ends.at(vertex, 1) && ends.at(vertex, 0) >= 0;
-        const bool is_tied = value.at(vertex) == range_.lower || value.at(vertex) == range_.upper;
-        const auto [found, is_new] = numbers_.try_emplace(name, tied_.size());
-        if (is_new) tied_.push_back(is_point && is_tied);
-        return found->second;
+        return numbers_.try_emplace(name, numbers_.size()).first->second;
     }
-
-    bool is_tied(std::uint64_t number) const { return tied_[number]; }
 
 private:
     using Name = std::array<double, 5>;
-    SolidRange range_;
     std::map<Name, std::uint64_t> numbers_;
-    std::vector<bool> tied_;
 };
 
 /// How many triangles the cells and the solid do not have in common: 0 where the boundary of the cells is the solid.
-/// Those between tied points do not count: a solid has both sides of what is flat.
 ///
-/// A polygon of n vertices stands for n - 2 triangles of the solid between these. Both have the field "value".
-inline std::size_t difference(const ClippedGrid& clipped, const Solid& solid, const SolidRange& range) {
-    VertexNames names(range);
+/// A polygon of n vertices stands for n - 2 triangles of the solid between these.
+inline std::size_t difference(const ClippedGrid& clipped, const Solid& solid) {
+    VertexNames names;
     Chain cells, triangles;
     const FacesOfCells faces(clipped.grid);
     for (std::size_t cell = 0; cell < faces.count(); ++cell)
         for (CellPolygon polygon : faces.of(cell)) {
             for (std::uint64_t& vertex : polygon)
-                vertex = names.of(clipped.grid.points, clipped.edge_ends, clipped.grid.point_fields[0].values, vertex);
+                vertex = names.of(clipped.grid.points, clipped.edge_ends, vertex);
             cells.add(polygon);
         }
     const auto corners = solid.surface.triangles.as<std::uint32_t>();
     for (std::size_t i = 0; i < corners.size(); i += 3) {
         CellPolygon triangle;
         for (std::size_t k = 0; k < 3; ++k) {
-            const Surface& surface = solid.surface;
-            triangle.push_back(
-                names.of(surface.positions, surface.edge_ends, surface.point_fields[0].values, corners[i + k]));
+            triangle.push_back(names.of(solid.surface.positions, solid.surface.edge_ends, corners[i + k]));
         }
         triangles.add(triangle);
     }
@@ -172,9 +158,6 @@ inline std::size_t difference(const ClippedGrid& clipped, const Solid& solid, co
     for (const CellPolygon& triangle : triangles.polygons()) left[triangle[0]].insert(triangle);
     std::vector<CellPolygon> polygons(cells.polygons().begin(), cells.polygons().end());
     std::ranges::stable_sort(polygons, {}, &CellPolygon::size);
-    const auto are_tied = [&](const CellPolygon& polygon) {
-        return std::ranges::count_if(polygon, [&](std::uint64_t vertex) { return names.is_tied(vertex); }) > 2;
-    };
     std::size_t missing = 0;
     std::vector<CellPolygon> unmatched; // one triangle of each
     for (const CellPolygon& polygon : polygons) {
@@ -189,7 +172,6 @@ inline std::size_t difference(const ClippedGrid& clipped, const Solid& solid, co
                 found += is_part;
             }
         }
-        if (are_tied(polygon)) continue;
         // At ties a triangle of the isosurface may lie on a larger face: the solid lacks it and a part of that.
         const auto other = std::ranges::find_if(unmatched, [&](const CellPolygon& triangle) {
             return std::ranges::all_of(triangle, [&](std::uint64_t v) { return vertices.contains(v); });
@@ -199,7 +181,7 @@ inline std::size_t difference(const ClippedGrid& clipped, const Solid& solid, co
         else missing += polygon.size() - 2 - found;
     }
     for (const auto& [lowest, some] : left)
-        missing += some.size() - static_cast<std::size_t>(std::ranges::count_if(some, are_tied));
+        missing += some.size();
     return missing + unmatched.size();
 }
 

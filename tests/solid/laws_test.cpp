@@ -3,6 +3,8 @@
 // makes up the grid.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -12,8 +14,10 @@
 #include <isotet/check.hpp>
 #include <isotet/contour_spectrum.hpp>
 #include <isotet/hanging_points.hpp>
+#include <isotet/parts.hpp>
 #include <isotet/solid.hpp>
 
+#include "solid/all_cases.hpp"
 #include "support/mixed_grid.hpp"
 #include "support/random_grid.hpp"
 #include "support/seeds.hpp"
@@ -35,6 +39,20 @@ std::size_t unbalanced_edges(const Surface& surface) {
         }
     std::size_t count = 0;
     for (const auto& [edge, sum] : uses) count += sum != 0;
+    return count;
+}
+
+/// Triangles on the vertices of another one, the other way round.
+std::size_t back_to_back(const Surface& surface) {
+    std::map<std::array<std::uint32_t, 3>, int> turns;
+    const auto triangles = surface.triangles.as<std::uint32_t>();
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < triangles.size(); i += 3) {
+        std::array<std::uint32_t, 3> from_lowest{triangles[i], triangles[i + 1], triangles[i + 2]};
+        std::ranges::rotate(from_lowest, std::ranges::min_element(from_lowest));
+        count += turns.contains({from_lowest[0], from_lowest[2], from_lowest[1]});
+        ++turns[from_lowest];
+    }
     return count;
 }
 
@@ -61,8 +79,8 @@ void expect_whole(const NastyGrid& g, const ContourOptions& options, const std::
         for (const Solid* solid : {&above, &below}) {
             ASSERT_EQ(solid->open_edges, 0u);
             ASSERT_EQ(unbalanced_edges(solid->surface), 0u);
+            ASSERT_EQ(back_to_back(solid->surface), 0u);
         }
-        ASSERT_EQ(above.isosurface_triangles, below.isosurface_triangles);
         ASSERT_NEAR(above.volume + below.volume, solids.grid_volume(), near);
         if (i > 0) {
             const Solid between = solids.extract({isovalues[i - 1], isovalues[i]}).value();
@@ -125,6 +143,37 @@ TEST(Solid, OfCellsWithWarpedFacesIsClosedAndWhole) {
                                            .moved = 0.2,
                                            .wide = true}),
                          {.precision = Precision::float64}, {-0.3, 0, 0.5, 1}, of_doubles);
+}
+
+TEST(Solid, HasNoWallsWithoutThickness) {
+    for (const core::CellKind kind : core::cell_kinds)
+        for (const NastyGrid& g : {all_cases(kind), all_neighbours(kind)})
+            for (const SolidRange& range : {SolidRange::above(1), SolidRange::below(1), SolidRange{0.5, 1}}) {
+                SCOPED_TRACE(testing::Message() << "from " << range.lower << " to " << range.upper);
+                const Solid solid = solids_of(g, {.precision = Precision::float64}).extract(range).value();
+                EXPECT_EQ(back_to_back(solid.surface), 0u);
+                for (const SurfacePart& part : find_parts(solid.surface).value().parts)
+                    EXPECT_GT(part.volume, 1e-9 * part.area);
+            }
+}
+
+/// A field that is 1 on a plane of points and 0 elsewhere: nothing is above 1, and all is below.
+TEST(Solid, TakesAPlaneOfPointsAtTheIsovalueForNothing) {
+    for (const char* shape : {"kuhn", "hex", "wedge", "mixed"})
+        for (const double plane : {0.0, 0.5, 1.0}) {
+            SCOPED_TRACE(testing::Message() << shape << " at x = " << plane);
+            NastyGrid g{made_grid(shape, 4, {}), {}};
+            std::vector<double> values(g.grid.points.tuples());
+            for (std::size_t i = 0; i < values.size(); ++i) values[i] = g.grid.points.at(i, 0) == plane;
+            g.field = {"value", Array::own(std::move(values)), false, {}};
+            Solids solids = solids_of(g, {});
+            const Solid above = solids.extract(SolidRange::above(1)).value();
+            EXPECT_EQ(above.surface.triangle_count(), 0u);
+            EXPECT_EQ(above.surface.vertex_count(), 0u);
+            const Solid below = solids.extract(SolidRange::below(1)).value();
+            EXPECT_EQ(plane == 0.5 ? below.isosurface_triangles : 0, 0u);
+            EXPECT_NEAR(below.volume, solids.grid_volume(), 1e-6);
+        }
 }
 
 /// The point inside a part of a face that is not flat stays near the part, however small that is.

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include <isotet/pieces.hpp>
@@ -45,18 +47,27 @@ std::vector<Solids> solids_of_pieces(const ContourInput& whole, std::uint64_t co
     return out;
 }
 
+Array in_steps_of_a_half(const Array& values) {
+    std::vector<double> out(values.tuples());
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = std::round(values.at(i) * 2) / 2;
+    return Array::own(std::move(out));
+}
+
 TEST(SolidPieces, AreTogetherTheSolidOfTheWhole) {
-    for (const char* shape : {"kuhn", "mixed", "kelvin"}) {
-        SCOPED_TRACE(shape);
-        const Grid grid = made_grid(shape, 3, {"gyroid"});
+    for (const auto& [shape, full_of_ties] :
+         {std::pair("kuhn", false), {"mixed", false}, {"kelvin", false}, {"kuhn", true}, {"mixed", true}}) {
+        SCOPED_TRACE(testing::Message() << shape << (full_of_ties ? " full of ties" : ""));
+        Grid grid = made_grid(shape, 3, {"gyroid"});
+        if (full_of_ties) grid.point_fields[0].values = in_steps_of_a_half(grid.point_fields[0].values);
         const ContourInput whole{grid, point_field(grid), {{"gyroid", grid.point_fields[0].values}}, {}};
         Solids of_whole = Solids::create(whole).value();
         std::vector<Solids> pieces = solids_of_pieces(whole, 3);
         double grid_volume = 0;
         for (const Solids& piece : pieces) grid_volume += piece.grid_volume();
         EXPECT_NEAR(grid_volume, of_whole.grid_volume(), 1e-9 * of_whole.grid_volume());
-        for (const SolidRange& range : {SolidRange::above(0.2), SolidRange::below(0.2), SolidRange{-0.4, 0.6}}) {
+        for (const SolidRange& range : {SolidRange::above(0.5), SolidRange::below(0.5), SolidRange{-0.5, 0.5}}) {
             const Solid all = of_whole.extract(range).value();
+            EXPECT_EQ(all.contour.surfaces[0].report.tied_points > 0, full_of_ties);
             std::vector<Triangle> expected, found;
             append(all.surface, expected);
             double volume = 0;
@@ -70,6 +81,25 @@ TEST(SolidPieces, AreTogetherTheSolidOfTheWhole) {
             std::ranges::sort(found);
             EXPECT_TRUE(expected == found);
             EXPECT_NEAR(volume, all.volume, 1e-6 * of_whole.grid_volume());
+        }
+    }
+}
+
+/// All points between the layers of cells, and so between the pieces, have the isovalue.
+TEST(SolidPieces, HaveNoWallsWithoutThicknessWhereTheyMeet) {
+    for (const char* shape : {"kuhn", "hex"}) {
+        SCOPED_TRACE(shape);
+        Grid grid = made_grid(shape, 2, {"gyroid"});
+        std::vector<double> values(grid.points.tuples());
+        const double middle = (grid.points.at(0, 2) + grid.points.at(values.size() - 1, 2)) / 2;
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::abs(grid.points.at(i, 2) - middle) < 0.1;
+        grid.point_fields[0].values = Array::own(std::move(values));
+        const ContourInput whole{grid, point_field(grid), {}, {}};
+        for (Solids& piece : solids_of_pieces(whole, 2)) {
+            EXPECT_EQ(piece.extract(SolidRange::above(1)).value().surface.triangle_count(), 0u);
+            const Solid below = piece.extract(SolidRange::below(1)).value();
+            EXPECT_EQ(below.isosurface_triangles, 0u);
+            EXPECT_GT(below.surface.triangle_count(), 0u);
         }
     }
 }

@@ -35,27 +35,58 @@ std::set<std::uint64_t> cells_of(const ByCell& some, const ByCell& others) {
     return out;
 }
 
-/// The triangles of the isosurface are the reference's, those of the boundary fill the reference's polygons.
+std::vector<NamedPolygon> without(const std::vector<NamedPolygon>& polygons, const std::vector<NamedPolygon>& others) {
+    std::multiset<NamedPolygon> out(polygons.begin(), polygons.end());
+    for (const NamedPolygon& other : others)
+        if (const auto found = out.find(other); found != out.end()) out.erase(found);
+    return {out.begin(), out.end()};
+}
+
+NamedPolygon turned(NamedPolygon polygon) {
+    std::ranges::reverse(polygon);
+    return plain(std::move(polygon));
+}
+
+/// Whether it may be of a wall without thickness, of which the reference has both sides and the solid none.
+bool has_tied_vertex(const PlainField& field, const NamedPolygon& polygon) {
+    return std::ranges::any_of(polygon, [&](const VertexName& name) {
+        return name.first == name.second && name.first >= 0 && field.is_tied(static_cast<std::uint64_t>(name.first));
+    });
+}
+
+/// The triangles of the isosurface are the reference's, those of the boundary fill the reference's polygons; what lacks at
+/// ties has no border.
 void expect_solid(const NastyGrid& g, Solids& solids, OneSide side, const ReferenceSolid& reference) {
     const Solid solid = solids.extract(side.range()).value();
     EXPECT_EQ(solid.open_edges, 0u);
     const Surface& surface = solid.surface;
+    const PlainField field(g.field.values, side);
     ByCell isosurface = triangles_by_cell(surface, 0, solid.isosurface_triangles);
     const ByCell boundary = triangles_by_cell(surface, solid.isosurface_triangles, surface.triangle_count());
     std::size_t other_isosurface = 0, other_boundary = 0, open = 0;
+    EdgeChain lacking;
     for (std::uint64_t cell = 0; cell < g.grid.cells.count(); ++cell) {
-        std::vector<NamedPolygon> found = of_cell(isosurface, cell), wanted = of_cell(reference.isosurface, cell);
-        std::ranges::sort(found);
-        std::ranges::sort(wanted);
-        other_isosurface += found != wanted;
+        const std::vector<NamedPolygon> found = of_cell(isosurface, cell), wanted = of_cell(reference.isosurface, cell);
+        other_isosurface += without(found, wanted).size();
+        for (const NamedPolygon& triangle : without(wanted, found)) {
+            other_isosurface += !has_tied_vertex(field, triangle);
+            lacking.add(triangle);
+        }
         EdgeChain whole = edges_of(of_cell(reference.all_faces, cell));
         for (const NamedPolygon& triangle : wanted) whole.add(triangle);
         open += !whole.is_closed();
     }
-    for (const std::uint64_t cell : cells_of(boundary, reference.boundary))
-        other_boundary += !(edges_of(of_cell(boundary, cell)) == edges_of(of_cell(reference.boundary, cell)));
+    for (const std::uint64_t cell : cells_of(boundary, reference.boundary)) {
+        const std::vector<NamedPolygon> found = of_cell(boundary, cell), wanted = of_cell(reference.boundary, cell);
+        const bool is_tied = std::ranges::any_of(
+            wanted, [&](const NamedPolygon& polygon) { return has_tied_vertex(field, polygon); });
+        other_boundary += !is_tied && !(edges_of(found) == edges_of(wanted));
+        for (const NamedPolygon& polygon : wanted) lacking.add(polygon);
+        for (const NamedPolygon& triangle : found) lacking.add(turned(triangle));
+    }
     EXPECT_EQ(other_isosurface, 0u);
     EXPECT_EQ(other_boundary, 0u);
+    EXPECT_TRUE(lacking.is_closed());
     EXPECT_EQ(open, 0u) << "of the reference: the isosurface does not end where the faces are cut";
 }
 
@@ -75,13 +106,6 @@ ByCell faces_of_pieces(const ClippedGrid& clipped) {
     ByCell out;
     for (const auto& [cell, some] : faces) out[cell].assign(some.begin(), some.end());
     return out;
-}
-
-std::vector<NamedPolygon> without(const std::vector<NamedPolygon>& polygons, const std::vector<NamedPolygon>& others) {
-    std::multiset<NamedPolygon> out(polygons.begin(), polygons.end());
-    for (const NamedPolygon& other : others)
-        if (const auto found = out.find(other); found != out.end()) out.erase(found);
-    return {out.begin(), out.end()};
 }
 
 /// The faces of a cell's pieces are the parts of its faces, but for flat ones at ties, and polygons on the isosurface.

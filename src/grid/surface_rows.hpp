@@ -7,13 +7,14 @@
 
 #include <isotet/surface.hpp>
 
-namespace isotet::checking {
+namespace isotet::core {
 
-/// `vertices`, `triangles`   numbers, ascending; every vertex of these triangles is among the vertices
-Surface with_rows(const Surface& surface, const std::vector<std::uint64_t>& vertices,
-                  const std::vector<std::uint64_t>& triangles);
+/// The same surface with some of its triangles, and the vertices that these use.
+///
+/// `triangles`   numbers, ascending
+Surface with_triangles(const Surface& surface, const std::vector<std::uint64_t>& triangles);
 
 /// The tuples of an array with some numbers, in their order; itself where it is empty.
 Array rows_of(const Array& array, const std::vector<std::uint64_t>& rows);
 
-} // namespace isotet::checking
+} // namespace isotet::core
