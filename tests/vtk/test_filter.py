@@ -4,10 +4,11 @@
 import unittest
 
 import numpy as np
-from isotet_vtk.vtkIsotet import vtkIsotetContour, vtkIsotetContourFilter
+from isotet_vtk.vtkIsotet import vtkIsotetClip, vtkIsotetContour, vtkIsotetContourFilter, vtkIsotetReader, vtkIsotetSlice
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkObjectFactory, vtkStringArray
-from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkPartitionedDataSet, vtkPartitionedDataSetCollection, vtkPolyData
+from vtkmodules.vtkCommonCore import vtkIdList, vtkObjectFactory, vtkStringArray
+from vtkmodules.vtkCommonDataModel import (vtkMultiBlockDataSet, vtkPartitionedDataSet, vtkPartitionedDataSetCollection, vtkPlane,
+                                           vtkPolyData, vtkSphere)
 from vtkmodules.vtkFiltersCore import vtkAppendFilter, vtkContourFilter
 from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
 
@@ -463,17 +464,120 @@ class HandedToVtk(unittest.TestCase):
         self.assertAlmostEqual(above + below, whole, places=5)
         self.assertAlmostEqual(below + between, volume("Below", 0.4), places=5)
 
-    def test_says_why_there_is_no_solid(self):
+    def test_solids_are_made_of_each_block(self):
         blocks = vtkMultiBlockDataSet()
-        for i in range(2):
-            blocks.SetBlock(i, sphere(2))
+        blocks.SetNumberOfBlocks(3)
+        for i in (0, 2):
+            blocks.SetBlock(i, sphere(4 + i))
+        contour = start(blocks)
+        contour.SetSolidToBelow()
+        contour.Update()
+        self.assertEqual(contour.said, [])
+        for i in (0, 2):
+            alone = start(blocks.GetBlock(i))
+            alone.SetSolidToBelow()
+            alone.Update()
+            solid = contour.GetOutputDataObject(0).GetBlock(i)
+            self.assertEqual((open_edges(solid), solid.GetNumberOfPolys()), (0, alone.GetOutput().GetNumberOfPolys()))
+
+    def test_a_slice_that_moves_along_its_normal_keeps_the_field(self):
+        grid, plane = sphere(), vtkPlane()
+        plane.SetNormal(0, 3, 4)
+        slice = vtkIsotetSlice()
+        slice.SetInputData(grid)
+        slice.SetExpectedSurfaces(100)
+        slice.SetCutFunction(plane)
+        updates = []
+        for origin, normal in (((0.5, 0.5, 0.5), (0, 3, 4)), ((0.5, 0.4, 0.3), (0, 3, 4)), ((0.5, 0.4, 0.3), (0, 0.6, 0.8)),
+                               ((0.5, 0.5, 0.5), (1, 0, 0))):  # fmt: skip
+            plane.SetOrigin(origin)
+            plane.SetNormal(normal)
+            slice.Update()
+            updates.append(slice.GetLastUpdate())
+            places = (points_of(slice.GetOutput()) - origin) @ np.array(normal)
+            self.assertLess(np.abs(places).max(), 1e-6)
+            self.assertEqual(names(slice.GetOutput().GetPointData()), ["r"])
+        self.assertEqual(updates, [slice.GRID, slice.NOTHING, slice.NOTHING, slice.FIELD])
+
+    def test_slices_follow_any_function(self):
+        sphere_of = vtkSphere()
+        sphere_of.SetCenter(0.5, 0.5, 0.5)
+        sphere_of.SetRadius(0.3)
+        slice = vtkIsotetSlice()
+        slice.SetInputData(sphere(16))
+        slice.SetCutFunction(sphere_of)
+        slice.SetValue(0, 0.1)
+        slice.Update()
+        self.assertLess(np.abs(np.linalg.norm(points_of(slice.GetOutput()) - 0.5, axis=1) - 0.4).max(), 7e-3)
+        self.assertEqual(open_edges(slice.GetOutput()), 0)
+        image = vtkRTAnalyticSource()
+        slice.SetInputConnection(image.GetOutputPort())
+        sphere_of.SetCenter(0, 0, 0)
+        sphere_of.SetRadius(5)
+        slice.SetValue(0, 0)
+        slice.Update()
+        self.assertGreater(slice.GetOutput().GetNumberOfPolys(), 0)
+        self.assertEqual(names(slice.GetOutput().GetPointData()), ["RTData"])
+        slice.SetCutFunction(None)
+        said = []
+        slice.AddObserver("ErrorEvent", Listener(said))
+        slice.Update()
+        self.assertIn("no CutFunction", said[0])
+
+    def test_the_reader_says_which_file_is_none(self):
+        reader, said = vtkIsotetReader(), []
+        reader.AddObserver("ErrorEvent", Listener(said))
+        reader.SetFileName(__file__)
+        self.assertFalse(reader.CanReadFile(__file__))
+        reader.Update()
+        self.assertIn(__file__, said[0])
+
+    def test_clips_have_the_cells_of_one_side(self):
+        points, cells, field = lattice(6, HEXAHEDRON, np.float64)
+        grid = grid_of(points, cells, {"r": field, "n": np.arange(len(points), dtype=np.int32)})
+        add(grid.GetCellData(), "material", np.arange(len(cells), dtype=np.int16))
+        blocks = vtkMultiBlockDataSet()
+        blocks.SetBlock(0, grid)
+        for data in (grid, blocks):
+            clip = start(data, kind=vtkIsotetClip)
+            clip.Update()
+            self.assertEqual(clip.said, [])
+            out = clip.GetOutputDataObject(0)
+            out = out.GetBlock(0) if out.IsA("vtkMultiBlockDataSet") else out
+            self.assertEqual(out.GetPoints().GetDataType(), 11)
+            self.assertEqual(names(out.GetPointData()), ["n", "r"])
+            self.assertEqual(out.GetCellData().GetArray("material").GetDataType(), 4)
+            kept = vtk_to_numpy(out.GetPointData().GetArray("r"))
+            self.assertGreaterEqual(kept.min(), 0.3 - 1e-12)
+            self.assertEqual(kept.max(), field.max())
+            self.assertTrue({tuple(p) for p in points[field >= 0.3]} <= {tuple(p) for p in points_of(out)})
+            self.assertIn(42, {out.GetCellType(c) for c in range(out.GetNumberOfCells())})
+            faces = vtkIdList()
+            polyhedron = next(c for c in range(out.GetNumberOfCells()) if out.GetCellType(c) == 42)
+            out.GetFaceStream(polyhedron, faces)
+            self.assertEqual(faces.GetId(0), out.GetCell(polyhedron).GetNumberOfFaces())
+
+    def test_clips_of_other_data_sets_are_of_their_cells(self):
         image = vtkRTAnalyticSource()
         image.Update()
-        for data, array, why in ((blocks, "r", "one grid on one rank"), (image.GetOutput(), "RTData", "a Solid was asked for, but")):
-            contour = start(data, name=array)
-            contour.SetSolidToAbove()
-            contour.Update()
-            self.assertIn(why, contour.said[0])
+        clip = start(image.GetOutput(), name="RTData", value=150, kind=vtkIsotetClip)
+        clip.SetSolidToBelow()
+        clip.PolyhedraOff()
+        clip.Update()
+        self.assertEqual(clip.said, [])
+        self.assertGreater(clip.GetOutputDataObject(0).GetNumberOfCells(), 0)
+        self.assertLessEqual(clip.GetOutputDataObject(0).GetPointData().GetArray("RTData").GetRange()[1], 150)
+        clip = start(run(sphere()).GetOutput(), kind=vtkIsotetClip)
+        clip.Update()
+        self.assertIn("left out: triangle", clip.said[0])
+
+    def test_says_why_there_is_no_solid(self):
+        image = vtkRTAnalyticSource()
+        image.Update()
+        contour = start(image.GetOutput(), name="RTData")
+        contour.SetSolidToAbove()
+        contour.Update()
+        self.assertIn("a Solid was asked for, but", contour.said[0])
         contour = start(sphere(2))
         contour.SetSolidToBetween()
         contour.Update()

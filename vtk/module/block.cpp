@@ -10,9 +10,10 @@
 #include <vtkPolyData.h>
 #include <vtkUnstructuredGrid.h>
 
-#include <isotet/solid.hpp>
+#include <isotet/clip.hpp>
 
 #include "polydata.hpp"
+#include "unstructured.hpp"
 
 namespace isotet_vtk {
 
@@ -71,10 +72,12 @@ std::vector<std::string> notes_of(const isotet::RefinementReport& report) {
 std::vector<std::string> notes_of(const isotet::Solid& solid) {
     std::vector<std::string> notes = notes_of(solid.contour.refinement);
     if (solid.open_edges > 0)
-        notes.push_back("the solid has " + std::to_string(solid.open_edges) + " open edges: the grid has repeated cells");
+        notes.push_back("the solid has " + std::to_string(solid.open_edges) +
+                        " open edges: the grid has repeated cells");
     if (solid.seam_edges > 0)
-        notes.push_back("the isosurface of the solid has " + std::to_string(solid.seam_edges) +
-                        " open edges inside the grid, where points are doubled: vtkStaticCleanUnstructuredGrid joins them");
+        notes.push_back(
+            "the isosurface of the solid has " + std::to_string(solid.seam_edges) +
+            " open edges inside the grid, where points are doubled: vtkStaticCleanUnstructuredGrid joins them");
     if (solid.unfit_edges > 0)
         notes.push_back("the isosurface of the solid has " + std::to_string(solid.unfit_edges) +
                         " open edges inside the grid, where cells of different sizes do not fit together");
@@ -119,18 +122,36 @@ isotet::ContourInput Block::contour_input(bool with_numbers) const {
     return input;
 }
 
-/// Nothing is kept for the next execution: solids would hold arrays of VTK. The boundary has other values than the
+/// Of a piece where there is a frame: then ghost cells are the other pieces'. The boundary has other values than the
 /// isovalue: the contoured array is carried.
-isotet::Result<void> Block::extract_solids(const isotet::Run& run, vtkPolyData* out) {
-    update_ = isotet::ContourUpdate::grid;
-    session_.reset();
-    isotet::ContourInput input = contour_input(false);
+isotet::Result<isotet::Solids> Block::solids(const std::optional<isotet::Frame>& frame, bool with_numbers,
+                                             const isotet::Run& run) const {
+    isotet::ContourInput input = contour_input(with_numbers);
     if (wishes_.scalars) input.point_fields.push_back({contoured_.name, contoured_.values});
     isotet::ContourOptions options;
     options.method = isotet::Method::direct;
+    options.frame = frame;
     if (wishes_.tolerance > 0) options.refine = isotet::RefineOptions{.relative_tolerance = wishes_.tolerance};
     if (wishes_.points == isotet::Precision::float64) options.precision = isotet::Precision::float64;
-    isotet::Result<isotet::Solids> solids = isotet::Solids::create(std::move(input), options, run);
+    if (!frame) return isotet::Solids::create(std::move(input), options, run);
+    std::vector<std::uint8_t> ghosts(cells_.all().count(), 0);
+    if (cells_.has_ghosts()) {
+        const auto marks = cells_.ghosts().as<std::uint8_t>();
+        std::ranges::transform(marks, ghosts.begin(), [](std::uint8_t mark) { return mark & duplicate_bit; });
+        input.grid.cells = cells_.all();
+        const auto shown = isotet::leave_out_cells(input.grid, cells_.ghosts(), ghost_bits & ~duplicate_bit, run);
+        if (!shown) return shown.error();
+        input.grid.cells = shown->cells;
+    }
+    return isotet::Solids::create_piece(std::move(input), isotet::Array::own(std::move(ghosts)), options, run);
+}
+
+/// Nothing is kept for the next execution: solids would hold arrays of VTK.
+isotet::Result<void> Block::extract_solids(const std::optional<isotet::Frame>& frame, bool with_numbers,
+                                           const isotet::Run& run, vtkPolyData* out) {
+    update_ = isotet::ContourUpdate::grid;
+    session_.reset();
+    isotet::Result<isotet::Solids> solids = this->solids(frame, with_numbers, run);
     if (!solids) return solids.error();
     extract_seconds_ = field_bound_ = 0;
     notes_.clear();
@@ -149,6 +170,31 @@ isotet::Result<void> Block::extract_solids(const isotet::Run& run, vtkPolyData* 
     plain.normals = plain.scalars = false;
     write_polydata(surfaces, plain, scalars_, grid_, out);
     if (wishes_.scalars) out->GetPointData()->SetActiveScalars(contoured_.name.c_str());
+    return {};
+}
+
+isotet::Result<void> Block::clip(bool polyhedra, const isotet::Run& run, vtkUnstructuredGrid* out) {
+    isotet::ContourInput input = contour_input(false);
+    const bool is_of_grid = grid_->GetPointData()->GetArray(contoured_.name.c_str()) == scalars_;
+    if (is_of_grid) input.point_fields.push_back({contoured_.name, contoured_.values});
+    isotet::ContourOptions options;
+    options.method = isotet::Method::direct;
+    if (wishes_.tolerance > 0) options.refine = isotet::RefineOptions{.relative_tolerance = wishes_.tolerance};
+    const bool is_single =
+        input_.points.type() == isotet::ScalarType::float32 && contoured_.values.type() == isotet::ScalarType::float32;
+    if (wishes_.points == isotet::Precision::float64 || !is_single) // as every piece of the grid, without a frame
+        options.precision = isotet::Precision::float64;
+    isotet::Result<isotet::Clipper> clipper = isotet::Clipper::create(std::move(input), options, run);
+    if (!clipper) return clipper.error();
+    auto clipped = clipper->clip(ranges_of(wishes_).front(), {.polyhedra = polyhedra}, run);
+    if (!clipped) return clipped.error();
+    notes_ = notes_of(clipped->contour.refinement);
+    if (clipped->folded_pieces > 0)
+        notes_.push_back("pieces with cells inside out, as no point sees all of them: " +
+                         std::to_string(clipped->folded_pieces) + "; Polyhedra avoids them");
+    clipped->grid.points = in_precision(clipped->grid.points, wishes_);
+    write_cells(clipped->grid, out);
+    write_fields(clipped->grid.point_fields, clipped->grid.cell_fields, grid_, out);
     return {};
 }
 
@@ -172,7 +218,10 @@ isotet::Result<void> Block::set(const std::optional<isotet::Frame>& frame, bool 
     options.normals = wishes_.normals ? isotet::Normals::gradient : isotet::Normals::none;
     options.source_cells = needs_ghosts;
     options.frame = frame;
-    if (wishes_.tolerance > 0) options.refine = isotet::RefineOptions{.relative_tolerance = wishes_.tolerance};
+    if (wishes_.tolerance > 0) {
+        options.refine = isotet::RefineOptions{.relative_tolerance = wishes_.tolerance};
+        if (wishes_.refines_carried) options.refine->carried = point_fields_;
+    }
     if (wishes_.points == isotet::Precision::float64) options.precision = isotet::Precision::float64;
     if (session_) {
         const isotet::Result<isotet::ContourUpdate> update = session_->set(std::move(input), options, run);
@@ -189,7 +238,7 @@ isotet::Result<void> Block::set(const std::optional<isotet::Frame>& frame, bool 
 
 isotet::Result<void> Block::extract(const std::optional<isotet::Frame>& frame, bool with_numbers,
                                     const isotet::Run& run, vtkPolyData* out) {
-    if (wishes_.solid != SolidWish::none) return extract_solids(run, out);
+    if (wishes_.solid != SolidWish::none) return extract_solids(frame, with_numbers, run, out);
     if (auto ok = set(frame, with_numbers, run); !ok) return ok;
     isotet::Result<isotet::ContourResult> result = session_->extract(wishes_.isovalues, run);
     if (!result) return result.error();

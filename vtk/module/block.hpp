@@ -8,6 +8,7 @@
 
 #include <isotet/contour.hpp>
 #include <isotet/pieces.hpp>
+#include <isotet/solid.hpp>
 
 #include "arrays.hpp"
 #include "cells.hpp"
@@ -42,6 +43,9 @@ public:
     isotet::Result<void> extract(const std::optional<isotet::Frame>& frame, bool with_numbers, const isotet::Run& run,
                                  vtkPolyData* out);
 
+    /// The cells of one solid of the wishes, written to `out` with all arrays of the grid.
+    isotet::Result<void> clip(bool polyhedra, const isotet::Run& run, vtkUnstructuredGrid* out);
+
     /// Lets go of VTK's arrays, which only take() may give back.
     void release();
 
@@ -56,7 +60,10 @@ public:
 
 private:
     isotet::ContourInput contour_input(bool with_numbers) const;
-    isotet::Result<void> extract_solids(const isotet::Run& run, vtkPolyData* out);
+    isotet::Result<isotet::Solids> solids(const std::optional<isotet::Frame>& frame, bool with_numbers,
+                                          const isotet::Run& run) const;
+    isotet::Result<void> extract_solids(const std::optional<isotet::Frame>& frame, bool with_numbers,
+                                        const isotet::Run& run, vtkPolyData* out);
     isotet::Result<void> set(const std::optional<isotet::Frame>& frame, bool with_numbers, const isotet::Run& run);
 
     SharedCells cells_;

@@ -121,6 +121,22 @@ std::string Blocks::agree(const std::vector<BlockTask>& tasks, const Ranks& rank
     return make_frame(ranks, run);
 }
 
+/// Solids of pieces without ghost cells end where pieces meet. Blocks may be wholes: of them it is only noted.
+std::string Blocks::why_pieces_have_walls(const Ranks& ranks, const Looked& looked) {
+    int with_cells = 0, with_ghosts = 0;
+    for (const auto& [index, block] : blocks_) {
+        with_cells |= block.has_contoured();
+        with_ghosts |= block.cells().has_ghosts();
+    }
+    if (ranks.sum(with_cells) < 2 || ranks.sum(with_ghosts) > 0) return {};
+    const std::string need =
+        "ghost cells, of which solids of pieces need one layer: vtkGhostCellsGenerator makes them, in "
+        "ParaView Ghost Cells";
+    if (!looked.is_composite) return "the grid lies in pieces on several ranks, without " + need;
+    notes_.push_back("blocks on several ranks have no " + need);
+    return {};
+}
+
 std::string Blocks::extract(const std::vector<BlockTask>& tasks, const isotet::Run& run) {
     update_ = isotet::ContourUpdate::nothing;
     for (const BlockTask& task : tasks) {
@@ -140,6 +156,7 @@ std::string Blocks::contour(const std::vector<BlockTask>& tasks, const Wishes& w
     if (tasks.size() > 1 || ranks.count() > 1) possible.tolerance = 0; // pieces cannot be refined
     std::string error = looked.error.empty() ? take(tasks, possible) : looked.error;
     error = agree(tasks, ranks, run, std::move(error), looked);
+    if (error.empty() && wishes.solid != SolidWish::none) error = why_pieces_have_walls(ranks, looked);
     if (error.empty()) error = ranks.first_error(extract(tasks, run));
     if (!error.empty())
         for (const BlockTask& task : tasks) task.out->Initialize();

@@ -25,6 +25,7 @@ struct Looked {
     std::string error;
     std::string missing; ///< of blocks without the array: the error if no block of any rank has it
     bool found = false;  ///< a block has it
+    bool is_composite = false;
 };
 
 class Blocks {
@@ -56,6 +57,7 @@ private:
                       std::string error, const Looked& looked);
     std::string make_frame(const Ranks& ranks, const isotet::Run& run);
     isotet::Result<isotet::Survey> survey(const isotet::Run& run);
+    std::string why_pieces_have_walls(const Ranks& ranks, const Looked& looked);
     std::string extract(const std::vector<BlockTask>& tasks, const isotet::Run& run);
 
     std::map<unsigned int, Block> blocks_;

@@ -16,6 +16,7 @@ namespace isotet_vtk {
 
 /// Of VTK's ghost marks, those of cells that are left out: of another piece, refined, outside, hidden.
 inline constexpr std::uint8_t ghost_bits = 57;
+inline constexpr std::uint8_t duplicate_bit = 1; ///< of another piece
 
 class SharedCells {
 public:

@@ -33,11 +33,15 @@ std::string reason_against(vtkDataObject* data, vtkDataArray* scalars) {
     return {};
 }
 
-std::string reason_against(const std::vector<std::uint8_t>& types, const std::string& why_not) {
+std::string names_of(const std::vector<std::uint8_t>& types) {
     std::string names;
     for (const std::uint8_t type : types) names += (names.empty() ? "" : ", ") + isotet::name_of_cell_type(type);
+    return names;
+}
+
+std::string reason_against(const std::vector<std::uint8_t>& types, const std::string& why_not) {
     const bool curved = std::any_of(types.begin(), types.end(), isotet::is_curved);
-    return "cells of these types are contoured by vtkContourFilter, all others by isotet: " + names +
+    return "cells of these types are contoured by vtkContourFilter, all others by isotet: " + names_of(types) +
            (curved && !why_not.empty() ? "; " + why_not : "");
 }
 
@@ -50,7 +54,8 @@ vtkSmartPointer<vtkDataSet> with_scalars(vtkDataSet* data, vtkDataArray* scalars
         if (arrays->GetAbstractArray(i) == scalars) return data;
     auto more = vtkSmartPointer<vtkDataSet>::Take(data->NewInstance());
     more->ShallowCopy(data);
-    more->GetPointData()->SetScalars(scalars);
+    if (scalars->GetName() && *scalars->GetName()) more->GetPointData()->AddArray(scalars);
+    else more->GetPointData()->SetScalars(scalars); // in the place of the active ones
     return more;
 }
 

@@ -21,6 +21,9 @@ namespace isotet_vtk {
 /// Why isotet does not contour `data` at all: a sentence; empty when it does.
 std::string reason_against(vtkDataObject* data, vtkDataArray* scalars);
 
+/// "triangle, quadratic tetrahedron": of VTK's numbers.
+std::string names_of(const std::vector<std::uint8_t>& types);
+
 /// The sentence for cells of these types, VTK's numbers, in a grid that isotet contours but for them.
 ///
 /// `why_not`   why curved ones among them are not refined

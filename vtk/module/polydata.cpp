@@ -31,12 +31,6 @@ isotet::Array as_float64(const isotet::Array& values) {
     return isotet::Array::own(std::vector<double>(from.begin(), from.end()), values.components());
 }
 
-isotet::Array in_precision(const isotet::Array& positions, const Wishes& wishes) {
-    const bool is_single = positions.type() == isotet::ScalarType::float32;
-    if (!wishes.points || is_single == (*wishes.points == isotet::Precision::float32)) return positions;
-    return is_single ? as_float64(positions) : as_float32(positions);
-}
-
 /// Triangles in memory that VTK shares. `Values` is the array of VTK for their integers, or signed ones as wide.
 template <class Values>
 void set_triangles(vtkCellArray* cells, const isotet::Array& triangles) {
@@ -91,7 +85,13 @@ vtkSmartPointer<vtkDataArray> carried(const isotet::Field& field, vtkDataArray* 
     return rounded_to(type, field.values, field.name.c_str());
 }
 
-/// Vectors stay the active vectors, and so on.
+void add_fields(const std::vector<isotet::Field>& of_points, const std::vector<isotet::Field>& of_cells,
+                vtkDataSet* from, vtkDataSet* to) {
+    for (const isotet::Field& field : of_points)
+        to->GetPointData()->AddArray(carried(field, from->GetPointData()->GetArray(field.name.c_str())));
+    for (const isotet::Field& field : of_cells) to->GetCellData()->AddArray(to_vtk(field.values, field.name.c_str()));
+}
+
 void keep_active(vtkDataSetAttributes* from, vtkDataSetAttributes* to) {
     for (int attribute = 0; attribute < vtkDataSetAttributes::NUM_ATTRIBUTES; ++attribute) {
         vtkAbstractArray* const active = from->GetAbstractAttribute(attribute);
@@ -100,7 +100,25 @@ void keep_active(vtkDataSetAttributes* from, vtkDataSetAttributes* to) {
     }
 }
 
+/// Vectors stay the active vectors, and so on.
+void keep_active(vtkDataSet* from, vtkDataSet* to) {
+    keep_active(from->GetPointData(), to->GetPointData());
+    keep_active(from->GetCellData(), to->GetCellData());
+}
+
 } // namespace
+
+isotet::Array in_precision(const isotet::Array& positions, const Wishes& wishes) {
+    const bool is_single = positions.type() == isotet::ScalarType::float32;
+    if (!wishes.points || is_single == (*wishes.points == isotet::Precision::float32)) return positions;
+    return is_single ? as_float64(positions) : as_float32(positions);
+}
+
+void write_fields(const std::vector<isotet::Field>& of_points, const std::vector<isotet::Field>& of_cells,
+                  vtkDataSet* from, vtkDataSet* to) {
+    add_fields(of_points, of_cells, from, to);
+    keep_active(from, to);
+}
 
 void write_polydata(const std::vector<isotet::Surface>& surfaces, const Wishes& wishes, vtkDataArray* scalars,
                     vtkUnstructuredGrid* grid, vtkPolyData* out) {
@@ -112,14 +130,10 @@ void write_polydata(const std::vector<isotet::Surface>& surfaces, const Wishes& 
     vtkPointData* const of_points = out->GetPointData();
     const bool is_component = scalars->GetName() && !*scalars->GetName(); // the first one, which VTK gives no array
     if (wishes.scalars && !is_component) of_points->SetScalars(isovalues_of(surfaces, wishes, scalars));
-    for (const isotet::Field& field : surface.point_fields)
-        of_points->AddArray(carried(field, grid->GetPointData()->GetArray(field.name.c_str())));
-    for (const isotet::Field& field : surface.cell_fields)
-        out->GetCellData()->AddArray(to_vtk(field.values, field.name.c_str()));
+    add_fields(surface.point_fields, surface.cell_fields, grid, out);
     if (wishes.normals && isotet::are_of_vertices(surface.normals_kind))
         of_points->SetNormals(to_vtk(surface.normals, "Normals"));
-    keep_active(grid->GetPointData(), of_points);
-    keep_active(grid->GetCellData(), out->GetCellData());
+    keep_active(grid, out);
 }
 
 } // namespace isotet_vtk

@@ -8,6 +8,7 @@
 #include "wishes.hpp"
 
 class vtkDataArray;
+class vtkDataSet;
 class vtkPolyData;
 class vtkUnstructuredGrid;
 
@@ -19,5 +20,12 @@ namespace isotet_vtk {
 /// `scalars`, `grid`   what was contoured: type and name of the scalars, which arrays are active vectors and so on
 void write_polydata(const std::vector<isotet::Surface>& surfaces, const Wishes& wishes, vtkDataArray* scalars,
                     vtkUnstructuredGrid* grid, vtkPolyData* out);
+
+/// Fields of points and cells as VTK had them: interpolated integers are rounded, active arrays stay active.
+void write_fields(const std::vector<isotet::Field>& of_points, const std::vector<isotet::Field>& of_cells,
+                  vtkDataSet* from, vtkDataSet* to);
+
+/// Positions in the type that the wishes name.
+isotet::Array in_precision(const isotet::Array& positions, const Wishes& wishes);
 
 } // namespace isotet_vtk

@@ -24,6 +24,12 @@ Ranks::Flags Ranks::any(const Flags& mine) const {
     return {all[0] != 0, all[1] != 0, all[2] != 0, all[3] != 0, all[4] != 0, all[5] != 0, all[6] != 0};
 }
 
+int Ranks::sum(int mine) const {
+    int all = mine;
+    if (count_ > 1) controller_->AllReduce(&mine, &all, 1, vtkCommunicator::SUM_OP);
+    return all;
+}
+
 std::string Ranks::first_error(const std::string& mine) const {
     if (count_ < 2 || !any({.failed = !mine.empty()}).failed) return mine;
     constexpr std::size_t width = 512;

@@ -31,6 +31,8 @@ public:
     };
     Flags any(const Flags& mine) const;
 
+    int sum(int mine) const;
+
     /// The error of the lowest rank that has one, named; empty when none has.
     std::string first_error(const std::string& mine) const;
 

@@ -9,15 +9,11 @@
 #include <vector>
 
 #include "vtkCellData.h"
-#include "vtkCompositeDataIterator.h"
 #include "vtkContourValues.h"
-#include "vtkDataObjectTree.h"
 #include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
-#include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkMultiBlockDataSet.h"
 #include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -28,6 +24,7 @@
 #include "arrays.hpp"
 #include "blocks.hpp"
 #include "fallback.hpp"
+#include "leaves.hpp"
 #include "run.hpp"
 
 vtkStandardNewMacro(vtkIsotetContour);
@@ -37,14 +34,7 @@ namespace
 {
 
 using isotet_vtk::BlockTask;
-
-/// A data set that is no composite one, and where its surface goes.
-struct Leaf
-{
-  unsigned int Index;
-  vtkDataSet* Data;
-  vtkSmartPointer<vtkPolyData> Out;
-};
+using isotet_vtk::Leaf;
 
 /// What is contoured by whom.
 struct Work
@@ -78,16 +68,11 @@ std::string WhyThereIsNone(vtkAlgorithm* algorithm, vtkDataSet* data)
 }
 
 /// Empty where a solid can be made.
-std::string WhyNoSolid(const Work& work, const isotet_vtk::Wishes& wishes, int ranks)
+std::string WhyNoSolid(const Work& work, const isotet_vtk::Wishes& wishes)
 {
   if (!work.Reasons.empty())
   {
     return "a Solid was asked for, but " + *work.Reasons.begin();
-  }
-  if (work.Tasks.size() > 1 || ranks > 1)
-  {
-    return "a Solid is made of one grid on one rank, but there are " + std::to_string(work.Tasks.size()) + " grids on " +
-      std::to_string(ranks);
   }
   const auto different = std::set<double>(wishes.isovalues.begin(), wishes.isovalues.end()).size();
   if (wishes.solid == isotet_vtk::SolidWish::between && different < 2)
@@ -95,49 +80,6 @@ std::string WhyNoSolid(const Work& work, const isotet_vtk::Wishes& wishes, int r
     return "a Solid between values takes two of them";
   }
   return {};
-}
-
-/// The data sets of `input`; the output is given a polydata for each.
-std::vector<Leaf> LeavesOf(vtkDataObject* input, vtkDataObject* output)
-{
-  if (auto* const data = vtkDataSet::SafeDownCast(input))
-  {
-    return { { 0, data, vtkPolyData::SafeDownCast(output) } };
-  }
-  std::vector<Leaf> leaves;
-  auto* const composite = vtkCompositeDataSet::SafeDownCast(input);
-  if (!composite)
-  {
-    return leaves;
-  }
-  auto* const tree = vtkDataObjectTree::SafeDownCast(output);
-  auto* const list = vtkMultiBlockDataSet::SafeDownCast(output);
-  const bool is_tree = vtkDataObjectTree::SafeDownCast(input) != nullptr;
-  if (is_tree)
-  {
-    tree->CopyStructure(composite);
-  }
-  auto it = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
-  for (it->InitTraversal(); !it->IsDoneWithTraversal(); it->GoToNextItem())
-  {
-    auto* const data = vtkDataSet::SafeDownCast(it->GetCurrentDataObject());
-    if (!data)
-    {
-      continue;
-    }
-    Leaf leaf{ it->GetCurrentFlatIndex(), data, vtkSmartPointer<vtkPolyData>::New() };
-    leaf.Out->GetFieldData()->PassData(data->GetFieldData());
-    if (is_tree)
-    {
-      tree->SetDataSet(it, leaf.Out);
-    }
-    else
-    {
-      list->SetBlock(list->GetNumberOfBlocks(), leaf.Out);
-    }
-    leaves.push_back(leaf);
-  }
-  return leaves;
 }
 
 } // namespace
@@ -305,20 +247,9 @@ vtkTypeBool vtkIsotetContour::ProcessRequest(
 int vtkIsotetContour::RequestDataObject(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  vtkDataObject* const input = vtkDataObject::GetData(inputs[0], 0);
-  vtkSmartPointer<vtkDataObject> wanted;
-  if (vtkDataObjectTree::SafeDownCast(input))
-  {
-    wanted.TakeReference(input->NewInstance());
-  }
-  else if (vtkCompositeDataSet::SafeDownCast(input))
-  {
-    wanted = vtkSmartPointer<vtkMultiBlockDataSet>::New();
-  }
-  else
-  {
-    wanted = vtkSmartPointer<vtkPolyData>::New();
-  }
+  const vtkSmartPointer<vtkDataSet> alone = this->NewLeaf();
+  const vtkSmartPointer<vtkDataObject> wanted =
+    isotet_vtk::output_for(vtkDataObject::GetData(inputs[0], 0), alone);
   vtkDataObject* const output = vtkDataObject::GetData(outputs, 0);
   if (!output || output->GetDataObjectType() != wanted->GetDataObjectType())
   {
@@ -333,19 +264,18 @@ int vtkIsotetContour::RequestUpdateExtent(
   using Pipeline = vtkStreamingDemandDrivenPipeline;
   vtkInformation* const input = inputs[0]->GetInformationObject(0);
   vtkInformation* const output = outputs->GetInformationObject(0);
-  if (!input || !this->ComputeNormals || output->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) < 2)
+  if (!input || !this->NeedsGhosts() || output->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) < 2)
   {
     return 1;
   }
-  // Gradients are sums over the cells around a point.
+  // Gradients are sums over the cells around a point; of solids, faces where pieces meet are no boundary.
   const int levels = output->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS());
   input->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), std::max(levels, 1));
   return 1;
 }
 
 //------------------------------------------------------------------------------
-int vtkIsotetContour::RequestData(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+isotet_vtk::Wishes vtkIsotetContour::MakeWishes()
 {
   isotet_vtk::Wishes wishes;
   wishes.isovalues.assign(this->GetValues(), this->GetValues() + this->GetNumberOfContours());
@@ -358,50 +288,79 @@ int vtkIsotetContour::RequestData(
     wishes.points = this->OutputPointsPrecision == SINGLE_PRECISION ? isotet::Precision::float32
                                                                     : isotet::Precision::float64;
   }
-
   wishes.triangles = this->GenerateTriangles;
   wishes.component = this->ArrayComponent;
   wishes.solid = static_cast<isotet_vtk::SolidWish>(this->Solid);
 
+  return wishes;
+}
+
+vtkDataArray* vtkIsotetContour::FindArray(
+  const Leaf& leaf, bool isAlone, std::string& error, std::string& missing)
+{
+  int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
+  vtkDataArray* const scalars = this->GetInputArrayToProcess(0, leaf.data, association);
+  if (!scalars) // blocks need not all have the array
+  {
+    (isAlone ? error : missing) = WhyThereIsNone(this, leaf.data);
+  }
+  else if (association != vtkDataObject::FIELD_ASSOCIATION_POINTS)
+  {
+    error = "the array to process is of cells, but isosurfaces are of point data: use vtkCellDataToPointData before, in "
+            "ParaView Cell Data to Point Data";
+  }
+  else if (this->ArrayComponent >= scalars->GetNumberOfComponents() && scalars->GetNumberOfComponents() > 1)
+  {
+    error = "the array has " + std::to_string(scalars->GetNumberOfComponents()) +
+      " components, but ArrayComponent is " + std::to_string(this->ArrayComponent);
+  }
+  else
+  {
+    return scalars;
+  }
+  return nullptr;
+}
+
+vtkSmartPointer<vtkDataSet> vtkIsotetContour::NewLeaf()
+{
+  return vtkSmartPointer<vtkPolyData>::New();
+}
+
+bool vtkIsotetContour::NeedsGhosts() const
+{
+  return this->ComputeNormals || this->Solid != NO_SOLID;
+}
+
+int vtkIsotetContour::RequestData(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  const isotet_vtk::Wishes wishes = this->MakeWishes();
   vtkDataObject* const input = vtkDataObject::GetData(inputs[0], 0);
+  const bool isSolid = wishes.solid != isotet_vtk::SolidWish::none;
+  const bool isAlone = vtkDataSet::SafeDownCast(input) != nullptr;
   Work work;
   std::map<unsigned int, Internals::Component> components;
-  for (const Leaf& leaf : LeavesOf(input, vtkDataObject::GetData(outputs, 0)))
+  const vtkSmartPointer<vtkDataSet> kind = this->NewLeaf();
+  for (const Leaf& leaf : isotet_vtk::leaves_of(input, vtkDataObject::GetData(outputs, 0), kind))
   {
-    if (leaf.Data->GetNumberOfCells() == 0)
+    if (leaf.data->GetNumberOfCells() == 0)
     {
       continue;
     }
-    int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
-    vtkDataArray* const scalars = this->GetInputArrayToProcess(0, leaf.Data, association);
-    if (!scalars || association != vtkDataObject::FIELD_ASSOCIATION_POINTS)
+    vtkDataArray* const scalars = this->FindArray(leaf, isAlone, work.Error, work.Missing);
+    if (!scalars)
     {
-      if (scalars)
-      {
-        work.Error = "the array to process is of cells, but isosurfaces are of point data: use vtkCellDataToPointData "
-                     "before, in ParaView Cell Data to Point Data";
-      }
-      else // blocks need not all have the array
-      {
-        (leaf.Data == input ? work.Error : work.Missing) = WhyThereIsNone(this, leaf.Data);
-      }
       continue;
     }
-    if (this->ArrayComponent >= scalars->GetNumberOfComponents() && scalars->GetNumberOfComponents() > 1)
-    {
-      work.Error = "the array has " + std::to_string(scalars->GetNumberOfComponents()) +
-        " components, but ArrayComponent is " + std::to_string(this->ArrayComponent);
-      continue;
-    }
-    auto* const grid = vtkUnstructuredGrid::SafeDownCast(leaf.Data);
+    auto* const grid = vtkUnstructuredGrid::SafeDownCast(leaf.data);
     vtkDataArray* const one =
-      grid ? this->Internal->ComponentOf(leaf.Index, scalars, this->ArrayComponent, components) : scalars;
+      grid ? this->Internal->ComponentOf(leaf.index, scalars, this->ArrayComponent, components) : scalars;
     const std::string reason = this->GenerateTriangles
-      ? isotet_vtk::reason_against(leaf.Data, grid ? one : nullptr)
+      ? isotet_vtk::reason_against(leaf.data, grid ? one : nullptr)
       : "GenerateTriangles is off: vtkContourFilter contours, and makes polygons";
     if (reason.empty())
     {
-      work.Tasks.push_back({ leaf.Index, grid, one, leaf.Out });
+      work.Tasks.push_back({ leaf.index, grid, one, vtkPolyData::SafeDownCast(leaf.out) });
     }
     else
     {
@@ -414,14 +373,14 @@ int vtkIsotetContour::RequestData(
 
   isotet_vtk::AlgorithmRun run(this, this->NumberOfThreads);
   const isotet_vtk::Ranks ranks(this->Controller);
-  if (this->Solid != NO_SOLID && work.Error.empty())
+  if (isSolid && work.Error.empty())
   {
-    work.Error = WhyNoSolid(work, wishes, ranks.count());
+    work.Error = WhyNoSolid(work, wishes);
   }
   isotet_vtk::Blocks& blocks = this->Internal->Blocks;
   const bool found = !work.Tasks.empty() || !work.ForVtk.empty();
   const std::string error =
-    blocks.contour(work.Tasks, wishes, ranks, run.run(), { work.Error, work.Missing, found });
+    blocks.contour(work.Tasks, wishes, ranks, run.run(), { work.Error, work.Missing, found, !isAlone });
   if (run.cancelled())
   {
     return 1; // VTK knows
@@ -433,20 +392,19 @@ int vtkIsotetContour::RequestData(
   }
   for (const BlockTask& task : work.Tasks)
   {
-    if (this->Solid != NO_SOLID && !blocks.other_types(task.index).empty())
+    if (isSolid && !blocks.other_types(task.index).empty())
     {
       work.Reasons.insert("cells that isotet does not contour are no part of the solid");
-      return this->SayReasons(work.Reasons);
     }
   }
   for (const auto& [leaf, scalars] : work.ForVtk)
   {
-    isotet_vtk::contour_by_vtk(leaf.Data, scalars, wishes, leaf.Out);
+    isotet_vtk::contour_by_vtk(leaf.data, scalars, wishes, vtkPolyData::SafeDownCast(leaf.out));
   }
   for (const BlockTask& task : work.Tasks)
   {
     const std::vector<std::uint8_t> types = blocks.other_types(task.index);
-    if (types.empty())
+    if (types.empty() || isSolid)
     {
       continue;
     }

@@ -36,7 +36,17 @@
 #include <string> // For arguments
 
 class vtkContourValues;
+class vtkDataArray;
+class vtkDataSet;
 class vtkMultiProcessController;
+
+#ifndef __VTK_WRAP__
+namespace isotet_vtk
+{
+struct Leaf;
+struct Wishes;
+}
+#endif
 
 class VTKISOTET_EXPORT vtkIsotetContour : public vtkPolyDataAlgorithm
 {
@@ -152,8 +162,8 @@ public:
   /**
    * Closed solids in place of isosurfaces: the isosurface and the part of the grid's boundary on one side of it, cut at it,
    * outward oriented. The cell array "boundary" is 1 on the boundary; points have the contoured array as it is there, and no
-   * normals. Of one vtkUnstructuredGrid on one rank, all of whose cells isotet contours; all else is an error. The boundary is
-   * found anew in each execution. NO_SOLID by default.
+   * normals. Each block is a solid of its own. A grid in pieces on several ranks needs one level of ghost cells, which is asked
+   * for. Data that VTK would contour are an error. The boundary is found anew in each execution. NO_SOLID by default.
    */
   vtkSetClampMacro(Solid, int, NO_SOLID, SOLID_BETWEEN);
   vtkGetMacro(Solid, int);
@@ -228,6 +238,22 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int SayReasons(const std::set<std::string>& reasons);
+
+#ifndef __VTK_WRAP__
+  /// What an execution is to make.
+  virtual isotet_vtk::Wishes MakeWishes();
+
+  /// The array that decides in a data set. Without one null, and the sentence: an error, or, where other blocks may have the
+  /// array, what is missing.
+  virtual vtkDataArray* FindArray(
+    const isotet_vtk::Leaf& leaf, bool isAlone, std::string& error, std::string& missing);
+
+  /// What the output has for each data set of the input, empty.
+  virtual vtkSmartPointer<vtkDataSet> NewLeaf();
+#endif
+
+  /// Whether pieces need a level of ghost cells.
+  virtual bool NeedsGhosts() const;
 
   vtkContourValues* ContourValues;
   vtkTypeBool ComputeNormals = 1;

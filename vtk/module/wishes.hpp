@@ -22,9 +22,10 @@ struct Wishes {
     std::vector<double> isovalues;
     bool normals = true;
     bool scalars = true;
-    bool triangles = true; ///< without: VTK contours, and makes polygons
-    int component = 0;     ///< of images that VTK contours
+    bool triangles = true;                   ///< without: VTK contours, and makes polygons
+    int component = 0;                       ///< of images that VTK contours
     std::optional<isotet::Precision> points; ///< of the output's points; nothing: that of the input
+    bool refines_carried = false;            ///< the tolerance is of the carried fields, too
     double tolerance = 0; ///< of the field in curved cells, as a share of its range; 0: VTK contours these cells
     std::uint64_t expected_surfaces = 0; ///< as ContourOptions::surfaces
     SolidWish solid = SolidWish::none;
