@@ -45,8 +45,23 @@ def whole_of(value):
     return pickle.load(open(os.path.join(scratch, f"{NAME}-{value}"), "rb"))
 
 
+def solid_of(source, value):
+    return simple.IsotetSolid(Input=source, Scalars=["POINTS", "r"], Isovalues=[value])
+
+
+def slice_of(source, value):
+    """At a share of the width."""
+    slice = simple.IsotetSlice(Input=source, SliceOffsetValues=[value])
+    slice.SliceType.Origin, slice.SliceType.Normal = [5e5] * 3, [1, 0, 0]
+    return slice
+
+
+def clip_of(source, value):
+    return simple.IsotetClip(Input=source, Scalars=["POINTS", "r"], Isovalues=[value])
+
+
 def filter_of(kind, source):
     """The filter of the plugin in C++ ("plugin") or Python ("python")."""
     if not hasattr(simple, "IsotetContour"):
-        load() if kind == "plugin" else simple.LoadPlugin(os.environ["ISOTET_PLUGIN_PYTHON"], remote=True, ns=vars(simple))
+        load(kind)
     return contour(source, ComputeNormals=0, ExpectedSurfaces=100)

@@ -1,10 +1,10 @@
 # Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 """By mpirun and pvbatch: pieces of files on several ranks. First `write` on one process, then on any number the steps `check`,
-`blocks` and `error`, with the plugins that ISOTET_PLUGINS names: `plugin` (in C++) and `python`."""
+`blocks`, `solids`, `slices`, `clips` and `error`, with the plugins that ISOTET_PLUGINS names: `plugin` (in C++) and `python`."""
 
 import pickle
 
-from pieces import NAME, VALUES, data, filter_of, read_pieces, whole_of
+from pieces import NAME, VALUES, clip_of, data, filter_of, read_pieces, slice_of, solid_of, whole_of
 from support import *
 from vtkmodules.vtkCommonCore import vtkOutputWindow
 from vtkmodules.util.vtkConstants import VTK_MULTIBLOCK_DATA_SET
@@ -35,18 +35,25 @@ if vtkMultiProcessController.GetGlobalController().GetLocalProcessId() == 1:
 KEEP = "self.GetOutputDataObject(0).ShallowCopy(self.GetInputDataObject(0, 0))"
 
 
-def written(source, kind):
-    """The surface of all ranks, on rank 0."""
-    out = os.path.join(scratch, f"surface-{kind}-{'-'.join(sys.argv[1:])}-{ranks}.pvtp")
-    simple.servermanager.writers.XMLPPolyDataWriter(Input=source, FileName=out, DataMode="Binary").UpdatePipeline()
+def written(source, kind, cells=False):
+    """The surface of all ranks, or their cells, on rank 0."""
+    out = os.path.join(scratch, f"surface-{kind}-{'-'.join(sys.argv[1:])}-{ranks}.{'pvtu' if cells else 'pvtp'}")
+    writers = simple.servermanager.writers
+    writer = writers.XMLPUnstructuredGridWriter if cells else writers.XMLPPolyDataWriter
+    writer(Input=source, FileName=out, DataMode="Binary").UpdatePipeline()
     if rank > 0:
         return None
-    from vtkmodules.vtkIOXML import vtkXMLPPolyDataReader
+    from vtkmodules.vtkIOXML import vtkXMLPPolyDataReader, vtkXMLPUnstructuredGridReader
 
-    reader = vtkXMLPPolyDataReader()
+    reader = vtkXMLPUnstructuredGridReader() if cells else vtkXMLPPolyDataReader()
     reader.SetFileName(out)
     reader.Update()
     return reader.GetOutput()
+
+
+def places_of(data):
+    """The places of points, each once: pieces have those where they meet twice."""
+    return {tuple(point) for point in points_of(data)}
 
 
 def is_whole(surface, value):
@@ -61,6 +68,33 @@ def check(kind):
         filter.Isosurfaces = [value]
         filter.UpdatePipeline()
         is_whole(written(filter, kind), value)
+
+
+def solids(kind):
+    """Pieces with a layer of ghost cells give the solids of the whole."""
+    filter_of(kind, read_pieces())
+    # Of files ParaView 5.11 makes no ghost cells.
+    ghosts = simple.GhostCellsGenerator(Input=simple.RedistributeDataSet(Input=read_pieces()))
+    for value in VALUES:
+        surface = written(solid_of(ghosts, value), kind)
+        if rank == 0:
+            assert corners_of(surface) == whole_of(f"solid-{value}") and open_edges(surface) == 0, open_edges(surface)
+
+
+def slices(kind):
+    filter_of(kind, read_pieces())
+    for value in VALUES:
+        surface = written(slice_of(read_pieces(), value), kind)
+        if rank == 0:
+            assert corners_of(surface) == whole_of(f"slice-{value}") and names(surface.GetPointData()) == ["r"]
+
+
+def clips(kind):
+    filter_of(kind, read_pieces())
+    for value in VALUES:
+        clip = written(clip_of(read_pieces(), value), kind, cells=True)
+        if rank == 0:
+            assert (clip.GetNumberOfCells(), places_of(clip)) == whole_of(f"clip-{value}")
 
 
 def blocks(kind):
@@ -102,11 +136,16 @@ if sys.argv[1] == "write":
     points, cells, field = data()
     source = made(grid_of(points, cells, {"r": field}))
     for value in VALUES:
-        surface = corners_of(fetch(contour(source, value, ComputeNormals=0)))
-        pickle.dump(surface, open(os.path.join(scratch, f"{NAME}-{value}"), "wb"))
+        clip = fetch(clip_of(source, value))
+        wholes = {value: corners_of(fetch(contour(source, value, ComputeNormals=0))),
+                  f"solid-{value}": corners_of(fetch(solid_of(source, value))),
+                  f"slice-{value}": corners_of(fetch(slice_of(source, value))),
+                  f"clip-{value}": (clip.GetNumberOfCells(), places_of(clip))}  # fmt: skip
+        for name, whole in wholes.items():
+            pickle.dump(whole, open(os.path.join(scratch, f"{NAME}-{name}"), "wb"))
 else:
     for kind in os.environ["ISOTET_PLUGINS"].split():
         for step in sys.argv[1:]:
-            {"check": check, "blocks": blocks, "error": error}[step](kind)
+            {"check": check, "blocks": blocks, "error": error, "solids": solids, "slices": slices, "clips": clips}[step](kind)
 if rank == 0:
     print("ok", ranks, flush=True)

@@ -10,20 +10,23 @@ from paraview.vtk.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "vtk"))
-from grids import add, corners_of, grid_of, lattice, names, open_edges, points_of, triangles_of  # noqa: E402, F401
+from grids import add, area_of, corners_of, grid_of, lattice, names, open_edges, points_of, triangles_of  # noqa: E402, F401
 
 scratch = os.environ["ISOTET_SCRATCH"]
 controller = vtkMultiProcessController.GetGlobalController()
 rank, ranks = controller.GetLocalProcessId(), controller.GetNumberOfProcesses()
 
 
-def load():
-    """The plugin, loaded on all ranks without a word."""
-    simple.LoadPlugin(os.environ["ISOTET_PLUGIN"], remote=True, ns=vars(simple))
+def load(kind="plugin"):
+    """The plugin in C++ ("plugin") or Python ("python"), loaded on all ranks without a word."""
+    file = os.environ[{"plugin": "ISOTET_PLUGIN", "python": "ISOTET_PLUGIN_PYTHON"}[kind]]
+    simple.LoadPlugin(file, remote=True, ns=vars(simple))
 
 
 def fetch(proxy):
-    """The output on this process."""
+    """The output on this process, of all ranks where they are those of a server."""
+    if servermanager.ActiveConnection.IsRemote():
+        return servermanager.Fetch(proxy)
     proxy.UpdatePipeline()
     return proxy.GetClientSideObject().GetOutputDataObject(0)
 
