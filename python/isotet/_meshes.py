@@ -36,15 +36,16 @@ def grid_of_mesh(mesh, fields, cell_fields, point_numbers) -> _isotet.Grid:
 
 def _of_meshio(mesh) -> _isotet.Grid:
     joined = {name: np.concatenate([np.asarray(part) for part in parts]) for name, parts in mesh.cell_data.items()}
-    return _isotet.Grid(points_in(mesh.points), cells_in(mesh.cells), fields_in("point_data", mesh.point_data),
+    cells = cells_in(mesh.cells if len(mesh.cells) else {})
+    return _isotet.Grid(points_in(mesh.points), cells, fields_in("point_data", mesh.point_data),
                         fields_in("cell_data", joined))  # fmt: skip
 
 
 def expanded(grid: _isotet.Grid) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Corners of all cells one after another, where those of each begin, and types."""
     connectivity, offsets, types, uniform, *_ = grid.cells.arrays()
-    if offsets is not None:
-        return connectivity, offsets, types
+    if offsets is not None:  # without cells there are no types
+        return connectivity, offsets, np.empty(0, np.uint8) if types is None else types
     sizes = {10: 4, _VOXEL: 8, _HEXAHEDRON: 8, 13: 6, 14: 5}
     count = len(grid.cells)
     return connectivity, np.arange(count + 1) * sizes[uniform], np.full(count, uniform, np.uint8)

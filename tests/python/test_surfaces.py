@@ -530,3 +530,14 @@ def test_clipped_cells_carry_fields_and_numbers_and_fill_the_solid():
         clipper.clip()
     with pytest.raises(ValueError, match="must ascend"):
         clipper.clip(above=1, below=0)
+
+
+def test_clips_without_cells_go_everywhere(tmp_path):
+    nothing = isotet.make("mixed", 4, ["sphere"]).clip("sphere", below=-1)
+    assert len(nothing) == 0 and nothing.fields["sphere"].shape == (0,)
+    assert nothing.to_vtk().GetNumberOfCells() == 0
+    assert nothing.to_pyvista().n_cells == 0
+    assert nothing.to_meshio().cells == []
+    nothing.write(tmp_path / "nothing.vtu")
+    for again in (isotet.Grid(nothing.to_pyvista()), isotet.Grid(nothing.to_meshio()), isotet.read(tmp_path / "nothing.vtu")):
+        assert len(again) == 0
