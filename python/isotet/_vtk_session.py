@@ -44,6 +44,12 @@ class Session:
         if self._cells is None or times != self.times:  # equal cells in other arrays: the session finds it out
             self._cells, self.others, self.times = cells_of(grid), len(other_cells(grid)), times
 
+    @property
+    def empty_cells(self) -> int:
+        """Cells of VTK's type 0, and those that ghost marks hide."""
+        types = None if self._cells is None else self._cells.arrays()[2]
+        return 0 if types is None else int(np.count_nonzero(types == 0))
+
     def _input(self, grid, scalars: Scalars, numbers: np.ndarray | None = None, points=None) -> tuple[_isotet.Grid, _isotet.PointField]:
         assert self._cells is not None
         field = _isotet.PointField(scalars.name or scalars.array.GetName() or "scalars", scalars.values)

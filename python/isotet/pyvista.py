@@ -87,22 +87,35 @@ def _component(mesh, cells, name: str, of_cells: bool) -> Scalars:
 def _isovalues(isosurfaces, rng, range_of_data) -> list[float]:
     if not isinstance(isosurfaces, (int, np.integer)) or isinstance(isosurfaces, bool):
         return isovalues_in(isosurfaces)
-    ends = [float(end) for end in range_of_data()] if rng is None else _ends_of(rng)
+    ends = [float(end) for end in range_of_data()] if rng is None else _ends_of("rng", rng)
     if not np.isfinite(ends).all():
         raise ValueError(f"the field has values from {ends[0]} to {ends[1]}: give isovalues, or rng")
     return levels(ends[0], ends[1], int(isosurfaces))
 
 
-def _ends_of(rng) -> list[float]:
-    array = np.asarray(rng)
+def _ends_of(what: str, ends) -> list[float]:
+    array = np.asarray(ends)
     if array.dtype.kind not in "iuf":
-        raise TypeError(f"rng is {rng!r}, but must be two numbers")
+        raise TypeError(f"{what} is {ends!r}, but must be two numbers")
     if array.shape != (2,):
-        raise ValueError(f"rng has shape {array.shape} which is not allowed: it must be two numbers")
+        raise ValueError(f"{what} has shape {array.shape} which is not allowed: it must be two numbers")
     lower, upper = array.tolist()
     if not lower <= upper:
-        raise ValueError(f"rng is {lower} to {upper}, but must be sorted: it must ascend")
+        raise ValueError(f"{what} is {lower} to {upper}, but must be sorted: it must ascend")
     return [float(lower), float(upper)]
+
+
+def _clips(value, invert: bool, both: bool) -> list[dict[str, float]]:
+    """What `Clipper.clip` takes, for each grid that clip_scalar returns."""
+    if np.ndim(value):
+        lower, upper = _ends_of("value", value)
+        if both or not invert:
+            raise ValueError(f"value is the range {lower} to {upper}, but with invert=False or both=True must be one number")
+        return [{"above": lower, "below": upper}]
+    if not np.isfinite(value):
+        raise ValueError(f"value is {value}, but must be finite")
+    sides = [{"below": float(value)}, {"above": float(value)}]
+    return (sides if invert else sides[::-1])[: 2 if both else 1]
 
 
 def _keep_active_scalars(mesh, out) -> None:
@@ -200,11 +213,10 @@ class GridAccessor:
             fields = [named for named in fields if named[0] != "Normals"]
         how.update(grid=cells, scalars=scalars, normals=normals, surfaces=self._expected, fields=fields, cell_fields=cell_fields)
         (surface,) = contour_all([(self._session, how)], values)
+        left_out = cells.n_cells if surface is None else surface._how["cells_left_out"]
+        self._warn_of_cells("leaves out", left_out and left_out - self._session.others - self._session.empty_cells)
         if surface is None:
-            self._warn_of_cells("leaves out", cells.n_cells)
             return
-        hidden = int(np.count_nonzero(cells.celltypes == pyvista.CellType.EMPTY_CELL)) if surface._how["cells_left_out"] else 0
-        self._warn_of_cells("leaves out", surface._how["cells_left_out"] - self._session.others - hidden)
         finish(surface, values, scalars, fields, compute_scalars, any(name == "isovalue" for name, _ in cell_fields), out)
 
     def _add_others(self, wishes: Wishes, scalars: Scalars, of_cells: bool, out) -> None:
@@ -288,24 +300,28 @@ class GridAccessor:
         """
         chosen, _ = self._scalars(scalars, preference)
         cells, grid = self._unstructured(), self._grid
+        out = pyvista.PolyData()
+        if grid.n_cells == 0:
+            return out
         fields, cell_fields = arrays_of(grid.GetPointData()), arrays_of(grid.GetCellData())
         whole = Grid._of(_isotet.Grid(points_of(cells), cells_of(cells), fields, cell_fields))
         solids = Solids(whole, chosen.values, fields=dict(fields), cell_fields=dict(cell_fields),
                         normals="vertex" if compute_normals else "none")  # fmt: skip
         surface = solids.solid(above=above, below=below)
-        out = pyvista.PolyData()
         fill(out, surface, copy=False, kinds={name: values.dtype for name, values in fields})
         out.GetFieldData().PassData(grid.GetFieldData())
         out.field_data["volume"] = [surface.solid["volume"]] if surface.solid else [0.0]
         _keep_active_scalars(grid, out)
         return out
 
-    def clip_scalar(self, scalars=None, invert: bool = True, value: float = 0.0, inplace: bool = False,
+    def clip_scalar(self, scalars=None, invert: bool = True, value: float | Sequence[float] = 0.0, inplace: bool = False,
                     progress_bar: bool = False, both: bool = False):  # fmt: skip
         """The cells on one side of an isovalue, cut there, as of `pyvista.DataSet.clip_scalar`, whose parameters these are. Whole
         cells stay as they are; the pieces of others fit together, and may be polyhedra. The cell array "source_cell" has the
         number of the cell that each comes from.
 
+        value
+            The isovalue; or two, between which cells are kept.
         invert
             True keeps what is below the value, False what is not.
         both
@@ -315,19 +331,21 @@ class GridAccessor:
         progress_bar
             Accepted, without effect.
 
-        Raises TypeError for cell data, ValueError for broken grids and a value that is not finite.
+        Raises TypeError for cell data, ValueError for broken grids, for a value that is not finite, and for two with both or
+        without invert.
         """
         grid, cells = self._grid, self._unstructured()
         chosen, _ = self._scalars(scalars, "point")
         if inplace and not isinstance(grid, pyvista.UnstructuredGrid):
             raise TypeError(f"a {type(grid).__name__} cannot become its clipped cells: inplace must be False")
-        if not np.isfinite(value):
-            raise ValueError(f"value is {value}, but must be finite")
+        clips = _clips(value, invert, both)
         fields, cell_fields = arrays_of(grid.GetPointData()), arrays_of(grid.GetCellData(), "source_cell")
         whole = Grid._of(_isotet.Grid(points_of(cells), cells_of(cells), fields, cell_fields))
-        clipper = Clipper(whole, chosen.values, fields=dict(fields), cell_fields=dict(cell_fields))
-        names = ("below", "above") if invert else ("above", "below")
-        sides = [clipper.clip(**{side: float(value)}).to_pyvista() for side in names[: 2 if both else 1]]
+        if grid.n_cells:
+            clipper = Clipper(whole, chosen.values, fields=dict(fields), cell_fields=dict(cell_fields))
+            sides = [clipper.clip(**clip).to_pyvista() for clip in clips]
+        else:
+            sides = [pyvista.UnstructuredGrid() for _ in clips]
         for side in sides:
             side.GetFieldData().PassData(grid.GetFieldData())
             _keep_active_scalars(grid, side)

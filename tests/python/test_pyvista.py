@@ -591,3 +591,49 @@ def test_clip_scalar_keeps_the_side_that_pyvista_keeps():
     assert same.n_cells == below.n_cells
     with pytest.raises(TypeError):
         grid.isotet.clip_scalar("number")
+
+
+@pytest.mark.parametrize("ends", [(1.5, 2.5), [1.5, np.inf], np.array([1, 3])], ids=str)
+def test_clip_scalar_takes_a_range(ends):
+    grid = cubes(7)
+    ours, theirs = (kind.clip_scalar(scalars="r", value=ends) for kind in (grid.isotet, grid))
+    assert abs(ours.volume - theirs.volume) < 0.03 * theirs.volume > 0
+    assert ends[0] - 1e-5 <= ours["r"].min() and ours["r"].max() <= ends[1] + 1e-5
+    for how in ({"invert": False}, {"both": True}):
+        with pytest.raises(ValueError, match="must be one number"):
+            grid.isotet.clip_scalar("r", value=ends, **how)
+        with pytest.raises(ValueError, match="range clip"):
+            grid.clip_scalar(scalars="r", value=ends, **how)
+
+
+@pytest.mark.parametrize(
+    ("error", "message", "value"),
+    [(ValueError, "value is 2 to 1, but must be sorted", (2, 1)), (ValueError, "has shape", [1]), (TypeError, "must be two", ["a", "b"]),
+     (ValueError, "must be finite", np.nan)],
+)  # fmt: skip
+def test_wrong_values_of_clip_scalar_are_said(error, message, value):
+    with pytest.raises(error, match=message):
+        cubes().isotet.clip_scalar("r", value=value)
+
+
+def test_empty_clips_are_empty_grids():
+    grid = cubes()
+    for part in (grid.isotet.clip_scalar("r", value=-1.0), *grid.isotet.clip_scalar("r", value=99.0, invert=False, both=True)[:1],
+                 grid.isotet.clip_scalar("r", value=(98.0, 99.0))):  # fmt: skip
+        assert type(part) is pv.UnstructuredGrid and part.n_cells == 0 and part.n_points == 0
+        assert part.isotet.clip_scalar("r", value=1.0).n_cells == 0
+        assert part.isotet.solid("r", below=1.0).n_cells == 0
+    same = grid.copy()
+    assert same.isotet.clip_scalar("r", value=-1.0, inplace=True).n_cells == 0 == same.n_cells
+
+
+@pytest.mark.filterwarnings("error")
+def test_hidden_cells_are_no_cause_of_a_warning():
+    grid = isotet.make("kuhn", 5, ["sphere"]).to_pyvista()
+    whole = grid.isotet.contour([0.9], "sphere").n_cells
+    marks = np.where(np.arange(grid.n_cells) % 2, 0, 32).astype(np.uint8)
+    grid.cell_data["vtkGhostType"] = marks
+    assert 0 < grid.isotet.contour([0.9], "sphere").n_cells < whole
+    grid.cell_data["vtkGhostType"] = np.full_like(marks, 32)
+    assert grid.isotet.contour([0.9], "sphere").n_cells == 0
+    assert grid.isotet.slice("x").n_cells == 0
