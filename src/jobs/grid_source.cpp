@@ -5,6 +5,8 @@
 #include <cmath>
 #include <filesystem>
 #include <mutex>
+#include <set>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -16,6 +18,7 @@
 #include <isotet/grid.hpp>
 #include <isotet/grid_counts.hpp>
 #include <isotet/hanging_points.hpp>
+#include <isotet/jobs/many_files.hpp>
 #include <isotet/jobs/number_text.hpp>
 #include <isotet/jobs/output_names.hpp>
 #include <isotet/linear_cells.hpp>
@@ -211,6 +214,25 @@ std::string quoted_list(const std::vector<std::string>& names) {
     return list;
 }
 
+/// Files whose names differ in more than numbers are steps where they have a field in common, or none at all.
+Result<void> check_steps(const GridOptions& options, ReadOptions read_options, const Run& run) {
+    if (options.more_files.empty() || are_time_steps(options)) return {};
+    read_options.more_files.clear();
+    read_options.step.reset();
+    std::set<std::string> names;
+    for (const GridOptions& one : each_file(options)) {
+        const Result<FileInfo> info = inspect(one.file, read_options, run);
+        if (!info) return info.error();
+        const auto is_known = [&](const FieldInfo& field) { return names.contains(field.name); };
+        if (!names.empty() && !info->fields.empty() && std::ranges::none_of(info->fields, is_known))
+            return refusal("'{}' and '{}' have no field in common: they are different grids, no time steps of one. Give one "
+                           "after another, or, for surfaces, {{name}} in the name of the output",
+                           options.file, one.file);
+        for (const FieldInfo& field : info->fields) names.insert(field.name);
+    }
+    return {};
+}
+
 Result<GridSource> GridSource::open(const GridOptions& options, Caller& caller) {
     GridSource source;
     source.options_ = options;
@@ -239,6 +261,7 @@ Result<GridSource> GridSource::open(const GridOptions& options, Caller& caller) 
     read_options.more_files = options.more_files;
     read_options.step = options.step;
     read_options.kept = keep_files();
+    if (auto steps = check_steps(options, read_options, caller.run()); !steps) return steps.error();
     Result<FileInfo> info = inspect(options.file, read_options, caller.run());
     if (!info && options.step) { // choose_steps() refuses a step that is not there
         read_options.step.reset();

@@ -93,6 +93,7 @@ Result<Format> format_for_writing(const std::string& path, Writes what, Compress
         }
         for (const std::string& other : format.extensions) endings += (endings.empty() ? "" : ", ") + other;
     }
+    if (path == "-") return refusal("the output '-' would be standard output, but only files can be written");
     return refusal("the name of the output is '{}', but it must end in one of {}", path, endings);
 }
 

@@ -59,7 +59,8 @@ Result<PictureFiles> PictureFiles::open(const std::string& out, std::size_t pict
                            out);
         if (numbered)
             return refusal(
-                "the name of the output is '{}', but only pictures of `sweep`, `orbit` and `all_steps` have numbers",
+                "the name of the output is '{}', but there is one picture: only several ones, of `sweep`, `orbit` or "
+                "`all_steps` with several steps, have numbers",
                 out);
         return files;
     }

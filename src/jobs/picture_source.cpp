@@ -35,11 +35,10 @@ bool names_isovalues(const DrawJob& job) {
 bool asks_for_field(const DrawJob& job) { return names_isovalues(job) || draws_volume(job) || job.solid || job.keep; }
 
 Result<std::vector<double>> choose_levels(const DrawJob& job, const PointField& field, const ValueRange& range) {
-    std::vector<double> levels = evenly_spaced_levels(range.lower, range.upper,
-                                                      job.levels > 0 ? job.levels
-                                                      : job.solid    ? 1
-                                                                     : default_levels,
-                                                      LevelRounding::short_decimals);
+    std::vector<double> levels =
+        job.levels > 0 ? evenly_spaced_levels(range.lower, range.upper, job.levels)
+                       : evenly_spaced_levels(range.lower, range.upper, job.solid ? 1 : default_levels,
+                                              LevelRounding::short_decimals);
     if (!levels.empty()) return levels;
     return Error{ErrorCode::invalid_data,
                  fmt::format("field '{}' has no finite value: there is nothing to contour", field.name)};

@@ -168,7 +168,7 @@ TEST(DrawFiles, RefusesNamesThatDoNotFitThePictures) {
     const test::TemporaryFolder folder;
     Listener listener;
     DrawJob job = small_picture("make:kuhn:4:sphere", folder.file("p{frame}.png"));
-    EXPECT_NE(draw_files(job, listener).error().message.find("only pictures of `sweep`, `orbit` and `all_steps` have"),
+    EXPECT_NE(draw_files(job, listener).error().message.find("but there is one picture: only several ones"),
               std::string::npos);
     job.out = folder.file("p.png");
     job.orbit = 4;

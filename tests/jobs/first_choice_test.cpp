@@ -321,6 +321,17 @@ TEST_F(FirstStep, OfSeveralFilesIsThatOfASeries) {
     EXPECT_NE(grid.error().message.find("several files are a time step each, but"), std::string::npos);
 }
 
+TEST_F(FirstStep, OfFilesWithNothingInCommonIsNone) {
+    GridOptions options;
+    options.file = folder.write("box.vtu", vtu_with("T", something));
+    options.more_files = {folder.write("pipe.vtu", vtu_with("U", something))};
+    const Result<GridSource> source = GridSource::open(options, listener);
+    ASSERT_FALSE(source);
+    EXPECT_NE(source.error().message.find("have no field in common"), std::string::npos) << source.error().message;
+    options.more_files = {folder.write("other.vtu", vtu_with("T", something))};
+    EXPECT_EQ(GridSource::open(options, listener)->info().times.size(), 2u);
+}
+
 TEST(ExtractWithoutAField, TakesTheOneThatIsShownFirst) {
     Listener listener;
     ExtractJob job;

@@ -91,3 +91,22 @@ def test_wrong_pieces_are_refused(whole):
         isotet.Frame()
     with pytest.raises(ValueError, match="point_numbers has shape"):
         isotet.Grid(whole.points, whole.cells, offsets=whole.offsets, types=whole.types, point_numbers=np.zeros((2, 2), int))
+
+
+@pytest.mark.parametrize("shape", ["kuhn", "hex"])
+def test_solids_of_pieces_are_together_that_of_the_whole(shape):
+    whole = isotet.make(shape, 4, ["gyroid"])
+    frame = isotet.make_frame([whole.piece(k, 2).survey("gyroid") for k in range(2)])
+    of_whole = isotet.Solids(whole, "gyroid")
+    expected = of_whole.solid(above=0.2)
+    half = len(whole) // 2
+    marks = np.arange(len(whole)) >= half
+    parts = [isotet.Solids(whole, "gyroid", ghosts=ghosts.astype(np.uint8), frame=frame) for ghosts in (marks, ~marks)]
+    assert sum(part.grid_volume for part in parts) == pytest.approx(of_whole.grid_volume)
+    solids = [part.solid(above=0.2) for part in parts]
+    assert sum(solid.solid["volume"] for solid in solids) == pytest.approx(expected.solid["volume"])
+    assert sum(len(solid.triangles) for solid in solids) == len(expected.triangles)
+    with pytest.raises(ValueError, match="frame"):
+        isotet.Solids(whole, "gyroid", ghosts=np.zeros(len(whole), np.uint8))
+    with pytest.raises(ValueError, match="one a cell"):
+        isotet.Solids(whole, "gyroid", ghosts=[0, 1], frame=frame)
