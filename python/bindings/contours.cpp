@@ -346,12 +346,16 @@ void add_solids(nb::module_& module) {
         .def(
             "__init__",
             [](Solids* self, const Grid& grid, const PointField& field, const FieldsIn& fields,
-               const FieldsIn& cell_fields, const ContourOptions& options, const CallOptions& how) {
+               const FieldsIn& cell_fields, const ContourOptions& options, const std::optional<ArrayIn>& ghosts,
+               const CallOptions& how) {
                 ContourInput input = contour_input(grid, field, fields, cell_fields);
-                new (self)
-                    Solids(call(how, [&](const Run& run) { return Solids::create(std::move(input), options, run); }));
+                const Array marks = ghosts ? array_in(*ghosts) : Array();
+                new (self) Solids(call(how, [&](const Run& run) {
+                    return ghosts ? Solids::create_piece(std::move(input), marks, options, run)
+                                  : Solids::create(std::move(input), options, run);
+                }));
             },
-            "grid"_a, "field"_a, "fields"_a, "cell_fields"_a, "options"_a, "call"_a)
+            "grid"_a, "field"_a, "fields"_a, "cell_fields"_a, "options"_a, "ghosts"_a.none(), "call"_a)
         .def(
             "extract",
             [](Solids& self, double lower, double upper, const CallOptions& how) {

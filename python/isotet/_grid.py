@@ -727,6 +727,10 @@ class Solids:
         As for `Grid.contour`; curved cells are refined for all isovalues.
     normals
         "none", "face" or "vertex".
+    ghosts, frame
+        The grid is a piece of one with this frame, and comes with the cells of other pieces beside its own: `ghosts` has an
+        integer a cell, not 0 for these. Solids of all pieces are together those of the whole, volumes are their shares;
+        faces between pieces are no boundary, and open edges are not counted.
 
     >>> import isotet
     >>> solids = isotet.Solids(isotet.make("kuhn", 8, ["sphere"]), "sphere")
@@ -742,12 +746,16 @@ class Solids:
                  cell_fields: Mapping[str, Any] | Iterable[str] | None = None, normals: str = "none", edge_ends: bool = False,
                  source_cells: bool = False, precision: str = "float32", method: str | None = None, split_cells: bool = False,
                  tolerance: float | str | None = None, geometry_tolerance: float = 0.0, distance: float = 0.0,
-                 centre: str = "mean", threads: int = 0, progress: Progress | None = None):  # fmt: skip
+                 ghosts: npt.ArrayLike | None = None, frame: Frame | None = None, centre: str = "mean",
+                 threads: int = 0, progress: Progress | None = None):  # fmt: skip
         call = call_options(threads, progress)
         options = _isotet.ContourOptions(normals, edge_ends, source_cells, "merge", precision, method, 0, split_cells,
-                                         None, *tolerances_in(tolerance, geometry_tolerance, distance))  # fmt: skip
-        self._solids = _isotet.Solids(grid._grid, grid._field(field, call, False, centre), grid._carried(fields, "fields"),
-                                      grid._carried(cell_fields, "cell_fields"), options, call)  # fmt: skip
+                                         frame and frame._frame,
+                                         *tolerances_in(tolerance, geometry_tolerance, distance))  # fmt: skip
+        marks = None if ghosts is None else numbers_in("ghosts", ghosts)
+        self._solids = _isotet.Solids(grid._grid, grid._field(field, call, frame is not None, centre),
+                                      grid._carried(fields, "fields"), grid._carried(cell_fields, "cell_fields"), options,
+                                      marks, call)  # fmt: skip
 
     def solid(self, *, above: float | None = None, below: float | None = None, threads: int = 0,
               progress: Progress | None = None) -> Surface:  # fmt: skip
