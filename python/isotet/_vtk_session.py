@@ -61,13 +61,16 @@ class Session:
 
     def inputs(self, grid, scalars: Scalars, *, normals: bool, surfaces: int, fields: list[tuple[str, np.ndarray]],
                cell_fields: list[tuple[str, np.ndarray]], precision: str = "float32", numbers: np.ndarray | None = None,
-               frame: _isotet.Frame | None = None, points=None, source_cells: bool = False,
+               frame: _isotet.Frame | None = None, points=None, source_cells: bool = False, refine_for_fields: bool = False,
                tolerances: tuple[float | None, float | None, float, float] = (None, None, 0.0, 0.0)) -> tuple[Any, ...]:  # fmt: skip
-        """What contour_all() sets the session to; it is made here if there is none."""
+        """What contour_all() sets the session to; it is made here if there is none. `refine_for_fields`: `tolerances` hold for
+        the carried fields, too."""
         mine, field = self._input(grid, scalars, numbers, points)
         kind = "gradient" if normals else "none"
         options = _isotet.ContourOptions(kind, False, source_cells, "merge", precision, None, surfaces, False, frame, *tolerances,
                                          pack_all=True)  # fmt: skip
+        if refine_for_fields:
+            options.refine_for(fields)
         self._is_new = self._session is None
         if self._session is None:
             self._session = _isotet.Contour(mine, field, fields, cell_fields, options, call_options(0, None))

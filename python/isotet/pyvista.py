@@ -234,7 +234,8 @@ class GridAccessor:
             warnings.warn(f"isotet {what} {count} of {self._grid.n_cells} cells: {REASON}", stacklevel=4)
 
     def slice(self, normal="x", origin=None, generate_triangles: bool = False, contour: bool = False,
-              progress_bar: bool = False) -> pyvista.PolyData:  # fmt: skip
+              progress_bar: bool = False, *, tolerance: float | str | None = None, geometry_tolerance: float = 0.0,
+              distance: float = 0.0) -> pyvista.PolyData:  # fmt: skip
         """The cut along a plane, as of `pyvista.DataSet.slice`, whose parameters these are. Its triangles share vertices; all
         arrays of points and cells are carried. What was packed for `contour` serves here, too.
 
@@ -247,6 +248,8 @@ class GridAccessor:
         generate_triangles, progress_bar
             Accepted, without effect.
 
+        tolerance, geometry_tolerance, distance
+            Curved cells are refined, for the carried arrays, too, as by `isotet.Grid.slice`.
         Raises ValueError for a normal of 0 and for broken grids.
         """
         grid = self._grid
@@ -259,7 +262,9 @@ class GridAccessor:
         offset = direction[0] * point[0] + direction[1] * point[1] + direction[2] * point[2]
         field = _isotet.plane_field(points_of(cells), (0.0, 0.0, 0.0), direction, offset, call_options(0, None))
         heights = numpy_to_vtk(field.values)
-        self._extract(Scalars("", heights, field.values), [offset], out, False, normals=False)
+        self._extract(
+            Scalars("", heights, field.values), [offset], out, False, normals=False, refine_for_fields=True,
+            tolerances=tolerances_in(tolerance, geometry_tolerance, distance))  # fmt: skip
         if others := self._session.others:
             flat = grid if others == cells.n_cells else pyvista.wrap(some_cells(grid, other_cells(grid)))
             append(flat.slice(direction, origin=point), out)
@@ -269,15 +274,17 @@ class GridAccessor:
             _keep_active_scalars(grid, out)
         return out.contour() if contour else out
 
-    def slice_orthogonal(self, x=None, y=None, z=None) -> pyvista.MultiBlock:
-        """Three slices, as of `pyvista.DataSet.slice_orthogonal`: blocks "YZ", "XZ" and "XY" through a point; else the centre."""
+    def slice_orthogonal(self, x=None, y=None, z=None, **tolerances) -> pyvista.MultiBlock:
+        """Three slices, as of `pyvista.DataSet.slice_orthogonal`: blocks "YZ", "XZ" and "XY" through a point; else the centre.
+        `tolerances` are those of `slice`."""
         centre = self._grid.center
         point = [centre[i] if place is None else float(place) for i, place in enumerate((x, y, z))]
-        return pyvista.MultiBlock({name: self.slice(axis, point) for name, axis in (("YZ", "x"), ("XZ", "y"), ("XY", "z"))})
+        names = {"YZ": "x", "XZ": "y", "XY": "z"}
+        return pyvista.MultiBlock({name: self.slice(axis, point, **tolerances) for name, axis in names.items()})
 
-    def slice_along_axis(self, n: int = 5, axis: str | int = "x") -> pyvista.MultiBlock:
+    def slice_along_axis(self, n: int = 5, axis: str | int = "x", **tolerances) -> pyvista.MultiBlock:
         """`n` slices evenly along an axis, "x" or 0 and so on, from end to end, as of `pyvista.DataSet.slice_along_axis`: blocks
-        "slice0" and on."""
+        "slice0" and on. `tolerances` are those of `slice`."""
         if axis not in ("x", "y", "z", 0, 1, 2):
             raise ValueError(f"axis is {axis!r}, but must be 'x', 'y' or 'z', or 0, 1 or 2")
         along = "xyz".index(axis) if isinstance(axis, str) else int(axis)
@@ -287,7 +294,7 @@ class GridAccessor:
         out = pyvista.MultiBlock()
         for i, place in enumerate(np.linspace(*ends, n)):
             centre[along] = place
-            out.append(self.slice("xyz"[along], centre), f"slice{i}")
+            out.append(self.slice("xyz"[along], centre, **tolerances), f"slice{i}")
         return out
 
     def solid(self, scalars=None, *, above: float | None = None, below: float | None = None, preference: str = "point",

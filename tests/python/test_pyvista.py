@@ -306,6 +306,22 @@ def test_curved_cells_are_refined():
 
 
 def test_blocks():
+def test_slices_of_curved_cells_are_refined_for_their_arrays():
+    made = isotet.make("tet10", 3, ["sphere"])
+    made = isotet.Grid(made.points, made.cells, offsets=made.offsets, types=made.types, fields={"d": (made.points**2).sum(axis=1)})
+    grid = made.to_pyvista()
+    off = []
+    for tolerance in (None, "0.1%", 0.01):
+        ours, same = grid.isotet.slice("z", (0, 0, 0.3), tolerance=tolerance), made.slice("z", (0, 0, 0.3), tolerance=tolerance)
+        assert np.array_equal(ours.points, same.points)
+        off.append(np.abs(ours["d"] - (ours.points**2).sum(axis=1)).max())
+    assert max(off[1:]) < off[0] / 2
+    for several in (grid.isotet.slice_orthogonal, grid.isotet.slice_along_axis):
+        assert sum(cut.n_cells for cut in several(tolerance="0.1%")) > sum(cut.n_cells for cut in several())
+    with pytest.raises(ValueError, match="tolerance is 'fine'"):
+        grid.isotet.slice(tolerance="fine")
+
+
     left, right = cubes(), cubes(5)
     right["r"] += 10
     inner = pv.MultiBlock({"image": pv.ImageData(dimensions=(4, 4, 4))})
