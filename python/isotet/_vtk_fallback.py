@@ -21,13 +21,27 @@ class Wishes(NamedTuple):
     generate_triangles: bool = True
     output_points_precision: int = 2
     array_component: int = 0
+    cell_isovalues: bool = False  # of several, as the cell array "isovalue"
 
 
 def contour_by_vtk(data, scalars: Scalars, of_cells: bool, wishes: Wishes) -> vtkPolyData:
     """The surface, lines or points of any vtkDataSet. Cell arrays are averaged to points by VTK."""
+    data, name = _with_array(data, scalars, of_cells)
+    if not wishes.cell_isovalues or len(wishes.isovalues) < 2:
+        return _contoured(data, name, wishes)
+    out = vtkPolyData()
+    for isovalue in wishes.isovalues:
+        surface = _contoured(data, name, wishes._replace(isovalues=[isovalue]))
+        array = numpy_to_vtk(np.full(surface.GetNumberOfCells(), isovalue), deep=True)
+        array.SetName("isovalue")
+        surface.GetCellData().AddArray(array)
+        append(surface, out)
+    return out
+
+
+def _contoured(data, name: str, wishes: Wishes) -> vtkPolyData:
     from vtkmodules.vtkFiltersCore import vtkContourFilter  # these modules take longer to import than all of isotet
 
-    data, name = _with_array(data, scalars, of_cells)
     contour = vtkContourFilter()
     contour.SetInputData(data)
     contour.SetInputArrayToProcess(0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, name)

@@ -128,10 +128,11 @@ def levels(lower: float, upper: float, count: int) -> list[float]:
 
 
 def finish(surface: Surface, isovalues: list[float], scalars: Scalars, fields: list[tuple[str, np.ndarray]],
-           compute_scalars: bool, own_cell_fields: bool, out, points=None, polygons=None):  # fmt: skip
-    """A surface as vtkContourFilter gives it: the contoured scalars are an array of isovalues, integers are integers."""
+           compute_scalars: bool, cell_isovalues: bool, out, points=None, polygons=None):  # fmt: skip
+    """A surface as vtkContourFilter gives it: the contoured scalars are an array of isovalues, integers are integers.
+    `cell_isovalues`: the cell array "isovalue" stays."""
     fill(out, surface, copy=False, kinds={name: values.dtype for name, values in fields}, points=points, polygons=polygons)
-    if len(isovalues) != 1 and not own_cell_fields:
+    if len(isovalues) != 1 and not cell_isovalues:
         out.GetCellData().RemoveArray("isovalue")
     if compute_scalars and scalars.name:
         kind = scalars.values.dtype

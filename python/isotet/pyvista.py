@@ -163,7 +163,8 @@ class GridAccessor:
         """Isosurfaces, as of `pyvista.UnstructuredGrid.contour`, whose parameters and array names these are.
 
         isosurfaces
-            How many, evenly over the range with both ends; or isovalues.
+            How many, evenly over the range with both ends; or isovalues. Of several each cell has its own as the cell array
+            "isovalue".
         scalars
             The name of an array, or of a component of it, as "v:x", "v:2" or "v:mag", without which a vector's first is
             taken; or one value a point, which is stored as "Contour Data"; else the active scalars.
@@ -198,7 +199,7 @@ class GridAccessor:
         self._extract(
             chosen, values, out, compute_scalars, normals=compute_normals,
             tolerances=tolerances_in(tolerance, geometry_tolerance, distance))  # fmt: skip
-        self._add_others(Wishes(values, compute_normals, compute_scalars), chosen, of_cells, out)
+        self._add_others(Wishes(values, compute_normals, compute_scalars, cell_isovalues=True), chosen, of_cells, out)
         out.GetFieldData().PassData(self._grid.GetFieldData())
         return out
 
@@ -217,7 +218,7 @@ class GridAccessor:
         self._warn_of_cells("leaves out", left_out and left_out - self._session.others - self._session.empty_cells)
         if surface is None:
             return
-        finish(surface, values, scalars, fields, compute_scalars, any(name == "isovalue" for name, _ in cell_fields), out)
+        finish(surface, values, scalars, fields, compute_scalars, True, out)
 
     def _add_others(self, wishes: Wishes, scalars: Scalars, of_cells: bool, out) -> None:
         """What VTK contours of it."""
@@ -247,9 +248,9 @@ class GridAccessor:
             The outlines of the active scalars on the cut, instead of it.
         generate_triangles, progress_bar
             Accepted, without effect.
-
         tolerance, geometry_tolerance, distance
             Curved cells are refined, for the carried arrays, too, as by `isotet.Grid.slice`.
+
         Raises ValueError for a normal of 0 and for broken grids.
         """
         grid = self._grid

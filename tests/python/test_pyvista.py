@@ -59,7 +59,7 @@ def test_the_arrays_are_those_of_pyvista(grid):
     for kwargs in ({}, {"compute_scalars": False}, {"compute_normals": True}, {"compute_gradients": True}):
         ours, theirs = both(grid, [1.2, 2.5], "r", **kwargs)
         assert set(ours.point_data) == set(theirs.point_data)
-        assert set(ours.cell_data) == set(theirs.cell_data)
+        assert set(ours.cell_data) == set(theirs.cell_data) | {"isovalue"}
         assert ours.field_data["time"].tolist() == [1.5]
         assert {name: ours[name].shape[1:] for name in ours.point_data} == {
             name: theirs[name].shape[1:] for name in theirs.point_data}  # fmt: skip
@@ -127,6 +127,7 @@ def test_cells_that_vtk_contours_are_appended_with_a_warning():
         surface = mixed.isotet.contour([1.5, 20.2], "x", compute_normals=True)
     assert surface.n_lines == 1 and surface.n_cells > 1
     assert set(surface.point_data) == {"x", "Normals"}
+    assert np.array_equal(surface.cell_data["isovalue"] == 20.2, np.arange(surface.n_cells) == 0), "lines come first"
     with pytest.warns(UserWarning, match="leaves to VTK 1 of"):
         assert mixed.isotet.slice("x", (20.2, 0, 0)).n_lines == 1
 
@@ -270,7 +271,7 @@ def test_structured_grids(kind):
         assert np.allclose(ours.points.min(axis=0), used.min(axis=0), atol=1e-5)
         assert np.allclose(ours.points.max(axis=0), used.max(axis=0), atol=1e-5)
         assert set(ours.point_data) == set(theirs.point_data)
-        assert set(ours.cell_data) == set(theirs.cell_data)
+        assert set(ours.cell_data) == set(theirs.cell_data) | {"isovalue"}
         return ours
 
     same()
@@ -305,7 +306,6 @@ def test_curved_cells_are_refined():
         grid.isotet.contour([0.5], "r", tolerance="fine")
 
 
-def test_blocks():
 def test_slices_of_curved_cells_are_refined_for_their_arrays():
     made = isotet.make("tet10", 3, ["sphere"])
     made = isotet.Grid(made.points, made.cells, offsets=made.offsets, types=made.types, fields={"d": (made.points**2).sum(axis=1)})
@@ -322,6 +322,7 @@ def test_slices_of_curved_cells_are_refined_for_their_arrays():
         grid.isotet.slice(tolerance="fine")
 
 
+def test_blocks():
     left, right = cubes(), cubes(5)
     right["r"] += 10
     inner = pv.MultiBlock({"image": pv.ImageData(dimensions=(4, 4, 4))})
@@ -338,6 +339,22 @@ def test_slices_of_curved_cells_are_refined_for_their_arrays():
     assert blocks.isotet.contour([1.5], "r")["inner"]["image"].area == pytest.approx(9)
     with pytest.raises(ValueError, match="no block has point data 'pressure'"):
         blocks.isotet.contour(5, "pressure")
+
+
+def test_several_isovalues_number_their_cells(grid):
+    surface = grid.isotet.contour([1.2, 2.5], "r", compute_scalars=False)
+    isovalues = surface.cell_data["isovalue"]
+    assert np.unique(isovalues).tolist() == [1.2, 2.5] and surface.active_scalars_name is None
+    for isovalue in (1.2, 2.5):
+        one = grid.isotet.contour([isovalue], "r")
+        assert one.n_cells == np.count_nonzero(isovalues == isovalue) and "isovalue" not in one.cell_data
+    blocks = pv.MultiBlock([grid]).isotet.contour([1.2, 2.5], "r")
+    assert np.array_equal(blocks[0].cell_data["isovalue"], isovalues)
+    flat = pv.Plane(i_resolution=9, j_resolution=9)
+    flat["x"] = flat.points[:, 0]
+    with pytest.warns(UserWarning, match="leaves to VTK"):
+        lines = flat.isotet.contour([-0.2, 0.1, 0.3], "x", compute_scalars=False)
+    assert np.allclose(lines.cell_centers().points[:, 0], lines.cell_data["isovalue"])
 
 
 def test_a_slider_is_followed():
