@@ -75,18 +75,20 @@ std::vector<std::string> reader_candidates(const ReaderPlaces& places) {
 }
 
 Result<std::string> find_reader(const ReaderPlaces& places) {
-    const std::vector<std::string> candidates = reader_candidates(places);
-    for (const std::string& candidate : candidates) {
+    for (const std::string& candidate : reader_candidates(places)) {
         if (can_be_run(candidate)) return candidate;
     }
+    ReaderPlaces without_path = places;
+    without_path.search_path.clear();
     std::vector<std::string> shown;
-    for (const std::string& candidate : candidates) shown.push_back(escaped(candidate));
+    for (const std::string& candidate : reader_candidates(without_path)) shown.push_back(escaped(candidate));
+    shown.emplace_back("in PATH");
     return Error{
         ErrorCode::system,
-        fmt::format("the program isotet-reader, which reads this format, was not found as {}: install isotet with "
+        fmt::format("the program isotet-reader, which reads this format, was found neither as {}: install isotet with "
                     "it (it is built with -DISOTET_IO=ON), put its folder into PATH, or name it in "
                     "ReadOptions::reader_program",
-                    fmt::join(shown, ", "))};
+                    fmt::join(shown, " nor "))};
 }
 
 } // namespace isotet::io::confined
