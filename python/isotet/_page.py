@@ -58,7 +58,7 @@ class Page:
 def _unfilled() -> str:
     page = resources.files(__package__) / "page.html"
     if not page.is_file():
-        raise RuntimeError("this isotet has no page in it: scripts/wheel.sh takes one from ISOTET_PAGE, which `isotet docs page` prints")
+        raise _isotet.Error("this isotet has no page in it: scripts/wheel.sh takes one from ISOTET_PAGE, which `isotet docs page` prints")
     return page.read_text(encoding="utf-8")
 
 
@@ -103,7 +103,7 @@ def html(grid: Any, field: str | None = None, *, isovalue: float | None = None, 
     name
         What the page calls the grid.
 
-    Raises ValueError for wrong arguments and broken grids; MemoryError; RuntimeError where isotet was built without the page.
+    Raises ValueError for wrong arguments and broken grids; MemoryError; `Error` where isotet was built without the page.
     """
     unfilled, call = _unfilled(), call_options(threads, progress)
     grid = grid if isinstance(grid, Grid) else Grid(grid)

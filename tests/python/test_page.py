@@ -58,3 +58,9 @@ def test_wrong_fields_are_errors(unfilled):
         isotet.html(grid, color_by="pressure")
     with pytest.raises(ValueError):
         isotet.html(grid, fields={"short": np.zeros(2)})
+
+
+def test_without_the_page_there_is_a_sentence(monkeypatch, tmp_path):
+    monkeypatch.setattr(_page.resources, "files", lambda package: tmp_path)
+    with pytest.raises(isotet.Error, match="no page in it: .* ISOTET_PAGE"):
+        isotet.html(isotet.make("kuhn", 3, ["plane"]))
