@@ -30,7 +30,7 @@ class Surface:
     """Triangles on shared vertices: V vertices, F triangles.
 
     Its arrays are read-only NumPy arrays. They own the memory they show, so each lives on without the surface; to change
-    one, copy it.
+    one, copy it. It has no len(), as surfaces of trimesh and PyVista have none: ``len(surface.triangles)``.
 
     A surface of your own, to check or to write:
 

@@ -440,8 +440,9 @@ class PolyDataAccessor(GridAccessor):
         return self._polydata(self._surface().reduce(target_reduction, error))
 
     def extract_largest(self) -> pyvista.PolyData:
-        """The connected part with the largest area, as of `pyvista.DataSet.extract_largest`."""
-        return self._polydata(self._surface().keep_parts(0))
+        """The connected part with the largest area, as of `pyvista.DataSet.extract_largest`; of nothing, nothing."""
+        surface = self._surface()
+        return self._polydata(surface.keep_parts(0) if len(surface.triangles) else surface)
 
     def split_bodies(self) -> pyvista.MultiBlock:
         """The connected parts, largest area first, as of `pyvista.DataSet.split_bodies`."""

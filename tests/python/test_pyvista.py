@@ -491,6 +491,8 @@ def test_surfaces_are_decimated_and_split():
     assert len(parts) == len(both_sides.isotet.parts()) == 2
     assert sum(part.n_cells for part in parts) == both_sides.n_cells
     assert both_sides.isotet.extract_largest().n_cells == parts[0].n_cells
+    nothing = grid.isotet.contour([99.0], "r")
+    assert nothing.isotet.extract_largest().n_cells == len(nothing.isotet.split_bodies()) == 0
     ball = grid.isotet.contour([5.0], "r")
     fewer = ball.isotet.decimate(0.5)
     assert 0.3 * ball.n_cells < fewer.n_cells < 0.6 * ball.n_cells
