@@ -59,6 +59,7 @@ class PlotterComponent:
         lower, upper = (min(end[0] for end in ends), max(end[1] for end in ends)) if rng is None else rng
         contour = IsotetContour(expected_surfaces=MANY, compute_normals=compute_normals, compute_scalars=compute_scalars,
                                 array_component=component)  # fmt: skip
+        contour._keeps_active = False  # what is contoured colours the surface
         if algorithm is None:
             contour.SetInputData(_as_cells(shown))
         else:

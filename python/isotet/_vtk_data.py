@@ -12,7 +12,7 @@ import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.util.vtkConstants import VTK_ID_TYPE
 from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkUnstructuredGrid
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSetAttributes, vtkPolyData, vtkUnstructuredGrid
 
 from . import _isotet
 from ._arrays import points_in, scalars_in, values_in
@@ -241,6 +241,18 @@ def _add_array(attributes, name: str, values: np.ndarray, copy: bool):
     array.SetName(name)
     attributes.AddArray(array)
     return array
+
+
+def keep_active(source, out) -> None:
+    """The active arrays of a data set are active in a surface of it, if it has them, as in VTK's filters: scalars in place of
+    those that are, others where none are."""
+    scalars, last = vtkDataSetAttributes.SCALARS, vtkDataSetAttributes.TENSORS
+    for its, mine in ((source.GetPointData(), out.GetPointData()), (source.GetCellData(), out.GetCellData())):
+        for kind in range(scalars, last + 1):
+            active = its.GetAbstractAttribute(kind)
+            name = active.GetName() if active is not None else None
+            if name and mine.HasArray(name) and (kind == scalars or mine.GetAbstractAttribute(kind) is None):
+                mine.SetActiveAttribute(name, kind)
 
 
 def surface_of(mesh) -> Surface:

@@ -79,8 +79,8 @@ class ContourProperties(VTKPythonAlgorithmBase):
         self._set("Values", values)
 
     def GetValue(self, i: int) -> float:
-        """The isovalue `i`; beyond the end the last one."""
-        return self._values[min(max(i, 0), len(self._values) - 1)]
+        """The isovalue `i`; beyond the end the last one, 0 where there is none."""
+        return self._values[min(max(i, 0), len(self._values) - 1)] if self._values else 0.0
 
     def GetValues(self, values: list[float] | None = None) -> list[float]:
         """All isovalues; also written into `values`."""

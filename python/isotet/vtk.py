@@ -22,7 +22,7 @@ from . import _isotet
 from ._polygons import polygons_of
 from ._ranks import Ranks
 from ._surface import Surface
-from ._vtk_data import Scalars, arrays_of, grid_of, scalars_of, to_polydata
+from ._vtk_data import Scalars, arrays_of, grid_of, keep_active, scalars_of, to_polydata
 from ._vtk_fallback import REASON, Wishes, append, append_other_cells, contour_by_vtk
 from ._vtk_properties import ContourProperties
 from ._vtk_session import Session, contour_all, finish
@@ -114,6 +114,7 @@ class IsotetContour(ContourProperties):
         self._precision = "float32"
         self._tolerance = 0.0
         self._controller = None
+        self._keeps_active = True  # scalars of the input; else the contoured ones are active
         self._sessions: dict[int, Session] = {}  # of the blocks of the last execution, by their numbers
         self._frame: _isotet.Frame | None = None
         self._framed: list[tuple[int, ...]] | None = None  # modified times that the frame follows from
@@ -392,6 +393,8 @@ class IsotetContour(ContourProperties):
             self._contour(framed, numbered)
             for block in own:
                 self._add_others(block)
+                if self._keeps_active:
+                    keep_active(block.grid, block.out)
         except BaseException as error:  # noqa: BLE001
             failure = error
         ranks.agree(failure)

@@ -37,6 +37,8 @@ def both(grid, name="r", *, values=(2.5,), association=0, **settings):
 def test_every_method_and_property_of_vtk_is_there():
     ours, theirs = IsotetContour(), vtkContourFilter()
     assert set(dir(theirs)) - set(dir(ours)) == set()
+    read = [{name for name in dir(theirs) if name.islower() and hasattr(contour, name)} for contour in (ours, theirs)]
+    assert read[0] == read[1] and "input_data" not in read[0], "which VTK only writes"
     for name in ("ComputeNormals", "ComputeScalars", "ComputeGradients", "GenerateTriangles", "UseScalarTree", "ArrayComponent",
                  "OutputPointsPrecision", "FastMode", "NumberOfContours", "ContourValues", "ScalarTree", "Locator"):  # fmt: skip
         assert getattr(ours, f"Get{name}")() == getattr(theirs, f"Get{name}")(), name
@@ -108,6 +110,27 @@ def test_defaults_give_the_arrays_of_vtk():
     assert ours.active_scalars_name == theirs.active_scalars_name == "r"
     ours, theirs = both(cubes(), ComputeScalars=0, ComputeNormals=0)
     assert set(ours.point_data) == set(theirs.point_data) == {"x", "v"}
+
+
+@pytest.mark.parametrize("scalars", ["x", "r", None])
+@pytest.mark.parametrize("settings", [{}, {"ComputeScalars": 0}, {"ComputeNormals": 0}], ids=str)
+@pytest.mark.parametrize("with_others", [False, True])
+def test_active_arrays_are_those_of_vtk(scalars, settings, with_others):
+    grid = cubes()
+    if with_others:
+        grid = grid.merge(pv.examples.cells.Triangle().translate((2, 2, 2.3)), merge_points=False)
+        grid["r"] = np.linalg.norm(grid.points - 4, axis=1)
+    grid["upwards"] = np.tile(np.float32([0, 0, 1]), (grid.n_points, 1))
+    points, cells = grid.GetPointData(), grid.GetCellData()
+    points.SetActiveScalars(scalars)
+    points.SetActiveVectors("v")
+    points.SetActiveNormals("upwards")
+    cells.SetActiveScalars("number")
+    ours, theirs = both(grid, **settings)
+    for data in ("GetPointData", "GetCellData"):
+        for kind in ("GetScalars", "GetVectors", "GetNormals", "GetTCoords", "GetTensors"):
+            active = [getattr(getattr(surface, data)(), kind)() for surface in (ours, theirs)]
+            assert [array and array.GetName() for array in active] == [active[1] and active[1].GetName()] * 2, (data, kind)
 
 
 @pytest.mark.parametrize("points", [np.float32, np.float64])
@@ -289,6 +312,12 @@ def test_implicit_arrays_of_vtk_are_read():
     grid.GetPointData().AddArray(constant)
     surface = output(pipeline(grid))
     assert set(np.asarray(surface.point_data["constant"])) == {4.0}
+
+
+def test_without_isovalues_the_first_is_0():
+    contour = IsotetContour()
+    contour.SetNumberOfContours(0)
+    assert contour.GetValue(0) == contour.GetValue(3) == 0, "VTK reads memory that is not its own"
 
 
 def test_no_isovalues_give_the_shapes_of_a_surface():
