@@ -38,10 +38,12 @@ std::string why_empty(const FieldReport& field, double isovalue) {
     if (isovalue == field.lower)
         return fmt::format("{} is the smallest value of '{}': nothing is below it, the surface is empty", value,
                            field.name);
-    const std::string range =
-        fmt::format("the range of '{}', {} to {}", field.name, shortest(field.lower), shortest(field.upper));
-    if (isovalue < field.lower || isovalue > field.upper)
-        return fmt::format("isovalue {} is outside {}: the surface is empty", value, range);
+    const double beyond = std::max(field.lower - isovalue, isovalue - field.upper);
+    double apart = (field.upper - field.lower) / 1000;
+    if (beyond > 0 && (beyond < apart || apart == 0)) apart = beyond;
+    const std::string range = fmt::format("the range of '{}', {} to {}", field.name, rounded(field.lower, apart),
+                                          rounded(field.upper, apart));
+    if (beyond > 0) return fmt::format("isovalue {} is outside {}: the surface is empty", value, range);
     return fmt::format("isovalue {} is within {}, but no tet has values on both sides of it: the surface is empty",
                        value, range);
 }
@@ -66,9 +68,8 @@ std::string why_solid_is_empty(const FieldReport& field, const SolidRange& range
                                : std::isinf(range.lower)
                                    ? fmt::format("below {}", shortest(range.upper))
                                    : fmt::format("from {} to {}", shortest(range.lower), shortest(range.upper));
-    const std::string has = field.lower <= field.upper
-                                ? fmt::format("{} to {}", shortest(field.lower), shortest(field.upper))
-                                : std::string("no finite value");
+    const std::string has =
+        field.lower <= field.upper ? rounded_range(field.lower, field.upper) : std::string("no finite value");
     return fmt::format("the solid is empty: it has values of '{}' {}, but the field has {}", field.name, values, has);
 }
 

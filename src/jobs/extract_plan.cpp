@@ -289,8 +289,8 @@ Result<std::vector<double>> choose_isovalues(const ExtractJob& job, const std::v
         }
         isovalues = evenly_spaced_levels(packed.lower, packed.upper, std::max<std::uint64_t>(job.levels, 1));
         if (job.levels == 0) {
-            caller.note(fmt::format("no isovalue was given: {}, the middle of the range {} to {}, was taken",
-                                    shortest(isovalues.front()), shortest(packed.lower), shortest(packed.upper)));
+            caller.note(fmt::format("no isovalue was given: {}, the middle of the range {}, was taken",
+                                    shortest(isovalues.front()), rounded_range(packed.lower, packed.upper)));
         }
     }
     std::vector<double> distinct;

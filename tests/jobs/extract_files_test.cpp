@@ -53,7 +53,12 @@ TEST(ExtractFiles, WritesAFileForEachIsovalue) {
         EXPECT_TRUE(std::filesystem::exists(folder.file(name))) << name;
     ASSERT_EQ(listener.noted.size(), 2u);
     EXPECT_EQ(listener.noted[0], "the isovalue 0.5 was given more than once: it is extracted once");
-    EXPECT_EQ(listener.noted[1].substr(0, 41), "isovalue 7 is outside the range of 'spher");
+    EXPECT_EQ(listener.noted[1], "isovalue 7 is outside the range of 'sphere', 0 to 1.73205: the surface is empty");
+    job.isovalues = {1.7320509};
+    job.allow_empty = true;
+    EXPECT_TRUE(extract_files(job, listener));
+    EXPECT_EQ(listener.noted.back(),
+              "isovalue 1.7320509 is outside the range of 'sphere', 0 to 1.7320508: the surface is empty");
 }
 
 TEST(ExtractFiles, ContoursAndCarriesExpressions) {
