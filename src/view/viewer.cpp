@@ -61,7 +61,8 @@ struct Viewer::Data {
         double since = 0;
     };
     std::map<ConnectionNumber, Page> pages; ///< of the server's thread
-    std::optional<double> alone_until;      ///< once the last admitted page went: when it all ends
+    std::optional<double> alone_until;      ///< while there is no admitted page: when it all ends
+    bool was_opened = false;                ///< a page was admitted
     Parting last_parting = Parting::closed; ///< of the page that may come back longest
     std::optional<double> longest_wait;     ///< for a page that went since one was admitted
     double said_alive = 0;
@@ -79,6 +80,7 @@ struct Viewer::Data {
 };
 
 void Viewer::Data::start() {
+    alone_until = now_seconds() + options.unopened_seconds;
     const auto name = [](const ViewerFile* file) { return file ? file->name : std::string(); };
     const ViewerFile* second = options.second ? &*options.second : nullptr;
     files.push_back(std::make_unique<ViewedFile>(options.file, options, name(second), *server));
@@ -100,7 +102,7 @@ void Viewer::Data::take_hello(ConnectionNumber from, const HelloMessage& message
         return refuse("token", "This address is of an earlier run: open the one that isotet view printed last.");
     if (admitted() >= options.max_pages)
         return refuse("pages", fmt::format("{} pages are open already, which is the limit.", options.max_pages));
-    pages[from].admitted = true;
+    pages[from].admitted = was_opened = true;
     alone_until.reset();
     longest_wait.reset();
     files[pages[from].file]->add_page(from);
@@ -156,7 +158,9 @@ void Viewer::Data::say_alive(double now) {
 
 bool Viewer::Data::was_left(double now) {
     if (!alone_until || now < *alone_until || options.keep) return false;
-    reason = last_parting == Parting::lost
+    reason = !was_opened ? fmt::format("no page was opened within {}; with --keep isotet view waits on",
+                                       duration_text(options.unopened_seconds))
+             : last_parting == Parting::lost
                  ? fmt::format("no page came back in the {} after its connection was lost",
                                duration_text(options.lost_seconds))
                  : fmt::format("the last page was closed {} ago; with --keep isotet view goes on",

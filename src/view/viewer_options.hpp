@@ -37,6 +37,7 @@ struct ViewerOptions {
     std::string token;                  ///< empty: 128 bits of the system's random numbers
     bool keep = false;                  ///< goes on when the last page was closed
     double linger_seconds = 60;         ///< after the last page was closed, without `keep`
+    double unopened_seconds = 1800;     ///< for the first page, without `keep`
     double lost_seconds = 1800;         ///< after the last page lost its connection, from which it may come back
     double failure_seconds = 30;        ///< that an error of reading waits for a page to tell
     std::function<bool()> is_left = {}; ///< asked now and then: whether what started it has gone; then run() ends

@@ -319,6 +319,30 @@ TEST(Viewer, EndsSomeTimeAfterTheLastPageWasClosed) {
     EXPECT_EQ(viewer.viewer().reason(), "the last page was closed 0.2 s ago; with --keep isotet view goes on");
 }
 
+TEST(Viewer, EndsSomeTimeAfterTheStartWithoutAPage) {
+    ViewerOptions options;
+    options.unopened_seconds = 0.2;
+    RunningViewer viewer(3600, std::move(options));
+    (void)answer_to(viewer, "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n"); // is no page
+    viewer.join();
+    EXPECT_EQ(viewer.viewer().reason(), "no page was opened within 0.2 s; with --keep isotet view waits on");
+}
+
+TEST(Viewer, StaysWhereAPageIsOpenOrItIsTold) {
+    ViewerOptions options;
+    options.unopened_seconds = 1;
+    const RunningViewer opened(3600, options);
+    options.keep = true;
+    options.unopened_seconds = 0.1;
+    const RunningViewer kept(3600, options);
+    RawPage page(opened.port());
+    ASSERT_TRUE(say_hello(page));
+    ASSERT_TRUE(message_with(page, "welcome"));
+    std::this_thread::sleep_for(std::chrono::milliseconds(1300));
+    EXPECT_TRUE(is_served(opened));
+    EXPECT_TRUE(is_served(kept));
+}
+
 TEST(Viewer, WaitsInAnotherWayForAPageThatLostItsConnection) {
     ViewerOptions options;
     options.lost_seconds = 0.2;
