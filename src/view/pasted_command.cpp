@@ -323,6 +323,10 @@ Result<std::size_t> begin_of_options(const std::vector<std::string>& words) {
     const std::string_view program = std::string_view(words[0]).substr(words[0].rfind('/') + 1);
     if (program == "isotet" && is_command(1)) return std::size_t{2};
     if (is_command(0)) return std::size_t{1};
+    if (program == "isotet" && words.size() > 1 && !words[1].starts_with('-'))
+        return Error{
+            ErrorCode::invalid_argument,
+            fmt::format("isotet {} is not taken here, but isotet render, extract, view and slice are", words[1])};
     return Error{ErrorCode::invalid_argument,
                  fmt::format("'{}' begins no command line of isotet render, extract, view or slice", words[0])};
 }
@@ -383,8 +387,9 @@ void finish(Pasting& pasting) {
 } // namespace
 
 Result<PastedCommand> state_of_command(std::string_view text, const std::vector<std::string>& reading) {
-    const Result<std::vector<std::string>> words = shell_words(text);
+    Result<std::vector<std::string>> words = shell_words(text);
     if (!words) return words.error();
+    if (words->size() > 1 && words->front() == "$") words->erase(words->begin()); // the prompt that documents show
     const Result<std::size_t> begin = begin_of_options(*words);
     if (!begin) return begin.error();
     const OptionsOf command = *begin > 0 && (*words)[*begin - 1] == "slice" ? OptionsOf::slice : OptionsOf::picture;

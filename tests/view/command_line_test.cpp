@@ -97,7 +97,8 @@ TEST(StateJson, GivesTheStateBack) {
 
 TEST(StateOfCommand, TakesEveryWayToWriteAnOption) {
     for (const char* text : {"isotet render g.vtu -f p -i 0.5,1", "render g.vtu --field=p -i0.5 --isovalue 1",
-                             "isotet extract -i .5 -i +1 g.vtu out.vtp -f 'p' --snap", "-fp --isovalue=0.5,1e0 --"}) {
+                             "isotet extract -i .5 -i +1 g.vtu out.vtp -f 'p' --snap", "-fp --isovalue=0.5,1e0 --",
+                             "$ isotet render g.vtu -f p -i 0.5,1", "$ -f p -i 0.5,1"}) {
         const auto state = state_of_command(text);
         ASSERT_TRUE(state) << state.error().message;
         EXPECT_EQ(state->state.field, "p") << text;
@@ -182,7 +183,10 @@ TEST(StateOfCommand, DrawsIsosurfacesBesideSlicesOnlyWithIsovalues) {
 TEST(StateOfCommand, SaysWhatIsWrong) {
     EXPECT_EQ(state_of_command("rm -rf /").error().message,
               "'rm' begins no command line of isotet render, extract, view or slice");
-    EXPECT_FALSE(state_of_command("isotet check x.vtp"));
+    EXPECT_EQ(state_of_command("isotet clip x.vtu y.vtu -f p --above 1").error().message,
+              "isotet clip is not taken here, but isotet render, extract, view and slice are");
+    EXPECT_FALSE(state_of_command("$"));
+    EXPECT_FALSE(state_of_command("$ $ isotet render x.vtu"));
     EXPECT_EQ(state_of_command("-i 0.5,x").error().message,
               "--isovalue got '0.5,x', but it takes numbers separated by commas, at most 32 of them");
     EXPECT_EQ(state_of_command("--range 2,1").error().message,
