@@ -371,7 +371,8 @@ std::size_t pass_over(const std::vector<std::string>& words, std::size_t i, cons
 void finish(Pasting& pasting) {
     ViewState& state = pasting.pasted.state;
     if (state.volume) state.volume->surfaces = !state.isovalues.empty();
-    if (!state.slices.empty() && state.isovalues.empty() && !state.colored_boundary) state.isosurfaces = false;
+    if (!state.slices.empty() && state.isovalues.empty() && !state.colored_boundary && !state.volume)
+        state.isosurfaces = false;
     if (state.colored_boundary && state.field.empty() && state.isovalues.empty()) {
         state.isosurfaces = false;
         state.field = state.color_by;
