@@ -144,17 +144,20 @@ Result<Picked> GridView::pick_along(const PickMessage& message, const Run& run) 
         for (std::size_t axis = 0; axis < 3; ++axis) place[axis] += nearest * (*message.ray)[axis];
         first = nearest_on(*surface, place);
         if (first && !one.slice && !one.boundary) first->isovalue = one.state.isovalues.front();
+        if (first) first->boundary = one.boundary;
         return {};
     };
     PickMessage one = message;
     if (message.boundary) {
         if (Result<void> ok = look(one, message.state.clips); !ok) return ok.error();
-    } else
+    }
+    one.boundary = false;
+    const auto& volume = message.state.volume;
+    if (volume ? volume->surfaces : message.state.isosurfaces)
         for (const double isovalue : message.state.isovalues) {
             one.state.isovalues = {isovalue};
             if (Result<void> ok = look(one, message.state.clips); !ok) return ok.error();
         }
-    one.boundary = false;
     for (std::size_t i = 0; i < message.state.slices.size(); ++i) {
         one.slice = i;
         if (Result<void> ok = look(one, {}); !ok) return ok.error();

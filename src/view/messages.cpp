@@ -313,6 +313,7 @@ std::string picked_text(const Picked& picked) {
         json["values"].push_back({{"name", name}, {"cell", cell}, {"values", values}});
     if (picked.cell) json["cell"] = *picked.cell;
     if (picked.isovalue) json["isovalue"] = *picked.isovalue;
+    if (picked.boundary) json["boundary"] = true;
     return text_of(json);
 }
 

@@ -74,11 +74,11 @@ struct PasteMessage {
 
 /// {"do": "pick", "state": ..., "slice": n, "point": [x, y, z]}: the values at the point of a surface that is nearest.
 /// {"do": "pick", "state": ..., "point": [x, y, z], "ray": [x, y, z]}: where the ray from the point meets a surface first.
-/// Both with "boundary": true are of the grid's boundary instead of an isosurface.
+/// "boundary": true is of the grid's boundary instead of an isosurface; of a ray, of the boundary, too.
 struct PickMessage {
     ViewState state;                  ///< the first isovalue is that of the surface
     std::optional<std::size_t> slice; ///< which of the slices, instead of the isosurface
-    bool boundary = false;            ///< the grid's boundary, which stands alone
+    bool boundary = false;            ///< the grid's boundary
     std::array<double, 3> point{};
     std::optional<std::array<double, 3>> ray = {}; ///< from the point; of all surfaces and slices of the state
     bool parts = false;                            ///< the number of the surface's part goes with the values

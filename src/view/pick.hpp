@@ -30,7 +30,8 @@ struct Picked {
     std::array<double, 3> point{};
     std::vector<PickedValue> values;
     std::optional<std::int64_t> cell;
-    std::optional<double> isovalue = {}; ///< of the surface that a ray met; nothing: a slice, or no ray
+    std::optional<double> isovalue = {}; ///< of the surface that a ray met; nothing: a slice, the boundary, or no ray
+    bool boundary = false;               ///< a ray met the grid's boundary
 };
 
 /// Nothing for a surface without triangles. Cost   O(F)

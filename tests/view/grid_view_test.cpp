@@ -586,6 +586,28 @@ TEST_F(GridViewTest, APickHasTheIsovalueAllFieldsAndTheCell) {
     ASSERT_LT(*picked->cell, static_cast<std::int64_t>(grid.cells.count()));
 }
 
+TEST_F(GridViewTest, ARayMeetsTheBoundaryFirstWhereItIsAmongWhatIsSeen) {
+    ASSERT_TRUE(view_->find_boundary({}));
+    PickMessage message;
+    message.state = show(1, {0.7}).state;
+    message.point = {0.1, 0.2, 9};
+    message.ray = {0, 0, -1};
+    auto picked = view_->pick(message, {});
+    ASSERT_TRUE(picked) << picked.error().message;
+    EXPECT_EQ(picked->isovalue, 0.7);
+    EXPECT_FALSE(picked->boundary);
+    message.boundary = true;
+    picked = view_->pick(message, {});
+    ASSERT_TRUE(picked) << picked.error().message;
+    EXPECT_TRUE(picked->boundary);
+    EXPECT_FALSE(picked->isovalue);
+    EXPECT_NEAR(picked->point[2], 1, 1e-9);
+    message.state.clips = {{{0, 0, 1}, 0.8}}; // which cuts that side of the boundary away
+    picked = view_->pick(message, {});
+    ASSERT_TRUE(picked) << picked.error().message;
+    EXPECT_EQ(picked->isovalue, 0.7) << "the isosurface is behind it";
+}
+
 TEST_F(GridViewTest, ASolidIsClosedByTheBoundaryOnItsSide) {
     const Grid grid = made_grid(12);
     Solids solids = Solids::create({grid, find_field(grid, "sphere").value(), {}, {}}).value();

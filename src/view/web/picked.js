@@ -4,17 +4,21 @@ import {app, aspect, id} from './app.js';
 import * as format from './format.js';
 import {seenBox, stretched, unstretched} from './heights.js';
 import {markPart} from './parts.js';
+import {isSeenFirst} from './scene.js';
 import {toMessage} from './state.js';
 import {serverDraws} from './wishes.js';
 
-/** It stands alone. */
-const isBoundaryPicked = () => !app.state.isosurfaces && !app.state.volume && app.state.boundary > 0 && !app.state.planes.some(({kind}) => kind === 'slice');
+/** It stands alone, or hides what is behind it. */
+function isBoundaryPicked() {
+  const {isosurfaces, volume, boundary, planes} = app.state;
+  return isSeenFirst(boundary) || (boundary > 0 && !isosurfaces && !volume && !planes.some(({kind}) => kind === 'slice'));
+}
 
 export function pickAt(x, y) {
   if (serverDraws()) {
     const {volume, planes} = app.state; // there may be no surface
     const boundary = isBoundaryPicked();
-    if (!app.grid?.lower || (volume && !volume.surfaces && !planes.some(({kind}) => kind === 'slice'))) return;
+    if (!app.grid?.lower || (volume && !volume.surfaces && !boundary && !planes.some(({kind}) => kind === 'slice'))) return;
     const [point, ray] = app.camera.ray(x, y, aspect(), ...seenBox()).map(unstretched);
     app.picked = {point: null, isovalue: null, key: null, boundary, field: app.frame?.field, step: app.frame?.step};
     app.link.send({do: 'pick', state: {...toMessage(app.state), camera: undefined}, point, ray, boundary, parts: id('parts').open});
@@ -35,7 +39,7 @@ export function pickAt(x, y) {
 
 export function takePicked(message) {
   if (!app.picked) return;
-  if (app.picked.point === null) app.picked.isovalue = message.isovalue ?? null; // of a ray
+  if (app.picked.point === null) Object.assign(app.picked, {isovalue: message.isovalue ?? null, boundary: !!message.boundary}); // of a ray
   app.picked.point = message.point;
   const numbers = (values) => values.map(format.short).join(', ');
   const rows = [['x, y, z', numbers(message.point)], ...message.values.map(({name, cell, values}) => [name + (cell ? ' (cell)' : ''), numbers(values.map((v) => v ?? NaN))])];

@@ -93,6 +93,9 @@ void main() { leaveOut(); pixel = color; }`;
 const boxLines = new Float32Array([0, 1, 2, 3, 4, 5, 6, 7, 0, 2, 1, 3, 4, 6, 5, 7, 0, 4, 1, 5, 2, 6, 3, 7]
   .flatMap((corner) => [corner & 1, corner >> 1 & 1, corner >> 2]));
 
+/** Whether a boundary hides what is behind it. */
+export const isSeenFirst = (opacity) => opacity > 0.5;
+
 export function rgb(text) {
   return [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16) / 255);
 }
@@ -390,22 +393,24 @@ export class Scene {
     return w > 0 ? [x / w, y / w] : null;
   }
 
-  /** Whether nothing but the boundary is there: then it is what is picked. */
-  isBoundaryAlone() { return this.surfaces.every(({kind}) => kind === 'boundary'); }
+  /** What a pick can meet: a boundary that is more seen through than seen only where it stands alone. */
+  pickable() {
+    const alone = this.surfaces.every(({kind}) => kind === 'boundary');
+    return this.surfaces.filter(({kind, opacity}) => kind !== 'boundary' || isSeenFirst(opacity) || alone);
+  }
 
   /** The surface under a place of the picture, and its point there; or null. */
   pickSurface(x, y) {
     const point = this.pick(x, y);
     if (!point) return null;
     const far = ({key}) => { const other = this.pick(x, y, key); return other ? Math.hypot(...other.map((v, i) => v - point[i])) : Infinity; };
-    const [surface] = this.surfaces.filter(({kind}) => kind !== 'boundary' || this.isBoundaryAlone()).map((one) => [one, far(one)]).reduce((a, b) => (b[1] < a[1] ? b : a));
+    const [surface] = this.pickable().map((one) => [one, far(one)]).reduce((a, b) => (b[1] < a[1] ? b : a));
     return {point, surface};
   }
 
   /** The point of a surface or slice under a place of the picture (-1 to 1 each), or null; of the one called `only`. */
   pick(x, y, only = null) {
     if (!this.view) return null;
-    const lone = this.isBoundaryAlone();
     const gl = this.gl, {rows, near, far} = this.view;
     const width = this.canvas.width, height = this.canvas.height;
     // The picture shrinks to one pixel: that at (x, y).
@@ -417,9 +422,9 @@ export class Scene {
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.useProgram(this.depth.program);
-    for (const {key, opacity, kind} of this.surfaces) {
+    for (const {key, opacity, kind} of this.pickable()) {
       const mesh = this.meshes.get(key);
-      if (!mesh || !mesh.lower || opacity <= 0 || (kind === 'boundary' && !lone) || (only && key !== only)) continue;
+      if (!mesh || !mesh.lower || opacity <= 0 || (only && key !== only)) continue;
       this.drawDepth({mesh, kind}, [zoomed[0], zoomed[1], rows[2], rows[3]], this.look);
     }
     const pixel = new Uint8Array(4);
