@@ -18,7 +18,7 @@ const keys = {
   i: () => valuePlayer.toggle(), u: toggleFullScreen, h: togglePanel, l: () => id('labels-on').click(), 2: toggleBeside,
 };
 addEventListener('keydown', (event) => {
-  const typing = event.target.matches('input[type=text], select') || id('help').open || id('save').open || (event.key === ' ' && event.target.matches('button, input'));
+  const typing = event.target.matches('input[type=text], select') || id('help').open || id('save').open || (event.key === ' ' && event.target.matches('button, input, summary'));
   if (event.key === 'Home' && event.target.matches('input[type=range]')) return; // its start
   const action = keys[event.key] || keys[event.key.toLowerCase()];
   if (typing || event.ctrlKey || event.altKey || event.metaKey || !action) return;

@@ -4,6 +4,7 @@ import {app, id, mayBeField} from './app.js';
 import {colorsChanged, showMap, showRange} from './colors.js';
 import {commands, takeCommand, takeState, wholeState} from './commands.js';
 import {Cuts} from './cuts.js';
+import './fold.js';
 import {short} from './format.js';
 import {offerField, refuseFormula} from './formula.js';
 import {forgetBoundary, frameAll, lookAtFirst} from './framing.js';
