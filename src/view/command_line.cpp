@@ -74,6 +74,15 @@ std::vector<std::string> extract_words(const ViewState& state, const std::string
     return words;
 }
 
+std::vector<std::string> extract_all_words(ViewState state, const std::string& file,
+                                           const std::vector<std::string>& reading) {
+    state.step.reset();
+    std::vector<std::string> words = extract_words(state, file, reading);
+    words.back() = "surface-{step}.vtp";
+    words.insert(words.end() - 2, "--all-steps");
+    return words;
+}
+
 std::vector<std::string> render_words(const ViewState& state, const std::string& file,
                                       const std::vector<std::string>& reading) {
     std::vector<std::string> words = first_words("render", file, reading, state.step);

@@ -18,6 +18,9 @@ std::vector<std::string> render_words(const ViewState& state, const std::string&
                                       const std::vector<std::string>& reading = {});
 std::vector<std::string> extract_words(const ViewState& state, const std::string& file,
                                        const std::vector<std::string>& reading = {});
+/// The same for all time steps, a file each.
+std::vector<std::string> extract_all_words(ViewState state, const std::string& file,
+                                           const std::vector<std::string>& reading = {});
 
 /// Words as a shell takes them, quoted where they must be.
 std::string shell_text(const std::vector<std::string>& words);

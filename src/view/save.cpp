@@ -32,11 +32,16 @@ constexpr std::array<std::string_view, 9> surface_endings{".vtp", ".vtk",  ".ply
 Error wrong_file(std::string sentence) { return {ErrorCode::invalid_argument, std::move(sentence)}; }
 
 bool is_surface(SaveKind kind) {
-    return kind == SaveKind::surface || kind == SaveKind::above || kind == SaveKind::below;
+    return kind == SaveKind::surface || kind == SaveKind::above || kind == SaveKind::below || kind == SaveKind::series;
 }
 
 Result<void> check_ending(const SaveRequest& request) {
     const std::string ending = std::filesystem::path(request.name).extension().string();
+    if (request.kind == SaveKind::series) { // the one format of surfaces that holds steps
+        if (ending == ".glb") return {};
+        return wrong_file(
+            fmt::format("'{}' is no name of surfaces of all time steps, which ends in .glb", request.name));
+    }
     if (is_surface(request.kind)) {
         if (std::ranges::find(surface_endings, ending) != surface_endings.end()) return {};
         return wrong_file(fmt::format("'{}' is no name of a surface, which ends in {}", request.name,
@@ -179,8 +184,8 @@ void show_solid(SolidSide side, ViewState& state) {
 } // namespace
 
 std::optional<SaveKind> parse_save_kind(std::string_view name) {
-    constexpr std::array<std::string_view, 7> names{"picture", "surface", "sweep", "turn",
-                                                      "steps",   "above",   "below"};
+    constexpr std::array<std::string_view, 8> names{"picture", "surface", "sweep", "turn",
+                                                    "steps",   "above",   "below", "series"};
     const auto* const found = std::ranges::find(names, name);
     if (found == names.end()) return std::nullopt;
     return static_cast<SaveKind>(found - names.begin());
@@ -202,7 +207,9 @@ Result<std::vector<std::string>> save_words(const SaveRequest& request, const st
     if (request.kind == SaveKind::sweep && state.volume) state.volume->opacity = "peaks"; // one, from value to value
     if (request.kind == SaveKind::above) show_solid(SolidSide::above, state);
     if (request.kind == SaveKind::below) show_solid(SolidSide::below, state);
-    std::vector<std::string> words = surface ? extract_words(state, file, reading) : render_words(state, file, reading);
+    std::vector<std::string> words = request.kind == SaveKind::series ? extract_all_words(state, file, reading)
+                                     : surface                        ? extract_words(state, file, reading)
+                                                                      : render_words(state, file, reading);
     words.resize(words.size() - 2); // -o, and what it names
     if (!surface) {
         words.push_back("--size");

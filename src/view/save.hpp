@@ -24,7 +24,8 @@ enum class SaveKind : std::uint8_t {
     turn,    ///< pictures once around, .webp
     steps,   ///< pictures of all time steps, .webp
     above,   ///< the part of the grid where the field is at least the isovalue, as a closed surface
-    below    ///< the part where it is less
+    below,   ///< the part where it is less
+    series   ///< isosurfaces of all time steps, .glb
 };
 
 /// "picture", "surface" and so on.

@@ -213,10 +213,11 @@ void ViewedFile::answer(ConnectionNumber from, PageMessage message) {
     } else if (std::holds_alternative<PartMessage>(message))
         server_.send_bytes(from, part_bytes(downloads_.next_part(from)));
     else if (const auto* command = std::get_if<CommandMessage>(&message)) {
-        server_.send_text(from,
-                          text_of({{"say", "command"},
-                                   {"render", shell_text(render_words(command->state, file_.name, file_.reading))},
-                                   {"extract", shell_text(extract_words(command->state, file_.name, file_.reading))}}));
+        server_.send_text(
+            from, text_of({{"say", "command"},
+                           {"render", shell_text(render_words(command->state, file_.name, file_.reading))},
+                           {"extract", shell_text(extract_words(command->state, file_.name, file_.reading))},
+                           {"extract_all", shell_text(extract_all_words(command->state, file_.name, file_.reading))}}));
     } else if (const auto* paste = std::get_if<PasteMessage>(&message)) {
         const Result<PastedCommand> pasted = state_of_command(paste->text, file_.reading);
         if (!pasted) return server_.send_text(from, error_text("paste", pasted.error().message));

@@ -173,6 +173,14 @@ TEST(SaveWords, StepsReplaceTheStepAndSolidsAreSurfaces) {
     const std::string steps = shell_text(save_words(request, "out", "grid.vtu", {}).value());
     EXPECT_NE(steps.find("--all-steps"), std::string::npos) << steps;
     EXPECT_EQ(steps.find("--step "), std::string::npos) << steps;
+    request.kind = SaveKind::series;
+    EXPECT_FALSE(save_words(request, "out", "grid.vtu", {}));
+    request.name = "a.glb";
+    const std::string series = shell_text(save_words(request, "out", "grid.vtu", {}).value());
+    EXPECT_NE(series.find("isotet extract"), std::string::npos) << series;
+    EXPECT_TRUE(series.ends_with("--all-steps -q -o out/a.glb")) << series;
+    EXPECT_EQ(series.find("--step "), std::string::npos) << series;
+    request.name = "a.webp";
     request.kind = SaveKind::below;
     EXPECT_FALSE(save_words(request, "out", "grid.vtu", {}));
     request.name = "a.stl";

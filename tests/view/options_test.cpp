@@ -120,6 +120,13 @@ TEST(ExtractWords, AreOptionsOfTheProgramWithTheSameMeaning) {
         EXPECT_EQ(line.extract.isovalues, state.isovalues);
         EXPECT_EQ(line.extract.keep, state.keep);
         EXPECT_EQ(line.extract.out, "surface.vtp");
+        EXPECT_EQ(line.extract.grid.step, state.step);
+        cli::CommandLine of_all;
+        const auto all = cli::OptionTree(of_all).parse(view::extract_all_words(state, "grid.vtu"));
+        ASSERT_TRUE(all) << all.error().message;
+        EXPECT_EQ(of_all.extract.out, "surface-{step}.vtp");
+        EXPECT_EQ(of_all.extract.isovalues, state.isovalues);
+        EXPECT_TRUE(of_all.extract.all_steps && !of_all.extract.grid.step);
     }
 }
 

@@ -18,7 +18,7 @@ for (const kind of ['render', 'extract'])
 
 export async function takeCommand(message) {
   if (copying === null) return app.save.takeCommand(message);
-  const kind = copying, text = message[kind] || '';
+  const kind = copying, text = message[kind === 'extract' && id('copy-steps').checked ? 'extract_all' : kind] || '';
   copying = null;
   let copied = true;
   try { await navigator.clipboard.writeText(text); } catch { copied = false; }

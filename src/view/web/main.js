@@ -135,6 +135,7 @@ function takeGrid(message) {
   if (message.saved) takeSaved(message);
   if (!app.grid.lower) [app.grid.lower, app.grid.upper] = [[0, 0, 0], [1, 1, 1]];
   app.time.set(app.grid.times);
+  id('copy-steps-row').hidden = app.grid.times.length < 2;
   const names = app.grid.fields.map(({name}) => name), start = fromMessage(app.grid.state);
   const fresh = !app.state.field || !mayBeField(app.state.field);
   if (fresh) app.state = {...start, camera: app.state.camera, labels: app.state.labels, drawn: app.state.drawn};

@@ -7,9 +7,10 @@ const solids = ['above', 'below'];
 const surfaceRule = 'The name ends in .vtp, .vtk, .ply, .stl, .3mf, .glb, .usda, .obj or .ts.';
 const rules = {above: `Closed: the grid where the field is at least the value of the slider. ${surfaceRule}`,
   below: `Closed: the grid where the field is less than the value of the slider. ${surfaceRule}`, seen: 'The name ends in .png.', picture: 'The name ends in .png.', surface: surfaceRule,
-  sweep: 'The name ends in .webp.', turn: 'The name ends in .webp.', steps: 'The name ends in .webp.'};
+  sweep: 'The name ends in .webp.', turn: 'The name ends in .webp.', steps: 'The name ends in .webp.',
+  series: 'The name ends in .glb. A file for each step is written by Copy extract, with “Extract from all time steps”.'};
 const asked = {above: [], below: [], seen: [], picture: ['width', 'height'], surface: [], sweep: ['width', 'height', 'from', 'to', 'pictures'],
-  turn: ['width', 'height', 'pictures'], steps: ['width', 'height']};
+  turn: ['width', 'height', 'pictures'], steps: ['width', 'height'], series: []};
 
 /** Hands bytes to the browser as a file. */
 function handOut(name, blob) {
@@ -47,7 +48,7 @@ export class Save {
     id('save-to').options[1].disabled = !this.out;
     id('save-to').options[1].textContent = this.out ? `Folder ${this.out} of the server` : 'Folder of the server: start with --out FOLDER';
     if (!this.out) id('save-to').value = '';
-    id('save-kind').querySelector('[value="steps.webp"]').hidden = this.endings !== '' || this.on.steps() < 2;
+    for (const kind of ['steps.webp', 'series.glb']) id('save-kind').querySelector(`[value="${kind}"]`).hidden = this.endings !== '' || this.on.steps() < 2;
     this.command = null;
     this.on.send({do: 'command', state: this.on.state()});
     this.show();
@@ -84,7 +85,7 @@ export class Save {
   }
 
   showCommand() {
-    const [kind] = this.chosen(), which = {surface: 'extract', above: 'extract', below: 'extract', picture: 'render'}[kind];
+    const [kind] = this.chosen(), which = {surface: 'extract', series: 'extract_all', above: 'extract', below: 'extract', picture: 'render'}[kind];
     const solid = solids.includes(kind) ? ` --solid ${kind}` : '', all = this.command?.[which] || '';
     const own = kind === this.on.state().solid, other = own ? / --solid \S+/ : / --solid \S+| --keep (parts|not):\S+/g; // numbers of parts are of what is shown
     const text = solid ? all.replace(/(--isovalue[ =][^ ,]+),\S*/, '$1').replace(other, '') : all;
