@@ -13,7 +13,7 @@ const framing = {
 /** Corners of a box, x, y and z one after another. */
 const boxCorners = (lower, upper) => Float64Array.from({length: 24}, (_, i) => (Math.floor(i / 3) >> i % 3 & 1 ? upper : lower)[i % 3]);
 
-function boundaryPoints({places, lower, upper}) {
+function pointsOf({places, lower, upper}) {
   const factors = factorsOf(app.state), points = new Float64Array(places.length);
   for (let axis = 0; axis < 3; ++axis) {
     const from = lower[axis] * factors[axis], unit = (upper[axis] - lower[axis]) * factors[axis] / 65535;
@@ -25,18 +25,38 @@ function boundaryPoints({places, lower, upper}) {
 /** Sees all of the grid, from where the camera looks. */
 export function frameAll() {
   framing.byBox = !framing.boundary || app.state.outline;
-  app.camera.fit(framing.byBox ? boxCorners(...seenBox()) : boundaryPoints(framing.boundary), aspect());
+  app.camera.fit(framing.byBox ? boxCorners(...seenBox()) : pointsOf(framing.boundary), aspect());
   framing.camera = app.camera.text();
+}
+
+/** Isosurfaces and solids of the frame that the browser has, as --fit surface. */
+const surfacesHere = () => (app.frame?.surfaces ?? []).filter(({kind}) => kind === 'surface').map(({key}) => app.scene?.meshes.get(key)).filter((mesh) => mesh?.lower && mesh.count > 0);
+
+export const hasSurfaces = () => !app.frame?.picture && surfacesHere().length > 0;
+
+/** Sees all of the isosurfaces. */
+export function frameSurfaces() {
+  const all = surfacesHere().map(({vertexBytes, lower, upper}) => pointsOf({places: placesOf(vertexBytes), lower, upper}));
+  const points = new Float64Array(all.reduce((sum, {length}) => sum + length, 0));
+  let at = 0;
+  for (const one of all) { points.set(one, at); at += one.length; }
+  if (at === 0) return;
+  app.camera.fit(points, aspect());
+}
+
+/** Of vertices as frames have them. */
+function placesOf({buffer, byteOffset, byteLength}) {
+  const shorts = new Uint16Array(buffer, byteOffset, byteLength >> 1), places = new Uint16Array(shorts.length / 4 * 3);
+  for (let i = 0, out = 0; i < shorts.length; i += 4, out += 3) for (let axis = 0; axis < 3; ++axis) places[out + axis] = shorts[i + axis];
+  return places;
 }
 
 /** The boundary of a frame: a camera that was placed by the box, and not moved since, is placed by it. */
 export function frameBoundary(surfaces) {
   const found = surfaces.find(({kind, mesh}) => kind === 'boundary' && mesh?.lower);
   if (!found || framing.boundary?.key === found.key) return;
-  const {vertexBytes, lower, upper} = found.mesh, shorts = new Uint16Array(vertexBytes.buffer, vertexBytes.byteOffset, vertexBytes.byteLength >> 1);
-  const places = new Uint16Array(shorts.length / 4 * 3);
-  for (let i = 0, out = 0; i < shorts.length; i += 4, out += 3) for (let axis = 0; axis < 3; ++axis) places[out + axis] = shorts[i + axis];
-  framing.boundary = {key: found.key, places, lower, upper};
+  const {vertexBytes, lower, upper} = found.mesh;
+  framing.boundary = {key: found.key, places: placesOf(vertexBytes), lower, upper};
   if (!framing.byBox || app.state.outline || app.camera.text() !== framing.camera) return;
   frameAll();
   if (app.state.camera) app.state.camera = app.camera.text();

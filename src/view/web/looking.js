@@ -2,7 +2,7 @@
 // Standard views, and what is drawn beside the surfaces.
 import {app, id} from './app.js';
 import {colorsChanged} from './colors.js';
-import {frameAll} from './framing.js';
+import {frameAll, frameSurfaces} from './framing.js';
 import {setUpHeights} from './heights.js';
 import {showValue} from './level.js';
 import {say} from './notes.js';
@@ -14,8 +14,11 @@ import {serverDraws, wishSoon} from './wishes.js';
 
 export function lookFrom(name) {
   if (!app.grid?.lower) return;
-  if (name !== 'fit') app.camera.look(name);
-  frameAll();
+  if (name === 'surface') frameSurfaces();
+  else {
+    if (name !== 'fit') app.camera.look(name);
+    frameAll();
+  }
   moved();
 }
 

@@ -3,7 +3,7 @@
 import {app, aspect, css, id} from './app.js';
 import {mapColors, showRange} from './colors.js';
 import * as format from './format.js';
-import {frameBoundary} from './framing.js';
+import {frameBoundary, hasSurfaces} from './framing.js';
 import {seenBox} from './heights.js';
 import {followStep, measureServer, rangeOf, valueShown} from './level.js';
 import {paintLabels, showLabels} from './labels.js';
@@ -149,6 +149,7 @@ function outside(value) {
 }
 
 function tellFacts() {
+  document.querySelector('[data-view=surface]').disabled = !hasSurfaces();
   const [first] = isosurfaces();
   const triangles = [...new Map(isosurfaces().map((one) => [one.isovalue, one.triangles])).values()].reduce((a, b) => a + b, 0);
   const drawn = isosurfaces().reduce((sum, one) => sum + (app.scene?.meshes.get(one.key)?.count || 0) / 3, 0);

@@ -164,7 +164,7 @@ export class Scene {
     const gl = this.gl;
     this.remove(key);
     const own = {count: mesh.vertices, indexed: !!mesh.corners, type: mesh.wide ? gl.UNSIGNED_INT : gl.UNSIGNED_SHORT,
-      lower: mesh.lower, upper: mesh.upper, colored: !!mesh.colors, corners: mesh.corners, buffers: []};
+      lower: mesh.lower, upper: mesh.upper, colored: !!mesh.colors, corners: mesh.corners, vertexBytes: mesh.vertexBytes, buffers: []};
     if (mesh.corners) own.count = mesh.corners.length;
     own.array = gl.createVertexArray();
     gl.bindVertexArray(own.array);
