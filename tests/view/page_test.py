@@ -219,6 +219,59 @@ def test_type(browser, viewer):
     check(browser.value('document.getElementById("message").hidden'), 'what is right wipes it out')
 
 
+def test_the_box_follows_unless_it_is_typed_in(browser, viewer):
+    """It has the focus all the time. Numbers have few digits there; Enter alone changes nothing."""
+    box = lambda: browser.value('document.getElementById("value").value')
+    start(browser, viewer, '&f=sphere&i=0.5')
+    at_rest(browser, 0.5)
+    browser.click('#value')
+    for text in ('0.3', '0.25'):
+        browser.value('document.getElementById("value").select()')
+        browser.type(text)
+        browser.key('Enter')
+        at_rest(browser, float(text))
+    browser.value('history.back()')
+    at_rest(browser, 0.3)
+    check(box() == '0.3', f'Back is shown in it: {box()}')
+    browser.value('document.getElementById("value").select()')
+    browser.type('0.')
+    browser.value('history.forward()')
+    at_rest(browser, 0.25)
+    check(box() == '0.', f'what is typed stays: {box()}')
+    browser.key('Escape')
+    check(box() == '0.25', 'until Escape')
+    browser.value('document.getElementById("value").select()')
+    browser.type('half')
+    browser.key('Enter')
+    browser.wait('!document.getElementById("message").hidden')
+    browser.key('Escape')
+    check(browser.value('document.getElementById("message").hidden'), 'Escape takes back what was said, too')
+    browser.value('document.getElementById("value").select()')
+    browser.type('90%v')
+    browser.key('Enter')
+    browser.wait('Number(document.body.dataset.shown) > 1')
+    at_rest(browser)
+    value = shown(browser)
+    check(len(box()) <= 8 < len(repr(value)) and abs(float(box()) - value) < 1e-5, f'{box()} of {value}')
+    browser.key('Enter')
+    browser.value('new Promise(done => setTimeout(done, 300))')
+    check(shown(browser) == value, 'Enter alone keeps all digits')
+    check(browser.value('document.activeElement.id') == 'value', 'it keeps the focus')
+
+
+def test_messages_go_with_what_they_are_about(browser, viewer):
+    start(browser, viewer, '&f=sphere&i=0.7&by=gyroid')
+    browser.wait('document.getElementById("range-upper").value !== ""')
+    browser.click('#range-lower')
+    browser.value('document.getElementById("range-lower").select()')
+    browser.type('500')
+    browser.key('Enter')
+    browser.wait('document.getElementById("message").textContent.includes("smaller one first")')
+    browser.click('#range-reset')
+    browser.wait('document.getElementById("message").hidden')
+    check(float(browser.value('document.getElementById("range-lower").value')) < 0, 'the ends are those of the field')
+
+
 def test_orbit_pan_zoom(browser, viewer):
     start(browser, viewer)
     x, y, w, h = browser.box('#scene')

@@ -51,7 +51,7 @@ export function colorsChanged() {
 id('color-by').addEventListener('change', () => { app.state.colorBy = id('color-by').value; app.state.range = null; app.state.hidden = []; colorsChanged(); });
 id('map').addEventListener('change', () => { app.state.map = id('map').value; colorsChanged(); });
 id('logarithmic').addEventListener('change', () => { app.state.logarithmic = id('logarithmic').checked; colorsChanged(); });
-id('range-reset').addEventListener('click', () => { app.state.range = null; colorsChanged(); });
+id('range-reset').addEventListener('click', () => { say(''); app.state.range = null; colorsChanged(); });
 for (const end of ['lower', 'upper']) {
   id('range-' + end).addEventListener('keydown', (event) => { if (event.key === 'Enter') takeRange(); });
   id('range-' + end).addEventListener('change', takeRange);

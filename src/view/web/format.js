@@ -12,6 +12,13 @@ export function rounded(value, digits) {
   return `${Number(factor)}e${Number(power)}`;
 }
 
+/** In a box: all digits of a number that has few of them. */
+export function ofBox(value) {
+  if (value === null) return '';
+  const text = rounded(value, 9);
+  return Number(text) === value ? text : short(value);
+}
+
 /** Of a whole: 54 %, 0.3 %. */
 export const share = (part, whole) => (whole > 0 ? `${rounded(100 * part / whole, 2)} %` : '–');
 

@@ -50,6 +50,8 @@ const level = {
   chart: '', spectrum: '', // that were asked for: step and field
   share: '',             // that was typed last, until its isovalue comes
   empty: '',             // where no value is finite
+  typing: false,         // in the box, until Enter
+  scaled: '',            // the field whose slider became logarithmic by itself
   msPerTriangle: null,   // of the server, by the last frames that it made
 };
 
@@ -63,10 +65,7 @@ export function setValue(value) {
 
 export function showValue() {
   showSpan();
-  if (document.activeElement !== id('value')) {
-    id('value').value = app.state.value === null ? '' : String(app.state.value);
-    id('value').removeAttribute('aria-invalid');
-  }
+  if (!level.typing) fillBox();
   const rows = id('surfaces').children;
   if (rows.length > 0 && app.state.value !== null) rows[0].querySelector('.value').textContent = format.short(app.state.value);
   showScale();
@@ -229,31 +228,43 @@ export function takeShare({field, step, of, percent, isovalue}) {
   const {state} = app;
   if (level.share !== `${question()}|${of}|${percent}` || field !== state.field || (state.step !== null && step !== state.step)) return;
   level.share = '';
+  level.typing = false;
   setValue(isovalue);
-  retype();
   commit();
 }
 
 function typed() {
   valuePlayer.stop();
-  const share = app.grid?.saved === 'surfaces' ? null : format.parseShare(id('value').value);
-  const value = share ? 0 : format.parseNumber(id('value').value, app.slider.span);
+  const {value: text} = id('value'), share = app.grid?.saved === 'surfaces' ? null : format.parseShare(text);
+  const value = share ? 0 : text === format.ofBox(app.state.value) ? app.state.value : format.parseNumber(text, app.slider.span);
   id('value').setAttribute('aria-invalid', value === null);
+  level.typing = value === null;
   if (value === null) return say('An isovalue is a number, such as 0.25 or 1e-3, a part of the range, such as 50 %, or 90%v for 90 % of the volume below it, or p95 for a percentile of the points.');
   level.share = '';
   showIsosurfaces(true);
-  if (share) { say(''); return askShare(share); }
+  if (share) { say(''); level.typing = true; return askShare(share); }
   say('');
   setValue(value);
-  retype();
   commit();
 }
 
-/** The number as it is now, in the box that keeps its focus. */
-function retype() {
-  id('value').value = String(app.state.value);
-  if (document.activeElement === id('value')) id('value').select();
+/** The number as it is now; a box that has the focus keeps it. */
+function fillBox() {
+  const box = id('value'), text = format.ofBox(app.state.value);
+  box.removeAttribute('aria-invalid');
+  if (box.value === text) return;
+  box.value = text;
+  if (document.activeElement === box) box.select();
 }
+
+/** What was typed and not taken goes, and with it what was said of it. */
+function leaveBox() {
+  if (id('value').getAttribute('aria-invalid') === 'true') say('');
+  level.typing = false;
+  fillBox();
+}
+
+id('value').addEventListener('input', () => { level.typing = true; });
 
 id('value').addEventListener('keydown', (event) => {
   if (event.key === 'Enter') typed();
@@ -261,12 +272,12 @@ id('value').addEventListener('keydown', (event) => {
     event.preventDefault();
     valuePlayer.stop();
     showIsosurfaces(true);
+    level.typing = false;
     app.slider.step((event.key.endsWith('Up') ? 1 : -1) * (event.key.startsWith('Page') ? 10 : event.shiftKey ? 0.1 : 1));
-    retype();
   }
-  if (event.key === 'Escape') { event.target.value = String(app.state.value ?? ''); event.target.removeAttribute('aria-invalid'); }
+  if (event.key === 'Escape') leaveBox();
 });
-id('value').addEventListener('blur', () => showValue());
+id('value').addEventListener('blur', leaveBox);
 
 /** Another field has its own value and pins: those that it had, when it was shown before. */
 export function chooseField(name) {

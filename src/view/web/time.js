@@ -11,7 +11,10 @@ export class TimeSteps {
     slider.addEventListener('input', () => { this.stop(); on.go(Number(slider.value)); });
     slider.addEventListener('change', () => on.commit());
     typed.addEventListener('change', () => this.goTo(parseNumber(typed.value)));
-    typed.addEventListener('blur', () => this.show(on.step()));
+    typed.addEventListener('blur', () => {
+      if (typed.getAttribute('aria-invalid') === 'true') on.say('');
+      this.show(on.step());
+    });
   }
 
   set(times) {
