@@ -139,6 +139,27 @@ export class ChartSlider {
     return triangles[Math.min(triangles.length - 1, Math.floor((value - lower) / (upper - lower) * triangles.length))];
   }
 
+  /** Whether values of the chart are over decades, and nearly all of them at the lower end. */
+  isOverDecades() {
+    const {lower, upper, points} = this.chart, tenth = points.slice(0, Math.ceil(points.length / 10));
+    const sum = (counts) => counts.reduce((a, b) => a + b, 0);
+    return !this.stops && lower > 0 && upper / lower >= 1e4 && sum(tenth) > 0.7 * sum(points);
+  }
+
+  /** The value below which half of the triangles are where the slider goes by logarithms. */
+  firstByLogarithm() {
+    const {lower, upper, triangles, first} = this.chart;
+    if (!(upper > 0) || this.stops) return first;
+    const from = lower > 0 ? lower : leastLogarithm * upper, place = (value) => Math.log(Math.max(value, from));
+    const ends = triangles.map((_, i) => [i, i + 1].map((at) => place(lower + at / triangles.length * (upper - lower))));
+    const parts = ends.map(([a, b], i) => triangles[i] * (b - a));
+    let half = parts.reduce((a, b) => a + b, 0) / 2;
+    const at = parts.findIndex((part) => (half -= part) < 0);
+    if (at < 0) return first;
+    const value = Math.exp(ends[at][1] + half / parts[at] * (ends[at][1] - ends[at][0]));
+    return Number(value.toPrecision(2));
+  }
+
   /** Area or volume at a value, between two that are exact; null where nothing is known. */
   measured(name, value) {
     if (!this.spectrum || this.spectrum.isovalues.length < 2) return null;

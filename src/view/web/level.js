@@ -183,7 +183,11 @@ export function takeChart(chart) {
   level.empty = slider.chart ? '' : question();
   const varies = chart.lower < chart.upper;
   if (state.value === null && slider.chart) {
-    state.value = chart.first;
+    if (!state.scale && slider.isOverDecades()) {
+      state.scale = 'log';
+      level.scaled = state.field;
+    }
+    state.value = state.scale === 'log' ? slider.firstByLogarithm() : chart.first;
     level.automatic = !varies;
     nameState();
   } else if (level.automatic && varies) {
@@ -286,6 +290,7 @@ export function chooseField(name) {
   commit(); // what was shown last is a state of its own
   forgetPartNumbers();
   level.left.set(state.field, {value: state.value, pins: state.pins});
+  if (level.scaled === state.field && state.scale === 'log') state.scale = '';
   Object.assign(state, {field: name, value: null, pins: []}, level.left.get(name));
   if (!state.isosurfaces && state.coloredBoundary && app.grid.fields.some((one) => one.name === name)) { // it is what is seen
     state.range = null;
