@@ -182,9 +182,10 @@ export class ChartSlider {
     return list.map((one, i) => [this.part(isovalues[i]), one / largest]);
   }
 
-  set(value, marks) {
+  set(value, marks, color) {
     this.value = value;
     this.marks = marks;
+    this.color = color; // of the surface there
     const {element} = this;
     element.setAttribute('aria-valuenow', value);
     element.setAttribute('aria-valuetext', short(value));
@@ -215,6 +216,11 @@ export class ChartSlider {
     context.fillRect(x(this.value) - 1, 4, 2, height - 4);
     context.beginPath();
     context.arc(x(this.value), 6, 5, 0, 2 * Math.PI);
+    context.fill();
+    if (!this.color) return;
+    context.fillStyle = this.color;
+    context.beginPath();
+    context.arc(x(this.value), 6, 3.5, 0, 2 * Math.PI);
     context.fill();
   }
 

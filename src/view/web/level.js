@@ -8,7 +8,7 @@ import {showIsosurfaces} from './looking.js';
 import {say} from './notes.js';
 import {Player} from './play.js';
 import {forgetParts, forgetPartNumbers} from './parts.js';
-import {pinColor, showSurfaces} from './surfaces.js';
+import {pinColor, showSurfaces, sliderColor} from './surfaces.js';
 import {commit, commitSoon, nameState} from './undo.js';
 import {forgetPoints, showCurve} from './volume.js';
 import {wishSoon} from './wishes.js';
@@ -69,7 +69,7 @@ export function showValue() {
   const rows = id('surfaces').children;
   if (rows.length > 0 && app.state.value !== null) rows[0].querySelector('.value').textContent = format.short(app.state.value);
   showScale();
-  app.slider.set(app.state.value ?? 0, app.state.pins.map((pin, i) => ({value: pin.value, color: pinColor(i)})));
+  app.slider.set(app.state.value ?? 0, app.state.pins.map((pin, i) => ({value: pin.value, color: pinColor(i)})), sliderColor());
   const expected = app.state.value === null ? null : app.slider.expected(app.state.value);
   const ms = expected === null || !level.msPerTriangle ? '' : `, ${format.duration(expected * level.msPerTriangle)}`;
   id('prediction').textContent = expected === null ? '' : expected === 0 ? 'No triangles expected' : `About ${format.rough(expected)} triangles${ms} expected`;

@@ -9,9 +9,18 @@ import {serverDraws, wishSoon} from './wishes.js';
 
 export const pinColor = (i) => app.state.pins[i].color || app.frame?.surfaces[i + 1]?.color || '#888888';
 
+/** Of the slider's surface; nothing where a field colours it. */
+export function sliderColor() {
+  if (app.state.colorBy || !app.state.isosurfaces) return null;
+  const [first] = app.frame?.surfaces ?? [];
+  return app.state.color || (first?.kind === 'surface' ? first.color : null);
+}
+
 export function pin() {
   if (app.state.value === null || app.state.pins.length >= 31 || app.state.pins.some((one) => one.value === app.state.value)) return;
-  app.state.pins.push({value: app.state.value, color: null, opacity: null});
+  // It keeps the colour that it has; the surfaces that isotet render draws together have others.
+  const color = app.state.colorBy || serverDraws() ? null : sliderColor();
+  app.state.pins.push({value: app.state.value, color, opacity: null});
   pinsChanged();
 }
 
