@@ -732,6 +732,124 @@ def test_pick(browser, viewer):
     check(browser.value('document.getElementById("picked").hidden'), 'the point goes with its surface')
 
 
+def test_a_pick_hits_what_is_seen_first(browser, viewer):
+    """An opaque boundary, not the isosurface behind it; through a translucent one the isosurface."""
+    told = lambda: browser.value('document.getElementById("picked-title").textContent')
+    for drawn in ('', 'server'):
+        for boundary, title in (('1', 'On the boundary'), ('0.1', 'sphere = 0.7')):
+            start(browser, viewer, f'&f=sphere&i=0.7&boundary={boundary}&drawn={drawn}')
+            browser.wait(f'document.body.dataset.picture === "{drawn and "image/png"}" && document.body.dataset.kinds.includes("boundary") === {"false" if drawn else "true"}')
+            browser.value('document.activeElement.blur()')
+            browser.key('v')
+            browser.wait('document.body.dataset.picked')
+            check(told() == title, f'boundary {boundary}, drawn {drawn}: {told()}')
+            place = max(abs(v) for v in json.loads(browser.value('document.body.dataset.picked'))['point'])
+            check((place > 0.999) == (boundary == '1'), f'the point is there: {place}')
+            browser.key('Escape')
+
+
+def test_fit_to_the_surface(browser, viewer):
+    start(browser, viewer, '&f=sphere&i=0.2&boundary=0&labels=0')
+    at_rest(browser, 0.2)
+    before = share_of_surface(browser)
+    browser.click('[data-view=surface]')
+    browser.value('new Promise(done => setTimeout(done, 300))')
+    check(share_of_surface(browser) > 10 * before, f'it fills the picture: {before}, {share_of_surface(browser)}')
+    w, h = browser.value('[scene.clientWidth, scene.clientHeight]')
+    with tempfile.TemporaryDirectory() as folder:
+        run = subprocess.run([os.environ['ISOTET_PROGRAM'], 'render', GRID, f'{folder}/p.png', '-f', 'sphere', '-i', '0.2', '--fit', 'surface', '--boundary', '0', '--plain',
+                              '--size', f'{w}x{h}', '--json', '-', '-q'], check=True, capture_output=True, text=True)
+    distance = lambda camera: float(camera.split(':')[4])
+    page, wanted = browser.value('document.body.dataset.camera'), json.loads(run.stdout)['camera']
+    check(abs(distance(page) / distance(wanted) - 1) < 1e-3, f'as isotet render --fit surface: {page}, {wanted}')
+    browser.click('[data-view=fit]')
+    browser.value('new Promise(done => setTimeout(done, 300))')
+    check(share_of_surface(browser) < 2 * before, 'Fit shows all')
+
+
+def test_a_pinned_surface_keeps_its_colour(browser, viewer):
+    color = lambda row: browser.value(f'document.querySelector("#surfaces li:nth-child({row}) input[type=color]").value')
+    start(browser, viewer, '&f=sphere&i=0.7')
+    at_rest(browser, 0.7)
+    alone = color(1)
+    browser.click('#pin')
+    browser.wait('document.querySelectorAll("#surfaces li").length === 2')
+    type_value(browser, '0.9')
+    at_rest(browser, 0.9)
+    check(color(2) == alone, f'{alone} became {color(2)}')
+    check(color(1) != alone, 'the next one has another')
+    moved = color(1)
+    browser.click('#pin')
+    browser.wait('document.querySelectorAll("#surfaces li").length === 3')
+    type_value(browser, '1.1')
+    at_rest(browser, 1.1)
+    check([color(2), color(3)] == [alone, moved], 'also of two')
+
+
+def test_sections_fold(browser, viewer):
+    """By the keyboard, and they stay so in the next page; Space folds, and plays nothing."""
+    title, is_open = '#view-title', 'document.querySelector("[data-fold=view]").open'
+    start(browser, viewer)
+    check(browser.value(is_open), 'at first it is open')
+    low = browser.box('#cuts-title')[1]
+    browser.value('document.querySelector("[data-fold=view] summary").focus()')
+    browser.key(' ')
+    browser.wait(f'!{is_open}')
+    check(browser.box('#cuts-title')[1] < low - 100 and browser.box('#edges')[3] == 0, 'what is below moves up')
+    check(overlaps(browser) == [], f'{overlaps(browser)}')
+    browser.wait('localStorage.getItem("isotet-folded") === \'["view"]\'')
+    browser.value('window.isOld = true, location.reload()')
+    browser.wait('!window.isOld && document.body?.dataset.shown !== undefined')
+    check(not browser.value(is_open), 'it is folded in the next page, too')
+    check(browser.value(f'getComputedStyle(document.querySelector("{title}")).display') != 'none', 'its title stays')
+    browser.value('document.querySelector("[data-fold=view] summary").focus()')
+    browser.key('Enter')
+    browser.wait(is_open)
+    browser.value('document.querySelector("[data-fold=volume]").open = false')
+    browser.click('#volume')
+    browser.wait('document.querySelector("[data-fold=volume]").open && document.body.dataset.volume === "ramp"')
+    browser.click('#volume')
+
+
+def test_the_first_value_of_a_field_over_decades(browser, viewer):
+    """The slider goes by logarithms, and begins in the middle decades; another field goes by values."""
+    field = '10^(5*sphere/1.7321)'
+    with Viewer(GRID, '-f', field) as other:
+        start(browser, other)
+        check(browser.value('document.getElementById("scale").value') == 'log', 'the scale is the logarithm')
+        check(20 < shown(browser) < 2000, f'{shown(browser)}')
+        choose(browser, '#field', 'gyroid')
+        browser.wait('document.body.dataset.field === "gyroid"')
+        check(browser.value('document.getElementById("scale").value') == '', 'of this field it is not')
+        browser.call('Page.navigate', url='about:blank')
+
+
+def test_surfaces_of_all_time_steps(browser, viewer):
+    """As a command line that writes a file for each, and as one file."""
+    with Viewer(STEPS) as other, tempfile.TemporaryDirectory() as folder:
+        browser.call('Browser.setDownloadBehavior', behavior='allow', downloadPath=folder)
+        start(browser, other)
+        browser.click('#copy-steps')
+        browser.click('#copy-extract')
+        browser.wait('document.getElementById("copied").textContent.includes("--all-steps")')
+        words = shlex.split(browser.value('document.getElementById("copied").textContent'))
+        check(words[-1] == 'surface-{step}.vtp' and '--step' not in words, f'{words}')
+        subprocess.run([os.environ['ISOTET_PROGRAM'], *words[1:-1], f'{folder}/{words[-1]}', '-q'], check=True)
+        check(len([name for name in os.listdir(folder) if name.endswith('.vtp')]) == 3, 'a file for each step')
+        browser.click('#save-open')
+        choose(browser, '#save-kind', 'series.glb')
+        browser.wait('document.getElementById("save-command").textContent.includes("--all-steps")')
+        name = browser.value('document.getElementById("save-name").value')
+        browser.click('#save-go')
+        browser.wait(f'document.getElementById("save-told").textContent === "Downloaded: {name}"')
+        deadline = time.time() + 20
+        while not os.path.exists(f'{folder}/{name}') and time.time() < deadline:
+            time.sleep(0.05)
+        with open(f'{folder}/{name}', 'rb') as file:
+            check(file.read(4) == b'glTF', 'it is GLB')
+        browser.call('Page.navigate', url='about:blank')
+
+
 def test_time_steps(browser, viewer):
     """A file with steps: the slider goes to one, and playing shows one after another."""
     with Viewer(STEPS) as other:
