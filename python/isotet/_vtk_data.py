@@ -103,6 +103,13 @@ def arrays_of(attributes, leave_out: str | None = None) -> list[tuple[str, np.nd
     return out
 
 
+def carried_of(attributes, leave_out: str | None = None) -> list[tuple[str, np.ndarray]]:
+    """The arrays that VTK's filters carry onto a surface: no global ids, and of points no pedigree ids."""
+    ids = [attributes.GetGlobalIds(), attributes.GetPedigreeIds() if attributes.IsA("vtkPointData") else None]
+    names = [array.GetName() for array in ids if array is not None]
+    return [named for named in arrays_of(attributes, leave_out) if named[0] not in names]
+
+
 def unstructured_of(data) -> Any:
     """Any vtkDataSet as a vtkUnstructuredGrid: others are converted."""
     if isinstance(data, vtkUnstructuredGrid):
@@ -246,9 +253,10 @@ def _add_array(attributes, name: str, values: np.ndarray, copy: bool):
 def keep_active(source, out) -> None:
     """The active arrays of a data set are active in a surface of it, if it has them, as in VTK's filters: scalars in place of
     those that are, others where none are."""
-    scalars, last = vtkDataSetAttributes.SCALARS, vtkDataSetAttributes.TENSORS
+    scalars = vtkDataSetAttributes.SCALARS
+    kinds = (*range(scalars, vtkDataSetAttributes.TENSORS + 1), vtkDataSetAttributes.PEDIGREEIDS)
     for its, mine in ((source.GetPointData(), out.GetPointData()), (source.GetCellData(), out.GetCellData())):
-        for kind in range(scalars, last + 1):
+        for kind in kinds:
             active = its.GetAbstractAttribute(kind)
             name = active.GetName() if active is not None else None
             if name and mine.HasArray(name) and (kind == scalars or mine.GetAbstractAttribute(kind) is None):

@@ -19,7 +19,7 @@ from ._arrays import direction_in, isovalues_in, place_in, tolerances_in
 from ._call import call_options
 from ._grid import Clipper, Grid, Solids
 from ._surface import Surface, parts
-from ._vtk_data import Scalars, arrays_of, cells_of, fill, points_of, scalars_of, some_cells, other_cells, surface_of, to_polydata
+from ._vtk_data import Scalars, arrays_of, carried_of, cells_of, fill, points_of, scalars_of, some_cells, other_cells, surface_of, to_polydata
 from ._vtk_fallback import REASON, Wishes, append, append_other_cells, contour_by_vtk
 from ._vtk_session import Session, contour_all, finish, levels
 
@@ -209,7 +209,7 @@ class GridAccessor:
         self._session.look_at(cells)
         if self._session.others == cells.n_cells:
             return
-        fields, cell_fields = arrays_of(grid.GetPointData(), scalars.replaced), arrays_of(grid.GetCellData())
+        fields, cell_fields = carried_of(grid.GetPointData(), scalars.replaced), carried_of(grid.GetCellData())
         if normals:
             fields = [named for named in fields if named[0] != "Normals"]
         how.update(grid=cells, scalars=scalars, normals=normals, surfaces=self._expected, fields=fields, cell_fields=cell_fields)

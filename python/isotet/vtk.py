@@ -22,7 +22,7 @@ from . import _isotet
 from ._polygons import polygons_of
 from ._ranks import Ranks
 from ._surface import Surface
-from ._vtk_data import Scalars, arrays_of, grid_of, keep_active, scalars_of, to_polydata
+from ._vtk_data import Scalars, carried_of, grid_of, keep_active, scalars_of, to_polydata
 from ._vtk_fallback import REASON, Wishes, append, append_other_cells, contour_by_vtk
 from ._vtk_properties import ContourProperties
 from ._vtk_session import Session, contour_all, finish
@@ -60,7 +60,7 @@ class _Block(NamedTuple):
 
     def fields(self, normals: bool) -> list[tuple[str, np.ndarray]]:
         """The carried point arrays, in the same order on all ranks."""
-        arrays = arrays_of(self.grid.GetPointData(), self.scalars.replaced)
+        arrays = carried_of(self.grid.GetPointData(), self.scalars.replaced)
         return sorted((named for named in arrays if not (normals and named[0] == "Normals")), key=lambda named: named[0])
 
     def times(self, session: Session) -> tuple[int, ...]:
@@ -352,7 +352,7 @@ class IsotetContour(ContourProperties):
             numbers = vtk_to_numpy(block.numbers) if numbered else None
         normals = self.GetComputeNormals() != 0
         return {"grid": block.grid, "scalars": block.scalars, "normals": normals, "surfaces": self._expected,
-                "fields": block.fields(normals), "cell_fields": arrays_of(block.grid.GetCellData()), "precision": precision,
+                "fields": block.fields(normals), "cell_fields": carried_of(block.grid.GetCellData()), "precision": precision,
                 "numbers": numbers, "frame": frame, "points": computed, "source_cells": not self.GetGenerateTriangles(),
                 "tolerances": (None, None if framed else self._tolerance or None, 0.0, 0.0)}  # fmt: skip
 

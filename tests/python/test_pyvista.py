@@ -420,6 +420,9 @@ def test_a_slider_takes_what_pyvista_has():
     for name in ("v:y", "v:mag", "v"):
         plotter.isotet.add_isovalue(grid, name, False, False, True, "point", value=7.0)
         assert plotter.widgets.isovalue_meshes[-1].area == pytest.approx(grid.isotet.contour([7.0], name).area)
+    grid.set_active_scalars("x")
+    plotter.isotet.add_isovalue(grid, "r")
+    assert plotter.widgets.isovalue_meshes[-1].active_scalars_name == "r", "what is contoured is shown"
     with pytest.raises(ValueError, match="a component is x, y, z, mag or a number"):
         plotter.isotet.add_isovalue(grid, "v:w")
     plotter.close()

@@ -133,6 +133,19 @@ def test_active_arrays_are_those_of_vtk(scalars, settings, with_others):
             assert [array and array.GetName() for array in active] == [active[1] and active[1].GetName()] * 2, (data, kind)
 
 
+def test_ids_are_carried_where_vtk_carries_them():
+    grid = cubes()
+    for data, count in ((grid.point_data, grid.n_points), (grid.cell_data, grid.n_cells)):
+        for name in ("global", "pedigree"):
+            data[name] = np.arange(count)
+        data.SetActiveGlobalIds("global")
+        data.SetActivePedigreeIds("pedigree")
+    for ours, theirs in (both(grid), (grid.isotet.contour([2.5], "r"), grid.contour([2.5], "r"))):
+        assert set(ours.point_data) == set(theirs.point_data) and "global" not in ours.point_data
+        assert set(ours.cell_data) == set(theirs.cell_data) == {"number", "pedigree"}
+    assert both(grid)[0].GetCellData().GetPedigreeIds().GetName() == "pedigree"
+
+
 @pytest.mark.parametrize("points", [np.float32, np.float64])
 @pytest.mark.parametrize("precision", [0, 1, 2])
 def test_the_precision_of_points_holds(points, precision):
