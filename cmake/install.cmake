@@ -16,7 +16,7 @@ foreach(component ${ISOTET_COMPONENTS})
 endforeach()
 
 if(TARGET isotet_reader)
-    install(TARGETS isotet_reader EXPORT isotet-io RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+    install(TARGETS isotet_reader EXPORT isotet-io RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 endif()
 
 # What belongs to isotet_extras and isotet_jobs, which are not installed, stays here.
@@ -62,4 +62,4 @@ set(library isotet_io)
 isotet_pkg_config(isotet-io "Grids and surfaces in files" isotet "fmt libpng libwebpmux libwebp libdeflate liblz4 liblzma pugixml" "")
 
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md
-    DESTINATION ${CMAKE_INSTALL_DOCDIR} OPTIONAL)
+    DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program OPTIONAL)

@@ -1,0 +1,99 @@
+#!/usr/bin/env bash
+# Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+# Makes a release of what is committed, in build/release: source archive, Debian package, wheel, checksums; then the tag.
+# Everything is built from the archive, and the package is installed on a fresh Debian 12, which needs root. A name of the
+# release that is taken, files that are not committed, a list of changes without the release, and a failed test end it.
+source "$(dirname "${BASH_SOURCE[0]}")/lib/common.sh"
+source "$root/scripts/lib/packages.sh"
+
+tests=yes tag=yes
+for option; do
+    case $option in
+    --no-tests) tests=no ;;
+    --no-tag) tag=no ;;
+    *)
+        echo "usage: $0 [--no-tests] [--no-tag]" >&2
+        [[ $option == -h || $option == --help ]] && exit 0
+        exit 2
+        ;;
+    esac
+done
+
+cd "$root"
+version=$(sed -n 's/^project(isotet VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
+readonly version folder=$root/build/release
+readonly source=$folder/isotet-$version debian=$folder/debian
+
+check_tree() {
+    if [[ -n $(git status --porcelain) ]]; then
+        fail "files are changed or new, but a release is of what is committed"
+        return 1
+    fi
+    if [[ $tag == no ]]; then return; fi
+    if git rev-parse -q --verify "refs/tags/v$version" >/dev/null; then
+        fail "v$version is tagged already: CMakeLists.txt names the version"
+        return 1
+    fi
+    if ! grep -qE "^## $version, [0-9]{4}-[0-9]{2}-[0-9]{2}\$" CHANGELOG.md; then
+        fail "CHANGELOG.md has no '## $version, YEAR-MONTH-DAY'"
+        return 1
+    fi
+}
+
+make_archive() {
+    rm -rf "$folder"
+    mkdir -p "$folder"
+    git archive --prefix="isotet-$version/" HEAD | xz -T0 >"$folder/isotet-$version.tar.xz"
+    tar -xf "$folder/isotet-$version.tar.xz" -C "$folder"
+}
+
+make_package() {
+    build_source=$source build release "$folder/tree" -DCMAKE_BUILD_TYPE=Release -DISOTET_TESTS=OFF || return
+    in_log "Debian package" "$folder/package.log" cpack --config "$folder/tree/CPackConfig.cmake" -B "$folder"
+    rm -rf "$folder/_CPack_Packages"
+}
+
+# The mirror that this machine uses.
+mirror() {
+    apt-get indextargets --format "\$(ORIGIN)|\$(CODENAME)|\$(REPO_URI)" 'Created-By: Packages' |
+        sed -n 's/^Debian|bookworm|//p' | head -n 1
+}
+
+# Reads a file by the program itself, and one by isotet-reader.
+try_package() {
+    say "installs the package on a fresh Debian 12"
+    rm -rf "$debian"
+    in_log "fresh Debian" "$folder/debian.log" debootstrap --variant=minbase bookworm "$debian" "$(mirror)" || return
+    cp "$folder"/isotet_*.deb "$source/data/vtu/artery_flow_tet_wedge.vtu" "$source/data/exodus/mixed_blocks_hdf5.exo" "$debian/tmp" || return
+    cp /etc/resolv.conf "$debian/etc"
+    in_log "trying the package" "$folder/try.log" chroot "$debian" sh -ec '
+        cd /tmp
+        apt-get update
+        DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends ./isotet_*.deb
+        isotet --version
+        isotet extract artery_flow_tet_wedge.vtu artery.stl -f Umag -i 0.2 --solid above
+        isotet check artery.stl --closed
+        isotet info mixed_blocks_hdf5.exo
+        isotet render artery_flow_tet_wedge.vtu -o artery.png
+        test -s /usr/share/man/man1/isotet.1 || test -s /usr/share/man/man1/isotet.1.gz
+        ! ldd /usr/bin/isotet /usr/bin/isotet-reader | grep -E "libvtk|not found"' || return
+    rm -rf "$debian"
+}
+
+make_wheel() {
+    cmake --install "$folder/tree" --prefix "$folder/prefix" >"$folder/install.log" || return
+    ISOTET_INSTALLED=$folder/prefix in_log "wheel" "$folder/wheel.log" "$source/scripts/wheel.sh" "$folder/wheel" || return
+    cp "$folder"/wheel/dist/* "$folder"
+}
+
+check_tree || exit
+say "isotet $version"
+install_packages "${packages_to_build[@]}" "${packages_for_python[@]}" debootstrap dpkg-dev xz-utils || exit
+use_ccache
+if [[ $tests == yes ]]; then in_log "tests" "$root/build/release.tests.log" "$root/scripts/test.sh" || exit; fi
+make_archive || exit
+make_package || exit
+try_package || exit
+make_wheel || exit
+(cd "$folder" && sha256sum -- *.tar.* *.deb *.whl >SHA256SUMS && cat SHA256SUMS)
+if [[ $tag == yes ]]; then git tag -a "v$version" -m "isotet $version" && say "tagged v$version"; fi
