@@ -372,7 +372,9 @@ void add_solids(nb::module_& module) {
 /// The grid with the arrays beside it as fields.
 Grid with_sources(const ClippedGrid& clipped) {
     Grid grid = clipped.grid;
-    if (!clipped.source_cells.empty()) grid.cell_fields.push_back({"source_cell", clipped.source_cells});
+    const bool is_empty = clipped.source_cells.empty();
+    grid.cell_fields.push_back(
+        {"source_cell", is_empty ? Array::own(std::vector<std::int64_t>()) : clipped.source_cells});
     if (!clipped.edge_ends.empty()) {
         grid.point_fields.push_back({"edge_ends", clipped.edge_ends});
         grid.point_fields.push_back({"edge_weights", clipped.edge_weights});

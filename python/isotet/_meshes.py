@@ -35,7 +35,7 @@ def grid_of_mesh(mesh, fields, cell_fields, point_numbers) -> _isotet.Grid:
 
 
 def _of_meshio(mesh) -> _isotet.Grid:
-    joined = {name: np.concatenate([np.asarray(part) for part in parts]) for name, parts in mesh.cell_data.items()}
+    joined = {name: np.concatenate([np.asarray(part) for part in parts]) for name, parts in mesh.cell_data.items() if parts}
     cells = cells_in(mesh.cells if len(mesh.cells) else {})
     return _isotet.Grid(points_in(mesh.points), cells, fields_in("point_data", mesh.point_data),
                         fields_in("cell_data", joined))  # fmt: skip
