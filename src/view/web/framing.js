@@ -13,7 +13,7 @@ const framing = {
 /** Corners of a box, x, y and z one after another. */
 const boxCorners = (lower, upper) => Float64Array.from({length: 24}, (_, i) => (Math.floor(i / 3) >> i % 3 & 1 ? upper : lower)[i % 3]);
 
-function pointsOf({places, lower, upper}) {
+function placedPoints({places, lower, upper}) {
   const factors = factorsOf(app.state), points = new Float64Array(places.length);
   for (let axis = 0; axis < 3; ++axis) {
     const from = lower[axis] * factors[axis], unit = (upper[axis] - lower[axis]) * factors[axis] / 65535;
@@ -25,7 +25,7 @@ function pointsOf({places, lower, upper}) {
 /** Sees all of the grid, from where the camera looks. */
 export function frameAll() {
   framing.byBox = !framing.boundary || app.state.outline;
-  app.camera.fit(framing.byBox ? boxCorners(...seenBox()) : pointsOf(framing.boundary), aspect());
+  app.camera.fit(framing.byBox ? boxCorners(...seenBox()) : placedPoints(framing.boundary), aspect());
   framing.camera = app.camera.text();
 }
 
@@ -36,7 +36,7 @@ export const hasSurfaces = () => !app.frame?.picture && surfacesHere().length > 
 
 /** Sees all of the isosurfaces. */
 export function frameSurfaces() {
-  const all = surfacesHere().map(({vertexBytes, lower, upper}) => pointsOf({places: placesOf(vertexBytes), lower, upper}));
+  const all = surfacesHere().map(({vertexBytes, lower, upper}) => placedPoints({places: placesOf(vertexBytes), lower, upper}));
   const points = new Float64Array(all.reduce((sum, {length}) => sum + length, 0));
   let at = 0;
   for (const one of all) { points.set(one, at); at += one.length; }
