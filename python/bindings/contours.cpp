@@ -435,6 +435,18 @@ void add_packed_grids(nb::module_& module) {
             },
             "points"_a, "call"_a)
         .def(
+            "unpack",
+            [](const PackedGrid& self, const CallOptions& how) {
+                return call(how, [&](const Run& run) { return unpack(self, run); });
+            },
+            "call"_a)
+        .def(
+            "unpack_field",
+            [](const PackedGrid& self, const CallOptions& how) {
+                return array_out(call(how, [&](const Run& run) { return unpack_field(self, run); }).values);
+            },
+            "call"_a)
+        .def(
             "with_frame",
             [](const PackedGrid& self, const Frame* frame) {
                 return self.with_frame(frame ? std::optional<Frame>(*frame) : std::nullopt);

@@ -548,6 +548,12 @@ class PackedGrid:
         """
         self._packed = self._framed(frame).with_points(points_in(points), call_options(threads, progress))
 
+    def unpack(self, *, threads: int = 0, progress: Progress | None = None) -> Grid:
+        """The grid as arrays again: points by their numbers, cells in the order in which they are packed, and the field, as far
+        as packing kept them.
+        """
+        return Grid._of(self._packed.unpack(call_options(threads, progress)))
+
     @property
     def range(self) -> tuple[float, float]:
         """The smallest and the largest finite value at the points of the cells; the first is larger where there is none."""

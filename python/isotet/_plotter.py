@@ -9,7 +9,7 @@ from pyvista.plotting.utilities.algorithms import algorithm_to_mesh_handler
 
 from ._vtk_data import MAGNITUDE
 from .pyvista import MANY, find_scalars
-from .vtk import IsotetContour
+from ._vtk_contour import IsotetContour
 
 
 class PlotterComponent:

@@ -47,6 +47,13 @@ def cells_of(grid, marked: int = _GHOSTS) -> _isotet.Cells:
     return _isotet.Cells(connectivity, offsets, types, _TETRAHEDRON, *_faces_of(grid, types))
 
 
+def cells_shown(grid) -> tuple[_isotet.Cells, np.ndarray]:
+    """All cells but those that are refined, outside or hidden, and for each 1 where it is of another piece."""
+    ghosts = grid.GetCellGhostArray()
+    marks = np.zeros(grid.GetNumberOfCells(), np.uint8) if ghosts is None else vtk_to_numpy(ghosts) & _DUPLICATE
+    return cells_of(grid, _GHOSTS & ~_DUPLICATE), marks.astype(np.uint8)
+
+
 def _parts_of(cells) -> tuple[np.ndarray, np.ndarray]:
     """Corners and offsets of a vtkCellArray."""
     return tuple(vtk_to_numpy(array) for array in (cells.GetConnectivityArray(), cells.GetOffsetsArray()))
@@ -134,24 +141,37 @@ def grid_in(data) -> _isotet.Grid:
 
 def to_unstructured(grid: Grid) -> vtkUnstructuredGrid:
     """A grid as vtkUnstructuredGrid. The arrays are copies."""
-    out = vtkUnstructuredGrid()
-    points = vtkPoints()
-    points.SetData(numpy_to_vtk(grid.points, deep=True))
-    out.SetPoints(points)
+    return fill_unstructured(vtkUnstructuredGrid(), grid)
+
+
+def fill_unstructured(out, grid: Grid, *, kinds: Mapping[str, np.dtype] = MappingProxyType({}), points=None):
+    """`kinds` and `points` as of fill()."""
+    places = vtkPoints()
+    places.SetData(numpy_to_vtk(grid.points if points is None else grid.points.astype(points, copy=False), deep=True))
+    out.SetPoints(places)
     connectivity, offsets, types = expanded(grid._grid)
     of_types, cells = numpy_to_vtk(types.astype(np.uint8), deep=True), _cell_array(connectivity, offsets)
     if (types == _POLYHEDRON).any():
-        if not hasattr(out, "SetPolyhedralCells"):
-            raise ValueError("polyhedra are handed to VTK from its version 9.4 on")
-        corners, sizes, counts = faces_of(grid)
-        faces = _cell_array(corners, np.append(0, np.cumsum(sizes)))
-        out.SetPolyhedralCells(of_types, cells, _cell_array(np.arange(len(sizes)), np.append(0, np.cumsum(counts))), faces)
+        _set_polyhedra(out, grid, of_types, cells)
     else:
         out.SetCells(of_types, cells)
-    for data, arrays in ((out.GetPointData(), grid.fields), (out.GetCellData(), grid.cell_fields)):
-        for name, values in arrays.items():
-            _add_array(data, name, values, copy=True)
+    for name, values in grid.fields.items():
+        _add_array(out.GetPointData(), name, kept_type(values, kinds.get(name, values.dtype)), copy=True)
+    for name, values in grid.cell_fields.items():
+        _add_array(out.GetCellData(), name, values, copy=True)
     return out
+
+
+def _set_polyhedra(out, grid: Grid, types, cells) -> None:
+    if hasattr(out, "SetPolyhedralCells"):
+        corners, sizes, counts = faces_of(grid)
+        faces = _cell_array(corners, np.append(0, np.cumsum(sizes)))
+        out.SetPolyhedralCells(types, cells, _cell_array(np.arange(len(sizes)), np.append(0, np.cumsum(counts))), faces)
+        return
+    starts = np.asarray(grid.face_offsets, np.int64)  # before VTK 9.4
+    places = np.where(np.diff(starts) > 0, starts[:-1], -1)
+    out.SetCells(types, cells, *(numpy_to_vtk(array, deep=True, array_type=VTK_ID_TYPE)
+                                 for array in (places, np.asarray(grid.faces, np.int64))))  # fmt: skip
 
 
 def grid_of(grid) -> Grid:

@@ -50,14 +50,14 @@ class Session:
         types = None if self._cells is None else self._cells.arrays()[2]
         return 0 if types is None else int(np.count_nonzero(types == 0))
 
-    def _input(self, grid, scalars: Scalars, numbers: np.ndarray | None = None, points=None) -> tuple[_isotet.Grid, _isotet.PointField]:
+    def input(self, grid, scalars: Scalars, numbers: np.ndarray | None = None, points=None) -> tuple[_isotet.Grid, _isotet.PointField]:
         assert self._cells is not None
         field = _isotet.PointField(scalars.name or scalars.array.GetName() or "scalars", scalars.values)
         places = points_of(grid)
         return _isotet.Grid(places if points is None else places.astype(points, copy=False), self._cells, [], [], numbers), field
 
     def survey(self, grid, scalars: Scalars, fields: list[tuple[str, np.ndarray]], points=None) -> bytes:
-        return _isotet.survey(*self._input(grid, scalars, points=points), fields, False, call_options(0, None))
+        return _isotet.survey(*self.input(grid, scalars, points=points), fields, False, call_options(0, None))
 
     def inputs(self, grid, scalars: Scalars, *, normals: bool, surfaces: int, fields: list[tuple[str, np.ndarray]],
                cell_fields: list[tuple[str, np.ndarray]], precision: str = "float32", numbers: np.ndarray | None = None,
@@ -65,7 +65,7 @@ class Session:
                tolerances: tuple[float | None, float | None, float, float] = (None, None, 0.0, 0.0)) -> tuple[Any, ...]:  # fmt: skip
         """What contour_all() sets the session to; it is made here if there is none. `refine_for_fields`: `tolerances` hold for
         the carried fields, too."""
-        mine, field = self._input(grid, scalars, numbers, points)
+        mine, field = self.input(grid, scalars, numbers, points)
         kind = "gradient" if normals else "none"
         options = _isotet.ContourOptions(kind, False, source_cells, "merge", precision, None, surfaces, False, frame, *tolerances,
                                          pack_all=True)  # fmt: skip

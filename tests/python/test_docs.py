@@ -13,7 +13,8 @@ import pytest
 import isotet
 from conftest import TREE
 
-MODULES = ["isotet", "isotet._arrays", "isotet._grid", "isotet._surface", "isotet.vtk", "isotet.pyvista"]
+MODULES = ["isotet", "isotet._arrays", "isotet._grid", "isotet._surface", "isotet._vtk_contour", "isotet._vtk_parts", "isotet._vtk_reader",
+           "isotet._vtk_slice", "isotet.pyvista"]
 
 
 @pytest.mark.parametrize("name", MODULES)

@@ -179,7 +179,7 @@ def test_an_interrupt_arrives(through):
     if through == "another filter":
         last = vtkPolyDataNormals()
         last.SetInputConnection(contour.GetOutputPort())
-    with mock.patch.object(isotet.vtk.Session, "inputs", side_effect=lambda *_, **__: signal.raise_signal(signal.SIGINT)):
+    with mock.patch.object(isotet._vtk_session.Session, "inputs", side_effect=lambda *_, **__: signal.raise_signal(signal.SIGINT)):
         with pytest.raises(KeyboardInterrupt):
             last.Update()
             time.sleep(10)
@@ -191,7 +191,7 @@ def test_an_interrupt_arrives(through):
 
 def test_an_exit_arrives():
     contour = pipeline(cubes())
-    with mock.patch.object(isotet.vtk.Session, "inputs", side_effect=SystemExit):
+    with mock.patch.object(isotet._vtk_session.Session, "inputs", side_effect=SystemExit):
         with pytest.raises(SystemExit):
             contour.Update()
             time.sleep(10)
