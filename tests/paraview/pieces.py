@@ -14,11 +14,11 @@ def data():
     return lattice(10, dtype=np.float64, origin=5e5)
 
 
-def piece_of(piece):
-    """Random cells, with global ids."""
+def piece_of(*pieces):
+    """Random cells, with global ids: of one piece, or of some in one."""
     points, cells, field = data()
     owner = np.random.default_rng(3).integers(0, COUNT, len(cells))
-    used, local = np.unique(cells[owner == piece], return_inverse=True)
+    used, local = np.unique(cells[np.isin(owner, pieces)], return_inverse=True)
     return grid_of(points[used], local.reshape(-1, 4), {"r": field[used]}, ids=used)
 
 

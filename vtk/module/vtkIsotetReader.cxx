@@ -173,26 +173,6 @@ vtkDataArraySelection* vtkIsotetReader::GetPointDataArraySelection()
   return this->Internal->Arrays;
 }
 
-int vtkIsotetReader::GetNumberOfPointArrays()
-{
-  return this->Internal->Arrays->GetNumberOfArrays();
-}
-
-const char* vtkIsotetReader::GetPointArrayName(int index)
-{
-  return this->Internal->Arrays->GetArrayName(index);
-}
-
-int vtkIsotetReader::GetPointArrayStatus(const char* name)
-{
-  return this->Internal->Arrays->ArrayIsEnabled(name);
-}
-
-void vtkIsotetReader::SetPointArrayStatus(const char* name, int status)
-{
-  this->Internal->Arrays->SetArraySetting(name, status);
-}
-
 //------------------------------------------------------------------------------
 int vtkIsotetReader::RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {

@@ -37,16 +37,10 @@ public:
    */
   virtual int CanReadFile(VTK_FILEPATH const char* name);
 
-  ///@{
   /**
    * Which fields are read; all by default. Known after UpdateInformation().
    */
   vtkDataArraySelection* GetPointDataArraySelection();
-  int GetNumberOfPointArrays();
-  const char* GetPointArrayName(int index);
-  int GetPointArrayStatus(const char* name);
-  void SetPointArrayStatus(const char* name, int status);
-  ///@}
 
   ///@{
   /**
