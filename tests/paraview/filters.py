@@ -145,6 +145,18 @@ if not servermanager.ActiveConnection.IsRemote():
     for name, count in counts.items():
         assert fetch(again[name]).GetNumberOfCells() == count > 0, name
     os.remove(state)
+else:  # drawn by the server
+    view = simple.CreateRenderView(ViewSize=[160, 120], OrientationAxesVisibility=0)
+    view.RemoteRenderThreshold = 0
+    for proxy in (clip, slice, reader):
+        simple.Show(proxy, view)
+    simple.Hide(reader, view)
+    simple.ResetCamera(view)
+    picture = os.path.join(scratch, own + ".png")
+    simple.SaveScreenshot(picture, view)
+    drawn = pixels_of(picture)
+    assert 0.05 < (np.abs(drawn - drawn[0]).max(axis=1) > 30).mean() < 0.95
+    os.remove(picture)
 for name in (*steps, packed, series.name):
     os.remove(name)
 print("ok")

@@ -19,12 +19,7 @@ simple.ResetCamera(view)
 view.GetActiveCamera().Zoom(1.3)
 simple.SaveScreenshot(sys.argv[1], view)
 if ranks == 1:
-    from vtkmodules.vtkIOImage import vtkPNGReader
-
-    reader = vtkPNGReader()
-    reader.SetFileName(sys.argv[1])
-    reader.Update()
-    pixels = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).astype(int)
+    pixels = pixels_of(sys.argv[1])
     drawn = (pixels.min(axis=1) < 250).mean()
     assert 0.1 < drawn < 0.9, drawn
     colourful = (np.ptp(pixels, axis=1) > 60).mean()

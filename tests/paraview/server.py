@@ -54,7 +54,7 @@ def start(command, output):
 with tempfile.NamedTemporaryFile() as output:
     server, port = start(sys.argv[2:], output)
     try:
-        client = subprocess.run(["pvpython", sys.argv[1], str(port)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=60)
+        client = subprocess.run(["pvpython", sys.argv[1], str(port)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=110)
         status = server.wait(20)
     finally:
         end(server)

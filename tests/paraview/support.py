@@ -44,6 +44,15 @@ def made(grid, name="grid"):
     return source
 
 
+def pixels_of(picture):
+    from vtkmodules.vtkIOImage import vtkPNGReader
+
+    reader = vtkPNGReader()
+    reader.SetFileName(picture)
+    reader.Update()
+    return vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).astype(int)
+
+
 def write(grid, name):
     """A file that ParaView 5.11.0 of Debian 12 reads: its libexpat does not let raw appended data pass."""
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
