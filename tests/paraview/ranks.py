@@ -84,7 +84,7 @@ def check(kind):
 def solids(kind):
     """Pieces with a layer of ghost cells give the solids of the whole."""
     filter_of(kind, read_pieces())
-    # Of this file ParaView 5.11 makes no ghost cells.
+    # Where a rank reads several pieces, points are there twice, and ParaView makes no ghost cells.
     folder = os.path.dirname(os.path.abspath(__file__))
     source = simple.ProgrammableSource(OutputDataSetType="vtkUnstructuredGrid", Script=PIECES.format(folder=folder))
     ghosts = simple.GhostCellsGenerator(Input=source)
