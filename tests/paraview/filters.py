@@ -3,6 +3,7 @@
 ISOTET_PLUGINS names, loaded on both sides."""
 
 import subprocess
+import xml.etree.ElementTree as xml
 
 from support import *
 
@@ -39,11 +40,22 @@ steps = [write_step(step) for step in range(3)]
 source = simple.XMLUnstructuredGridReader(FileName=[steps[0]])
 source.UpdatePipeline()
 whole = volume_of(source)
-for name in ("Contour", "Solid", "Slice", "Clip"):
-    filter = getattr(simple, "Isotet" + name)(Input=source)
-    for property in filter.ListProperties():
-        documentation = filter.GetProperty(property).SMProperty.GetDocumentation()
-        assert property == "Input" or (documentation and documentation.GetDescription()), (name, property)
+
+# Both plugins have the properties, defaults and ranges of this XML: that of the plugin in C++.
+for wanted in xml.parse(os.environ["ISOTET_XML"]).iter("SourceProxy"):
+    proxy = servermanager.ProxyManager().NewProxy("sources" if wanted.get("name") == "IsotetReader" else "filters", wanted.get("name"))
+    assert proxy.GetXMLLabel() == wanted.get("label"), proxy.GetXMLLabel()
+    for element in wanted:
+        if not element.tag.endswith("Property"):
+            continue
+        property = proxy.GetProperty(element.get("name"))
+        assert property and property.GetDocumentation().GetDescription(), (wanted.get("name"), element.get("name"))
+        domains = {domain.get("name") for domain in element if domain.tag.endswith("Domain")}
+        assert all(property.GetDomain(name) for name in domains), (element.get("name"), domains)
+        given = [property.GetElement(i) for i in range(property.GetNumberOfElements())] if hasattr(property, "GetElement") else []
+        if element.get("default_values") and not element.get("information_only"):
+            assert [float(x) for x in given] == [float(element.get("default_values"))], (element.get("name"), given)
+        assert property.GetXMLLabel().replace(" ", "") == (element.get("label") or element.get("name")).replace(" ", "")
 
 # Solids: closed, one for each side, which make up the grid.
 solid = simple.IsotetSolid(Input=source)
