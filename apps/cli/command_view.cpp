@@ -98,13 +98,13 @@ public:
         };
         file.read_step = [this](std::size_t step, const Run& run) -> Result<Grid> {
             const std::lock_guard lock(reading_);
-            Result<ReadResult> read = source_->read_some({}, step, console_, run);
+            Result<ReadResult> read = source_->read_some(all_fields(), step, console_, run);
             if (!read) return read.error();
             return std::move(read->grid);
         };
         file.read_cells = [this](std::size_t step, const Run& run) {
             const std::lock_guard lock(reading_);
-            return source_->read({}, step, console_, run);
+            return source_->read(all_fields(), step, console_, run);
         };
         return file;
     }
@@ -112,6 +112,13 @@ public:
     Console& console() noexcept { return console_; }
 
 private:
+    /// As read_view_input() reads them.
+    static FieldsToRead all_fields() {
+        FieldsToRead all;
+        all.blocks = true;
+        return all;
+    }
+
     ViewCommand command_;
     Console console_;
     std::optional<GridSource> source_;

@@ -61,8 +61,10 @@ Result<void> note_outside(const ViewStart& start, const Array& values, const std
 /// All fields.
 Result<ReadResult> read_step(FirstCells cells, const GridSource& source, std::size_t step, Console& console,
                              const Run& run) {
-    if (cells == FirstCells::some) return source.read_some({}, step, console, run);
-    Result<Grid> grid = source.read({}, step, console, run);
+    FieldsToRead all;
+    all.blocks = true;
+    if (cells == FirstCells::some) return source.read_some(all, step, console, run);
+    Result<Grid> grid = source.read(all, step, console, run);
     if (!grid) return grid.error();
     ReadResult result;
     result.grid = *std::move(grid);
@@ -108,7 +110,7 @@ Result<view::ViewerInput> read_view_input(const ViewStart& start, GridSource& so
                 return told.error();
     if (Result<void> added = add_shares(start, *read, source, console, run, input.state); !added) return added.error();
     if (!start.color_by.empty()) input.state.color_by = start.color_by;
-    input.regions = read->info.regions.empty() ? source.info().regions : read->info.regions;
+    input.regions = read->info.regions.empty() ? source.region_names() : read->info.regions;
     input.times = source.info().times;
     if (input.times.size() > 1) input.state.step = step;
     if (is_of_reservoirs(source.info().format)) input.state.stretch = default_stretch(grid.points);

@@ -62,7 +62,7 @@ std::size_t comma_between(const std::string& names) {
 
 /// Adds what one argument of --with names.
 Result<void> add_carried(const GridSource& source, const std::string& name, CarriedFields& carried) {
-    const std::vector<std::string> point = source.names(Association::point), cell = source.names(Association::cell);
+    const std::vector<std::string> point = source.names(Association::point), cell = source.cell_names();
     if (has(point, name)) add_names(carried.point, {name});
     else if (has(cell, name)) add_names(carried.cell, {name});
     else if (const auto arrays = arrays_of(name, point); !arrays.empty())
@@ -101,7 +101,8 @@ Result<FoundField> choose_field(const GridSource& source, const FieldChoice& cho
         }
         found.name = names.front();
     }
-    const bool is_field = is_coordinate(found.name) || !arrays_of(found.name, all_names(source)).empty();
+    const bool is_field = is_coordinate(found.name) || !arrays_of(found.name, all_names(source)).empty() ||
+                          has(source.cell_names(), found.name);
     if (!is_field && looks_like_expression(found.name)) {
         auto expression = find_expression(source, found.name);
         if (!expression) return expression;
@@ -111,7 +112,7 @@ Result<FoundField> choose_field(const GridSource& source, const FieldChoice& cho
         return found;
     }
     found.point = arrays_of(found.name, source.names(Association::point));
-    found.cell = arrays_of(found.name, source.names(Association::cell));
+    found.cell = arrays_of(found.name, source.cell_names());
     if (found.point.empty() && found.cell.empty() && !is_coordinate(found.name))
         return source.no_such_field(found.name);
     if (choice.cell_field && found.cell.empty()) {

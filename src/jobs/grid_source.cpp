@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <mutex>
 #include <set>
 #include <string>
@@ -25,6 +26,7 @@
 #include <isotet/slice.hpp>
 
 #include "grid/orientation.hpp"
+#include "jobs/block_field.hpp"
 #include "jobs/cell_choice.hpp"
 #include "jobs/refuse.hpp"
 
@@ -282,6 +284,7 @@ Result<GridSource> GridSource::open(const GridOptions& options, Caller& caller) 
     }
     source.info_ = *std::move(info);
     source.info_.files.insert(source.info_.files.end(), options.other_inputs.begin(), options.other_inputs.end());
+    source.knows_blocks_ = options.blocks.empty() && options.more_files.empty() && has_block_field(source.info_);
     if (options.time && source.info_.times.size() > 1)
         if (const Result<std::size_t> step = step_at(source.info_.times, *options.time))
             if (auto looked = source.look_at(*step, caller.run()); !looked) return looked.error();
@@ -296,10 +299,10 @@ Result<GridSource> GridSource::open(const GridOptions& options, Caller& caller) 
 
 Result<void> GridSource::take_choices() {
     if (options_.cells.empty()) return {};
-    Result<std::vector<CellChoice>> choices = parse_cell_choices(options_.cells, names(Association::cell));
+    Result<std::vector<CellChoice>> choices = parse_cell_choices(options_.cells, cell_names());
     if (!choices) return choices.error();
-    if (!info_.regions.empty())
-        if (auto checked = check_cell_choices(*choices, info_.regions); !checked) return checked.error();
+    if (const auto regions = region_names(); !regions.empty())
+        if (auto checked = check_cell_choices(*choices, regions); !checked) return checked.error();
     choices_ = std::make_shared<const std::vector<CellChoice>>(*std::move(choices));
     return {};
 }
@@ -342,6 +345,7 @@ Result<void> GridSource::look_at_steps(const std::vector<std::size_t>& steps, Ca
 bool GridSource::has_field(std::size_t step, const std::string& name) const {
     const auto looked = step_fields_.find(step);
     if (looked == step_fields_.end() || name == "x" || name == "y" || name == "z") return true;
+    if (knows_blocks_ && name == block_field_name) return true;
     std::vector<std::string> names;
     for (const FieldInfo& field : looked->second) names.push_back(field.name);
     return match_field_name(name, names).has_value() || needs_of_expression(name, names);
@@ -370,6 +374,40 @@ std::vector<std::string> GridSource::names(Association association) const {
         if (field.association == association) names.push_back(field.name);
     }
     return names;
+}
+
+std::vector<std::string> GridSource::cell_names() const {
+    std::vector<std::string> all = names(Association::cell);
+    if (knows_blocks_) all.emplace_back(block_field_name);
+    return all;
+}
+
+std::vector<RegionName> GridSource::region_names() const {
+    std::vector<RegionName> all = info_.regions;
+    if (!knows_blocks_) return all;
+    std::vector<RegionName> blocks = names_of_blocks(info_);
+    all.insert(all.end(), std::make_move_iterator(blocks.begin()), std::make_move_iterator(blocks.end()));
+    return all;
+}
+
+/// Whether the numbers of blocks are asked for by name.
+bool GridSource::names_blocks(const FieldsToRead& fields) const {
+    return knows_blocks_ && fields.cell && std::ranges::find(*fields.cell, block_field_name) != fields.cell->end();
+}
+
+/// The field of blocks where it is asked for and is not there, with their names.
+Result<void> GridSource::add_blocks(ReadResult& read, const FieldsToRead& fields) const {
+    const bool named = names_blocks(fields);
+    if ((!named && !(fields.blocks && knows_blocks_)) ||
+        std::ranges::find(read.grid.cell_fields, block_field_name, &Field::name) != read.grid.cell_fields.end())
+        return {};
+    Result<void> added = add_block_field(read.grid, read.info.blocks.empty() ? info_.blocks : read.info.blocks);
+    if (!added) return named ? added : Result<void>();
+    if (read.info.regions.empty()) read.info.regions = info_.regions;
+    std::vector<RegionName> names = names_of_blocks(info_);
+    read.info.regions.insert(read.info.regions.end(), std::make_move_iterator(names.begin()),
+                             std::make_move_iterator(names.end()));
+    return {};
 }
 
 struct GridSource::Kept {
@@ -466,17 +504,27 @@ Result<void> GridSource::choose(ReadResult& read, Caller& caller) const {
 Result<ReadResult> GridSource::read_cells(const FieldsToRead& fields, std::size_t step, CellsToRead cells,
                                           Caller& caller, const Run& run) const {
     if (kept_)
-        if (auto kept = kept_->take(fields, step, cells)) return *std::move(kept);
+        if (auto kept = kept_->take(fields, step, cells)) {
+            if (auto added = add_blocks(*kept, fields); !added) return added.error();
+            return *std::move(kept);
+        }
     FieldsToRead with_choices = fields;
     if (choices_ && fields.cell) {
         for (const CellChoice& choice : *choices_)
             if (std::ranges::find(*with_choices.cell, choice.field) == with_choices.cell->end())
                 with_choices.cell->push_back(choice.field);
     }
-    Result<ReadResult> result = read_unclosed(with_choices, step, cells, caller, run);
+    if (choices_ && std::ranges::find(*choices_, block_field_name, &CellChoice::field) != choices_->end())
+        with_choices.blocks = true;
+    FieldsToRead of_file = with_choices;
+    if (knows_blocks_ && of_file.cell) std::erase(*of_file.cell, block_field_name);
+    Result<ReadResult> result = read_unclosed(of_file, step, cells, caller, run);
     if (!result || result->cells_in_file) return result;
+    if (auto added = add_blocks(*result, with_choices); !added) return added.error();
     if (auto chosen = choose(*result, caller); !chosen) return chosen.error();
     if (choices_) leave(result->grid.cell_fields, fields.cell);
+    if (knows_blocks_ && !fields.blocks && !names_blocks(fields))
+        std::erase_if(result->grid.cell_fields, [](const Field& field) { return field.name == block_field_name; });
     if (options_.merge_points) {
         Result<Grid> joined = merged(result->grid, {*options_.merge_points, options_.merge_values}, caller, run);
         if (!joined) return joined.error();
@@ -503,7 +551,8 @@ Result<ReadResult> GridSource::read_some(const FieldsToRead& fields, std::size_t
 
 Result<ReadResult> GridSource::read_active(const FieldsToRead& fields, std::size_t step, const ReadActiveCells& active,
                                            Caller& caller) const {
-    if (made_ || surface_ || options_.merge_points || !options_.cells.empty() || (kept_ && kept_->is_there())) {
+    if (made_ || surface_ || options_.merge_points || !options_.cells.empty() || names_blocks(fields) ||
+        (kept_ && kept_->is_there())) {
         Result<Grid> grid = read(fields, step, caller);
         if (!grid) return grid.error();
         ReadResult result;

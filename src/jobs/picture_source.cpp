@@ -248,11 +248,11 @@ Result<ColorField> PictureSource::colors_at(std::size_t step, const std::string&
         if (!field) return field.error();
         Grid grid;
         grid.cell_fields = {*std::move(field)};
-        return colors_of(grid, name, source_->info().regions, job_, caller);
+        return colors_of(grid, name, source_->region_names(), job_, caller);
     }
     const Result<Grid> grid = read_for(*found, step, caller);
     if (!grid) return grid.error();
-    return colors_of(*grid, name, source_->info().regions, job_, caller);
+    return colors_of(*grid, name, source_->region_names(), job_, caller);
 }
 
 /// The range of a field that colours over all steps becomes --range.
@@ -472,7 +472,7 @@ Result<PictureSource::Contents> PictureSource::read_contents(std::size_t step, b
     }
     if (!color.empty()) {
         if (auto widened = widen_range(color, caller); !widened) return widened.error();
-        Result<ColorField> colors = colors_of(contents.grid, color, source_->info().regions, job_, caller);
+        Result<ColorField> colors = colors_of(contents.grid, color, source_->region_names(), job_, caller);
         if (!colors) return colors.error();
         contents.colors = *std::move(colors);
     }

@@ -331,5 +331,91 @@ TEST(ChosenCells, AreDrawn) {
     EXPECT_GT(some.input.scene->surfaces().at(0).triangles, 0u);
 }
 
+/// As multi-block data of grids, with a name each.
+std::string blocks_of(const test::TemporaryFolder& folder, const std::vector<std::string>& names) {
+    std::string sets;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        written(folder, layered(i % 2 == 0 ? "kuhn" : "mixed"), names[i] + ".vtu");
+        sets +=
+            "<DataSet index=\"" + std::to_string(i) + "\" name=\"" + names[i] + "\" file=\"" + names[i] + ".vtu\"/>";
+    }
+    return folder.write("blocks.vtm", "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\"><vtkMultiBlockDataSet>" +
+                                          sets + "</vtkMultiBlockDataSet></VTKFile>");
+}
+
+FieldsToRead with_blocks() { return {std::vector<std::string>{}, std::vector<std::string>{"block"}}; }
+
+/// Corners of all cells of a number, as coordinates of x.
+std::vector<double> corners_of(const Grid& grid, std::int64_t number) {
+    std::vector<double> corners;
+    const Field& blocks = grid.cell_fields.at(0);
+    const std::size_t width = grid.cells.connectivity.size() / grid.cells.count(); // of cells of one type
+    for (std::size_t cell = 0; cell < grid.cells.count(); ++cell) {
+        if (blocks.values.at(cell) != static_cast<double>(number)) continue;
+        const auto at = [&](std::size_t i) {
+            return grid.cells.offsets.empty() ? width * i : static_cast<std::size_t>(grid.cells.offsets.at(i));
+        };
+        for (std::size_t i = at(cell); i < at(cell + 1); ++i)
+            corners.push_back(grid.points.at(static_cast<std::size_t>(grid.cells.connectivity.at(i)), 0));
+    }
+    return corners;
+}
+
+TEST(BlockField, HasTheCellsThatEachBlockHasAlone) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    GridOptions options;
+    for (const std::string& file : {blocks_of(folder, {"rotor", "hub", "blade"}),
+                                    test::source_folder().string() + "/data/exodus/mixed_blocks_hdf5.exo"}) {
+        options.file = file;
+        options.keep_pieces = true; // blocks lie on one another
+        options.hanging_points = HangingChoice::not_sought;
+        const GridSource source = GridSource::open(options, listener).value();
+        ASSERT_GT(source.info().blocks.size(), 1u) << file;
+        EXPECT_EQ(source.cell_names().back(), "block");
+        const Grid grid = source.read(with_blocks(), 0, listener).value();
+        ASSERT_EQ(grid.cell_fields.size(), 1u);
+        std::size_t all = 0;
+        for (const BlockInfo& block : source.info().blocks) {
+            Grid alone = source.read_block(block, 0, listener).value();
+            alone.cell_fields = {{"block", Array::own(std::vector<std::int64_t>(alone.cells.count(), block.number))}};
+            EXPECT_EQ(corners_of(grid, block.number), corners_of(alone, block.number)) << file << " " << block.number;
+            all += alone.cells.count();
+        }
+        EXPECT_EQ(all, grid.cells.count());
+        EXPECT_TRUE(std::ranges::none_of(source.read({}, 0, listener).value().cell_fields, [](const Field& field) {
+            return field.name == "block";
+        })) << "only where it is asked for";
+    }
+}
+
+TEST(BlockField, ChoosesCellsAndColoursByName) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    GridOptions options;
+    options.file = blocks_of(folder, {"rotor", "hub"});
+    options.keep_pieces = true;
+    const std::size_t cells = GridSource::open(options, listener).value().info().blocks.at(1).cells;
+    options.cells = {"!block=rotor"};
+    const GridSource source = GridSource::open(options, listener).value();
+    const Grid grid = source.read({}, 0, listener).value();
+    const auto counts = count_cells_by_type(grid.cells);
+    EXPECT_EQ(grid.cells.count() - counts.at(0), cells);
+    EXPECT_EQ(grid.cell_fields.size(), 2u) << "the field that chooses is not read by it";
+    options.cells = {"block=stator"};
+    EXPECT_FALSE(GridSource::open(options, listener));
+    DrawJob job;
+    job.grid.file = options.file;
+    job.boundary_color_by = "block";
+    job.picture.width = 80;
+    job.picture.height = 60;
+    job.out = folder.file("a.png");
+    const DrawReport drawn = draw_files(job, listener).value();
+    ASSERT_TRUE(drawn.input.scene);
+    options.cells = {};
+    options.file = written(folder, layered("kuhn"), "one.vtu");
+    EXPECT_EQ(GridSource::open(options, listener).value().cell_names(), (std::vector<std::string>{"layer", "tenth"}));
+}
+
 } // namespace
 } // namespace isotet::jobs

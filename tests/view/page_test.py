@@ -175,6 +175,42 @@ def test_boundary_alone(browser, viewer):
         browser.call('Page.navigate', url='about:blank')
 
 
+def test_blocks_by_name(browser, viewer):
+    """A file with blocks and no field of them: they colour, and each can be hidden by its name; commands know them, too."""
+    names = ['rotor', 'hub']
+    with tempfile.TemporaryDirectory() as folder:
+        for at, name in enumerate(names):
+            corners = [(at + x, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+            array = lambda of, values: f'<DataArray {of} format="ascii">{" ".join(map(str, values))}</DataArray>'
+            with open(f'{folder}/{name}.vtu', 'w', encoding='ascii') as file:
+                file.write('<VTKFile type="UnstructuredGrid" version="1.0"><UnstructuredGrid><Piece NumberOfPoints="8" NumberOfCells="1"><PointData>' +
+                           array('type="Float32" Name="p"', [x + y for x, y, _ in corners]) + '</PointData><Points>' +
+                           array('type="Float32" NumberOfComponents="3"', sum(corners, ())) + '</Points><Cells>' + array('type="Int32" Name="connectivity"', range(8)) +
+                           array('type="Int32" Name="offsets"', [8]) + array('type="UInt8" Name="types"', [12]) + '</Cells></Piece></UnstructuredGrid></VTKFile>')
+        with open(f'{folder}/both.vtm', 'w', encoding='ascii') as file:
+            file.write('<VTKFile type="vtkMultiBlockDataSet" version="1.0"><vtkMultiBlockDataSet>' +
+                       ''.join(f'<DataSet index="{i}" name="{name}" file="{name}.vtu"/>' for i, name in enumerate(names)) +
+                       '</vtkMultiBlockDataSet></VTKFile>')
+        with Viewer(f'{folder}/both.vtm') as other:
+            start(browser, other, '&f=p&i=0.7&labels=0')
+            choose(browser, '#color-by', 'block')
+            browser.wait('document.body.dataset.classes === "rotor hub"')
+            browser.click('#isosurfaces')
+            browser.wait('document.body.dataset.kinds === "boundary"')
+            browser.click('#regions-list li:nth-child(1) input')
+            browser.wait('location.hash.includes("hidden=rotor") && document.body.dataset.hidden === "rotor"')
+            browser.value('document.activeElement.blur()')
+            browser.key('v')
+            browser.wait('document.body.dataset.picked')
+            values = {one['name']: one['values'][0] for one in json.loads(browser.value('document.body.dataset.picked'))['values']}
+            check(values['block'] == 2, f'the cell is of the other block: {values}')
+            browser.click('#copy-render')
+            browser.wait('document.getElementById("copied").textContent.includes("--boundary-color-by block")')
+            words = shlex.split(browser.value('document.getElementById("copied").textContent'))
+            subprocess.run([os.environ['ISOTET_PROGRAM'], *words[1:-1], f'{folder}/p.png', '--size', '80x60', '-q'], check=True)
+            browser.call('Page.navigate', url='about:blank')
+
+
 def test_drag(browser, viewer):
     """The surface follows the hand: values between the ends are shown while it moves, the last one at the end."""
     start(browser, viewer)

@@ -51,6 +51,7 @@ struct GridOptions {
 /// Names of the fields to read; nothing: all of them.
 struct FieldsToRead {
     std::optional<std::vector<std::string>> point, cell;
+    bool blocks = false; ///< the field of GridSource::cell_names() that no file has, too, where that can be
     friend bool operator==(const FieldsToRead&, const FieldsToRead&) = default;
 };
 
@@ -83,6 +84,13 @@ public:
 
     /// Names of the point or the cell fields.
     std::vector<std::string> names(Association association) const;
+
+    /// Names of cell fields, and "block" where the file has blocks and no such field: their numbers, which are read where they
+    /// are asked for by name.
+    std::vector<std::string> cell_names() const;
+
+    /// Names of numbers of regions and of blocks.
+    std::vector<RegionName> region_names() const;
 
     /// The error for a name that is no field's: those that there are, nearest first.
     Error no_such_field(const std::string& name) const;
@@ -118,6 +126,8 @@ private:
     Result<ReadResult> read_unclosed(const FieldsToRead& fields, std::size_t step, CellsToRead cells, Caller& caller,
                                      const Run& run) const;
     Result<void> take_choices();
+    bool names_blocks(const FieldsToRead& fields) const;
+    Result<void> add_blocks(ReadResult& read, const FieldsToRead& fields) const;
     Result<void> choose(ReadResult& read, Caller& caller) const;
     Result<ReadResult> read_file(const FieldsToRead& fields, std::size_t step, ReadOptions options,
                                  const Run& run) const;
@@ -129,6 +139,7 @@ private:
     std::shared_ptr<const Grid> surface_; ///< where the file is a surface: its triangles as cells
     std::shared_ptr<const std::vector<CellChoice>> choices_; ///< those of GridOptions::cells; null: none
     FileInfo info_;
+    bool knows_blocks_ = false;                                 ///< cell_names() has "block"
     std::optional<std::size_t> described_;                      ///< the step whose fields info_ has; nothing: of several
     std::map<std::size_t, std::vector<FieldInfo>> step_fields_; ///< of the steps that were looked at
     ReadOptions read_options_;
