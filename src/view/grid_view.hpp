@@ -240,8 +240,8 @@ private:
     std::string spectrum_key_;
     std::optional<ValueRange> range_; ///< of range_key_
     std::string range_key_;
-    std::vector<double> scene_isovalues_;
-    std::optional<VolumeState> scene_volume_; ///< what scene_ draws
+    std::optional<std::vector<double>> scene_isovalues_; ///< that scene_ draws; nothing: it draws nothing yet
+    std::optional<VolumeState> scene_volume_;            ///< the same
     OpacityCurve scene_opacity_;              ///< that scene_volume_ became
     ValueRange volume_range_;                 ///< that presets of opacity are over, of volume_field_: that of the step
     std::string volume_field_;                ///< which was shown first, so that steps can be compared

@@ -81,13 +81,10 @@ Result<void> GridView::make_scene(const ShowMessage& message, const std::optiona
         if (!scene) return scene.error();
         scene_ = *std::move(scene);
         scene_key_ = key;
-        scene_isovalues_.clear();
-        scene_volume_.reset();
+        scene_isovalues_.reset();
     }
-    const bool same_volume = scene_volume_ == state.volume;
-    if (scene_isovalues_ == isovalues && same_volume) return {};
-    scene_isovalues_.clear();
-    scene_volume_.reset();
+    if (scene_isovalues_ == isovalues && scene_volume_ == state.volume) return {};
+    scene_isovalues_.reset();
     if (state.volume && scale)
         if (Result<void> looks = show_volume(state, *scale, run); !looks) return looks;
     if (Result<void> shown = scene_->show(isovalues, run); !shown) return shown;
@@ -158,9 +155,9 @@ Result<Frame> GridView::picture_frame(const ShowMessage& message, double wait_se
     }
     std::vector<FrameSurface> surfaces;
     for (const double isovalue : message.state.isovalues) {
-        if (scene_isovalues_.empty()) break; // a volume or the boundary alone
+        if (scene_isovalues_->empty()) break; // a volume or the boundary alone
         const auto which =
-            static_cast<std::size_t>(std::ranges::find(scene_isovalues_, isovalue) - scene_isovalues_.begin());
+            static_cast<std::size_t>(std::ranges::find(*scene_isovalues_, isovalue) - scene_isovalues_->begin());
         FrameSurface& surface = surfaces.emplace_back();
         surface.key = "picture";
         surface.isovalue = isovalue;
