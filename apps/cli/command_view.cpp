@@ -106,6 +106,10 @@ public:
             const std::lock_guard lock(reading_);
             return source_->read(all_fields(), step, console_, run);
         };
+        file.only_cells = [this](Grid grid, const std::vector<std::string>& cells,
+                                 const std::vector<RegionName>& regions) {
+            return source_->only_cells(std::move(grid), cells, regions);
+        };
         return file;
     }
 

@@ -501,6 +501,15 @@ Result<void> GridSource::choose(ReadResult& read, Caller& caller) const {
     return {};
 }
 
+Result<Grid> GridSource::only_cells(Grid grid, const std::vector<std::string>& cells,
+                                    const std::vector<RegionName>& regions) const {
+    const auto choices = parse_cell_choices(cells, cell_names());
+    if (!choices) return choices.error();
+    Result<ChosenCells> chosen = choose_cells(std::move(grid), *choices, regions.empty() ? region_names() : regions);
+    if (!chosen) return chosen.error();
+    return std::move(chosen->grid);
+}
+
 Result<ReadResult> GridSource::read_cells(const FieldsToRead& fields, std::size_t step, CellsToRead cells,
                                           Caller& caller, const Run& run) const {
     if (kept_)

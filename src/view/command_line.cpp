@@ -37,11 +37,11 @@ void add_isovalues(std::vector<std::string>& words, const ViewState& state) {
 }
 
 std::vector<std::string> first_words(const char* command, const std::string& file,
-                                     const std::vector<std::string>& reading,
-                                     const std::optional<std::uint64_t>& step) {
+                                     const std::vector<std::string>& reading, const ViewState& state) {
     std::vector<std::string> words{"isotet", command, file.starts_with('-') ? "./" + file : file};
     words.insert(words.end(), reading.begin(), reading.end());
-    if (step) words.insert(words.end(), {"--step", std::to_string(*step)});
+    for (const std::string& cells : state.cells) add_option(words, "--cells", cells);
+    if (state.step) words.insert(words.end(), {"--step", std::to_string(*state.step)});
     return words;
 }
 
@@ -67,7 +67,7 @@ bool is_plain(char c) {
 
 std::vector<std::string> extract_words(const ViewState& state, const std::string& file,
                                        const std::vector<std::string>& reading) {
-    std::vector<std::string> words = first_words("extract", file, reading, state.step);
+    std::vector<std::string> words = first_words("extract", file, reading, state);
     add_field(words, state);
     add_isovalues(words, state);
     words.insert(words.end(), {"-o", "surface.vtp"});
@@ -85,7 +85,7 @@ std::vector<std::string> extract_all_words(ViewState state, const std::string& f
 
 std::vector<std::string> render_words(const ViewState& state, const std::string& file,
                                       const std::vector<std::string>& reading) {
-    std::vector<std::string> words = first_words("render", file, reading, state.step);
+    std::vector<std::string> words = first_words("render", file, reading, state);
     if (state.volume) add_volume(words, *state.volume);
     const bool colors_boundary = !state.volume && state.colored_boundary && !state.color_by.empty();
     if (state.isosurfaces || state.volume || (!colors_boundary && !state.slices.empty())) add_field(words, state);

@@ -8,7 +8,7 @@ namespace isotet::view {
 
 /// The isosurface as frames have it, with all its parts.
 Result<Surface> GridView::whole_isosurface(const PartsMessage& message, double isovalue, const Run& run) {
-    const bool packed = is_packed_.load(std::memory_order_acquire) && lean_;
+    const bool packed = uses_packed() && lean_;
     if (packed) {
         const Result<PointField> field = field_of(message.state.field, run);
         if (!field) return field.error();
@@ -35,7 +35,7 @@ Result<Surface> GridView::whole_isosurface(const PartsMessage& message, double i
 
 Result<ShownParts> GridView::parts(const PartsMessage& message, const Run& run) {
     const ViewState& state = message.state;
-    if (Result<void> there = go_to_step(state.step, run); !there) return there.error();
+    if (Result<void> there = show_grid(state.step, state.cells, run); !there) return there.error();
     const double isovalue = state.isovalues.front();
     Result<Surface> surface = Surface{};
     if (state.solid && !state.volume) {
@@ -54,7 +54,7 @@ Result<ShownParts> GridView::parts(const PartsMessage& message, const Run& run) 
 }
 
 Result<double> GridView::isovalue_at(const ShareMessage& message, const Run& run) {
-    if (Result<void> there = go_to_step(message.step, run); !there) return there.error();
+    if (Result<void> there = show_grid(message.step, message.cells, run); !there) return there.error();
     const Result<PointField> field = field_of(message.field, run);
     if (!field) return field.error();
     if (message.share.of == IsovalueShare::Of::volume)

@@ -45,7 +45,7 @@ Result<Surface> GridView::boundary_of_pick(const Run& run) {
     if (!found) return Error{ErrorCode::cancelled, "the boundary is not there yet"}; // a page is told nothing
     if (Result<void> here = need_cells(run); !here) return here.error();
     Surface boundary = *found;
-    if (is_of_file()) { // its faces are cut in another way
+    if (is_of_file() && cells_.empty()) { // its faces are cut in another way
         Result<Surface> again = boundary_of(grid_, run);
         if (!again) return again;
         boundary = *std::move(again);
@@ -83,7 +83,7 @@ Result<Surface> GridView::solid_of_pick(const PickMessage& message, const Run& r
 }
 
 Result<Surface> GridView::surface_of_pick(const PickMessage& message, const Run& run) {
-    const bool packed = is_packed_.load(std::memory_order_acquire) && lean_;
+    const bool packed = uses_packed() && lean_;
     ExtractOptions with_all;
     with_all.source_cells = !packed || lean_->knows_cells();
     with_all.point_fields = grid_.point_fields;
@@ -167,6 +167,7 @@ Result<Picked> GridView::pick_along(const PickMessage& message, const Run& run) 
 }
 
 Result<Picked> GridView::pick(const PickMessage& message, const Run& run) {
+    if (Result<void> there = show_grid({}, message.state.cells, run); !there) return there.error();
     if (message.ray) return pick_along(message, run);
     const Result<Surface> surface = shown_surface(message, run);
     if (!surface) return surface.error();

@@ -209,21 +209,49 @@ Result<std::optional<ColorScale>> GridView::scale_of(const ViewState& state, con
     return std::optional(*scale);
 }
 
-/// Another step takes the place of the grid; the sessions find out what is the same.
-Result<void> GridView::go_to_step(std::optional<std::uint64_t> wanted, const Run& run) {
-    if (!wanted || *wanted == step_) return {};
+/// With all of its cells, unless it is of a file and has none.
+Result<Grid> GridView::grid_of_step(std::optional<std::uint64_t> wanted, const Run& run) {
+    Grid now = grid_;
+    if (all_cells_) now.cells = *all_cells_;
+    if (!wanted || *wanted == step_) return now;
     if (!steps_ || *wanted >= options_.steps)
         return Error{ErrorCode::invalid_argument,
                      fmt::format("step {} is asked for, but the file has steps 0 to {}", *wanted, options_.steps - 1)};
     Result<Grid> grid = steps_->take(*wanted, run);
+    if (grid && is_of_file()) grid->cells = now.cells; // all steps have the same
+    return grid;
+}
+
+/// Another step, or its cells, take the place of the grid; the sessions find out what is the same.
+Result<void> GridView::show_grid(std::optional<std::uint64_t> wanted, const std::vector<std::string>& cells,
+                                 const Run& run) {
+    const bool other_cells = options_.only_cells && cells != cells_;
+    if ((!wanted || *wanted == step_) && !other_cells) return {};
+    const std::vector<std::string>& chosen = options_.only_cells ? cells : cells_;
+    if (!chosen.empty())
+        if (Result<void> here = need_cells(run); !here) return here;
+    Result<Grid> grid = grid_of_step(wanted, run);
     if (!grid) return grid.error();
-    if (is_of_file()) grid->cells = grid_.cells; // all steps have the same
-    const bool same = is_of_file() || same_cells(*grid, grid_);
+    Cells all = grid->cells;
+    if (!chosen.empty()) {
+        grid = options_.only_cells(*std::move(grid), chosen);
+        if (!grid) return grid.error();
+    }
+    const bool all_same = is_of_file() && chosen.empty() && cells_.empty();
+    const bool same = all_same || same_cells(*grid, grid_);
     {
         const std::lock_guard lock(grid_mutex_);
         grid_ = *std::move(grid);
-        step_ = *wanted;
+        all_cells_ = chosen.empty() ? std::nullopt : std::optional(std::move(all));
+        step_ = wanted.value_or(step_);
         if (!same) ++grid_number_;
+    }
+    if (other_cells) {
+        cells_ = cells;
+        direct_.contour.reset();
+        solids_.reset();
+        scene_.reset();
+        spectrum_.reset();
     }
     found_.clear();
     if (!same) return find_boundary(run);
@@ -258,8 +286,9 @@ Result<void> GridView::pack(const std::string& field, const Run& run) {
     if (is_of_file()) return {};
     // The cache of fields is frame()'s: this thread finds its own, in a copy that shares the arrays.
     std::unique_lock lock(grid_mutex_);
-    const Grid grid = grid_;
+    Grid grid = grid_;
     const std::size_t step = step_;
+    if (all_cells_) grid.cells = *all_cells_;
     lock.unlock();
     if (has_only_flat_cells(grid.cells)) return {};
     Result<PointField> contoured = find_field(grid, field, {}, run);
@@ -294,8 +323,10 @@ Result<void> GridView::find_boundary(const Run& run) {
     std::unique_lock lock(grid_mutex_);
     const Grid grid = grid_;
     const std::uint64_t number = grid_number_;
+    const bool all = !all_cells_;
     lock.unlock();
-    Result<Surface> boundary = is_of_file() ? PackedSource(*options_.packed).boundary(run) : drawn_boundary(grid, run);
+    Result<Surface> boundary =
+        is_of_file() && all ? PackedSource(*options_.packed).boundary(run) : drawn_boundary(grid, run);
     if (!boundary) return boundary.error();
     Result<Mesh> mesh = mesh_of(*boundary, nullptr, run);
     if (!mesh) return mesh.error();
@@ -330,7 +361,7 @@ Result<void> GridView::need_cells(const Run& run) {
 }
 
 void GridView::rest() {
-    if (is_packed_.load(std::memory_order_acquire) && lean_ && has_cells_ && !solids_) {
+    if (uses_packed() && lean_ && has_cells_ && !solids_) {
         if (!sample_) sample_ = sample_of_cells(grid_);
         if (cells_sum_ == 0) cells_sum_ = sum_of(grid_.cells);
         direct_.contour.reset();
@@ -359,7 +390,7 @@ Result<ExtractOptions> GridView::carried_fields(const std::string& color_by, con
 }
 
 Result<GridView::Source*> GridView::source_for(const ViewState& state, const Run& run) {
-    const bool packed = is_packed_.load(std::memory_order_acquire);
+    const bool packed = uses_packed();
     Source& source = packed ? packed_ : direct_;
     if (packed) direct_.contour.reset();
     if (!source.isovalues.empty() && source.isovalues != state.isovalues) source.contour.reset();
@@ -388,12 +419,12 @@ Result<GridView::Source*> GridView::source_for(const ViewState& state, const Run
     return &source;
 }
 
-Result<Chart> GridView::chart(const std::string& field, std::optional<std::uint64_t> step, const Run& run) {
-    if (Result<void> there = go_to_step(step, run); !there) return there.error();
+Result<Chart> GridView::chart(const std::string& field, std::optional<std::uint64_t> step, const Run& run,
+                              const std::vector<std::string>& cells) {
+    if (Result<void> there = show_grid(step, cells, run); !there) return there.error();
     const Result<PointField> found = field_of(field, run);
     if (!found) return found.error();
-    if (is_packed_.load(std::memory_order_acquire) &&
-        has_cells_to_linearize(grid_.cells)) { // the linear ones are known
+    if (uses_packed() && has_cells_to_linearize(grid_.cells)) { // the linear ones are known
         ViewState state;
         state.field = field;
         state.color_by = packed_.color_by;
@@ -412,10 +443,10 @@ Result<Chart> GridView::chart(const std::string& field, std::optional<std::uint6
     return chart;
 }
 
-Result<ContourSpectrum> GridView::spectrum(const std::string& field, std::optional<std::uint64_t> step,
-                                           const Run& run) {
+Result<ContourSpectrum> GridView::spectrum(const std::string& field, std::optional<std::uint64_t> step, const Run& run,
+                                           const std::vector<std::string>& cells) {
     constexpr std::uint64_t steps = 256;
-    if (Result<void> there = go_to_step(step, run); !there) return there.error();
+    if (Result<void> there = show_grid(step, cells, run); !there) return there.error();
     const std::string key = fmt::format("{}|{}", step_, field);
     if (spectrum_ && spectrum_key_ == key) return *spectrum_;
     const Result<PointField> found = field_of(field, run);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -46,6 +47,8 @@ struct GridViewOptions {
     std::uint64_t cells = 0;          ///< of it, of which the grid has some
     ReadStep read_cells;              ///< with `packed`: of any step with all cells
     std::vector<RegionName> regions;  ///< names of numbers of regions
+    std::function<Result<Grid>(Grid grid, const std::vector<std::string>& cells)>
+        only_cells; ///< empties other cells, for ViewState::cells; nothing: all are shown
 };
 
 /// A frame in bytes. `known` of GridView::frame() are then the surfaces that the page has.
@@ -113,12 +116,14 @@ public:
 
     /// Of a step, which is read where it is not the one at hand; nothing: that one.
     /// Errors   as find_field(), statistics_of() and of reading
-    Result<Chart> chart(const std::string& field, std::optional<std::uint64_t> step, const Run& run = {});
+    Result<Chart> chart(const std::string& field, std::optional<std::uint64_t> step, const Run& run = {},
+                        const std::vector<std::string>& cells = {});
 
     /// Area and volume over the range of a field. The last answer is kept.
     /// `step`   as above
     /// Errors   as find_field(), contour_spectrum() and of reading
-    Result<ContourSpectrum> spectrum(const std::string& field, std::optional<std::uint64_t> step, const Run& run = {});
+    Result<ContourSpectrum> spectrum(const std::string& field, std::optional<std::uint64_t> step, const Run& run = {},
+                                     const std::vector<std::string>& cells = {});
     std::size_t step() const noexcept { return step_; } ///< that was asked for last
 
     /// All fields, and the cell, at the point of the isosurface or slice that is nearest.
@@ -189,7 +194,9 @@ private:
     Result<void> show_volume(const ViewState& state, const ColorScale& scale, const Run& run);
     Result<OpacityCurve> opacity_of_volume(const ViewState& state, const Run& run);
     std::optional<ColorField> color_field(const ViewState& state, const ColorScale& scale, const Run& run);
-    Result<void> go_to_step(std::optional<std::uint64_t> wanted, const Run& run);
+    Result<void> show_grid(std::optional<std::uint64_t> wanted, const std::vector<std::string>& cells, const Run& run);
+    Result<Grid> grid_of_step(std::optional<std::uint64_t> wanted, const Run& run);
+    bool uses_packed() const { return is_packed_.load(std::memory_order_acquire) && cells_.empty(); }
     void read_ahead(const ShowMessage& message);
     Result<void> tell_field(const std::string& field, FrameFacts& facts, const Run& run);
     Result<Shown> refined_at(const ViewState& state, double isovalue, const std::string& key, FrameParts& making,
@@ -216,7 +223,9 @@ private:
                     const std::vector<std::string>& known, FrameParts& making);
 
     mutable std::mutex grid_mutex_; ///< of grid_, grid_number_ and step_, while another thread may copy them
-    Grid grid_;                     ///< without cells where has_cells_ is false
+    Grid grid_;                     ///< without cells where has_cells_ is false; of `cells_` where these are chosen
+    std::vector<std::string> cells_; ///< as ViewState::cells
+    std::optional<Cells> all_cells_; ///< of grid_ where cells are chosen
     std::uint64_t grid_number_ = 0; ///< another one when cells or points are others
     bool has_cells_ = true;
     std::uint64_t cell_count_ = 0;

@@ -27,15 +27,21 @@ std::string color_key(const ViewState& state) {
     return key;
 }
 
+std::string cells_key(const ViewState& state) {
+    std::string key;
+    for (const std::string& cells : state.cells) key += "|cells " + cells;
+    return key;
+}
+
 std::string mesh_key(const ViewState& state, double isovalue, std::size_t step) {
     std::string key = fmt::format("{}|{}|{}", isovalue, state.field, step);
     if (state.keep) key += "|" + to_text(*state.keep);
-    return key + color_key(state);
+    return key + cells_key(state) + color_key(state);
 }
 
 std::string slice_key(const ViewState& state, const Plane& plane, std::size_t step) {
     return fmt::format("slice|{},{},{}|{}|{}", plane.normal[0], plane.normal[1], plane.normal[2], plane.offset, step) +
-           color_key(state);
+           cells_key(state) + color_key(state);
 }
 
 /// Triangles of a surface above which a preview is sent.
@@ -212,7 +218,7 @@ Result<std::shared_ptr<const Mesh>> GridView::slice_at(const ViewState& state, c
                                                        FrameFacts& facts, const Run& run) {
     if (auto kept = kept_mesh(key)) return kept;
     const auto cut = [&]() -> Result<Surface> {
-        if (is_packed_.load(std::memory_order_acquire) && lean_) {
+        if (uses_packed() && lean_) {
             const Result<ExtractOptions> options = carried_fields(state.color_by, run);
             if (!options) return options.error();
             return lean_->slice(grid_.points, plane, *options, run);
@@ -252,7 +258,7 @@ void GridView::add(FrameSurface surface, const std::shared_ptr<const Mesh>& mesh
 Result<void> GridView::add_isosurfaces(const ShowMessage& message, const std::vector<std::string>& known,
                                        FrameParts& making, const Run& run) {
     const ViewState& state = message.state;
-    const bool packed = is_packed_.load(std::memory_order_acquire), lean = packed && lean_;
+    const bool packed = uses_packed(), lean = packed && lean_;
     if (!state.isosurfaces) {
         making.facts.method = name_of(packed ? Method::clusters : Method::direct);
         return {};
@@ -331,7 +337,7 @@ Result<Surface> GridView::colored_boundary(Surface boundary, std::uint64_t numbe
         return boundary;
     }
     if (Result<void> here = need_cells(run); !here) return here.error();
-    if (is_of_file()) { // its faces are cut in another way
+    if (is_of_file() && cells_.empty()) { // its faces are cut in another way
         Result<Surface> found = boundary_of(grid_, run);
         if (!found) return found;
         boundary = *std::move(found);
@@ -381,7 +387,7 @@ Result<void> GridView::add_boundary(const ViewState& state, const std::vector<st
 Result<FrameParts> GridView::frame_parts(const ShowMessage& message, const std::vector<std::string>& known,
                                          const Run& run) {
     const ViewState& state = message.state;
-    if (Result<void> there = go_to_step(state.step, run); !there) return there.error();
+    if (Result<void> there = show_grid(state.step, state.cells, run); !there) return there.error();
     scene_.reset();
     Result<std::optional<ColorScale>> scale = scale_of(state, run);
     if (!scale) return scale.error();
@@ -401,7 +407,7 @@ Result<FrameParts> GridView::frame_parts(const ShowMessage& message, const std::
 
 Result<Frame> GridView::frame(const ShowMessage& message, double wait_seconds, std::vector<std::string>& known,
                               const Run& run) {
-    if (Result<void> there = go_to_step(message.state.step, run); !there) return there.error();
+    if (Result<void> there = show_grid(message.state.step, message.state.cells, run); !there) return there.error();
     read_ahead(message);
     if (message.picture) return picture_frame(message, wait_seconds, known, run);
     Result<FrameParts> parts = frame_parts(message, known, run);

@@ -42,14 +42,18 @@ bool message_flag(const Json& json, std::string_view key) {
     return flag && flag->is_boolean() && flag->get<bool>();
 }
 
-/// The field and the step that a question is about.
-Result<std::pair<std::string, std::optional<std::uint64_t>>> field_of_step(const Json& json) {
+/// The field, the step and the cells that a question is about.
+Result<ChartMessage> field_of_step(const Json& json) {
     auto field = message_text(json, "field", max_name_bytes);
     if (!field) return wrong_message("\"field\" takes a name");
+    ChartMessage question{*std::move(field)};
+    if (const Json* cells = find(json, "cells"); cells && !take_cells(*cells, question.cells))
+        return wrong_message("\"cells\" takes a few texts");
     const Json* number = find(json, "step");
     const auto step = number ? whole_number(*number) : std::nullopt;
     if (number && !step) return wrong_message("\"step\" takes a whole number");
-    return std::pair(*std::move(field), step);
+    question.step = step;
+    return question;
 }
 
 Result<PageMessage> parse_show(const Json& json, bool refined) {
@@ -124,9 +128,11 @@ Result<PageMessage> parse_share(const Json& json) {
         return wrong_message("a share is \"of\" volume or points, and \"percent\" takes a number");
     auto question = field_of_step(json);
     if (!question) return question.error();
-    auto& [field, step] = *question;
-    return PageMessage(ShareMessage{
-        std::move(field), step, {of == "volume" ? IsovalueShare::Of::volume : IsovalueShare::Of::points, *percent}});
+    auto& [field, step, cells] = *question;
+    return PageMessage(ShareMessage{std::move(field),
+                                    step,
+                                    {of == "volume" ? IsovalueShare::Of::volume : IsovalueShare::Of::points, *percent},
+                                    std::move(cells)});
 }
 
 Result<PageMessage> parse_save(const Json& json) {
@@ -173,9 +179,8 @@ Result<PageMessage> parse_known(const std::string& action, const Json& json) {
     if (action == "chart" || action == "spectrum") {
         auto question = field_of_step(json);
         if (!question) return question.error();
-        auto& [field, step] = *question;
-        if (action == "chart") return PageMessage(ChartMessage{std::move(field), step});
-        return PageMessage(SpectrumMessage{std::move(field), step});
+        if (action == "chart") return PageMessage(*std::move(question));
+        return PageMessage(SpectrumMessage{std::move(question->field), question->step, std::move(question->cells)});
     }
     if (action == "command") {
         Result<ViewState> state = message_state(json);

@@ -50,16 +50,18 @@ struct ShownMessage {
     std::uint64_t number = 0;
 };
 
-/// {"do": "chart", "field": name, "step": n}
+/// {"do": "chart", "field": name, "step": n, "cells": [...]}
 struct ChartMessage {
     std::string field;
     std::optional<std::uint64_t> step = {}; ///< nothing: the one that was read last
+    std::vector<std::string> cells = {};    ///< as ViewState::cells
 };
 
-/// {"do": "spectrum", "field": name, "step": n}: area and volume against the isovalue, when nothing else is to be done.
+/// {"do": "spectrum", "field": name, "step": n, "cells": [...]}: area and volume against the isovalue, when nothing else is to be done.
 struct SpectrumMessage {
     std::string field;
     std::optional<std::uint64_t> step = {}; ///< as ChartMessage::step
+    std::vector<std::string> cells = {};    ///< as ViewState::cells
 };
 
 /// {"do": "command", "state": ...}: the state as command lines.
@@ -90,11 +92,13 @@ struct PartsMessage {
     bool refined = false; ///< curved cells are, as ShowMessage::refined
 };
 
-/// {"do": "share", "field": name, "step": n, "of": "volume" or "points", "percent": p}: the isovalue of a share.
+/// {"do": "share", "field": name, "step": n, "of": "volume" or "points", "percent": p, "cells": [...]}: the isovalue
+/// of a share.
 struct ShareMessage {
     std::string field;
     std::optional<std::uint64_t> step = {}; ///< as ChartMessage::step
     IsovalueShare share = {};
+    std::vector<std::string> cells = {}; ///< as ViewState::cells
 };
 
 /// {"do": "save", "kind": ..., "name": ..., "state": ..., "width": w, "height": h, "from": a, "to": b, "pictures": n,

@@ -256,6 +256,13 @@ constexpr PageOption more_page_options[] = {
          pasting.pasted.state.stretch = {(*factors)[0], (*factors)[1], (*factors)[2]};
          return true;
      }},
+    {"--cells", "", "FIELD=LIST, at most 8 times",
+     [](Pasting& pasting, const std::string& value) {
+         std::vector<std::string>& cells = pasting.pasted.state.cells;
+         if (value.size() > max_name_bytes || cells.size() >= max_cell_choices) return false;
+         cells.push_back(value);
+         return true;
+     }},
     {"--step", "", "a whole number",
      [](Pasting& pasting, const std::string& value) {
          std::uint64_t step = 0;
@@ -276,7 +283,8 @@ const PageOption* find_option(std::string_view name, OptionsOf command) {
         });
         return found == options.end() ? nullptr : &*found;
     };
-    if (command == OptionsOf::slice) return name == "--step" ? find_in(more_page_options) : find_in(slice_options);
+    if (command == OptionsOf::slice)
+        return name == "--step" || name == "--cells" ? find_in(more_page_options) : find_in(slice_options);
     for (const std::span<const PageOption> options :
          {std::span<const PageOption>(page_options), std::span<const PageOption>(more_page_options),
           std::span<const PageOption>(look_options)})
@@ -413,6 +421,8 @@ Result<PastedCommand> state_of_command(std::string_view text, const std::vector<
             return Error{ErrorCode::invalid_argument,
                          fmt::format("{} got '{}', but it takes {}", option->name, value, option->rule)};
     }
+    for (std::size_t i = 0; i + 1 < reading.size(); ++i) // the page's file has no other ones
+        if (reading[i] == "--cells") std::erase(pasting.pasted.state.cells, reading[i + 1]);
     finish(pasting);
     ViewState& state = pasting.pasted.state;
     if (state.boundary == not_given) state.boundary = state.colored_boundary ? 1 : usual_boundary(state);

@@ -105,6 +105,16 @@ bool same_planes(const std::vector<Plane>& a, const std::vector<Plane>& b) {
 
 } // namespace
 
+bool take_cells(const Json& json, std::vector<std::string>& cells) {
+    if (!json.is_array() || json.size() > max_cell_choices) return false;
+    for (const Json& one : json) {
+        const std::string* choice = text(one);
+        if (!choice || choice->size() > max_name_bytes) return false;
+        cells.push_back(*choice);
+    }
+    return true;
+}
+
 std::string_view name_of(SolidSide side) { return side == SolidSide::above ? "above" : "below"; }
 
 std::optional<SolidSide> parse_solid_side(std::string_view name) {
@@ -129,7 +139,7 @@ bool operator==(const ViewState& a, const ViewState& b) {
            range(a) == range(b) && a.logarithmic == b.logarithmic && a.opacity == b.opacity && a.outline == b.outline &&
            camera(a) == camera(b) && a.boundary == b.boundary && a.isosurfaces == b.isosurfaces &&
            a.colored_boundary == b.colored_boundary && a.edges == b.edges && a.solid == b.solid && a.keep == b.keep &&
-           same_planes(a.clips, b.clips) && same_planes(a.slices, b.slices) && a.step == b.step &&
+           same_planes(a.clips, b.clips) && same_planes(a.slices, b.slices) && a.step == b.step && a.cells == b.cells &&
            a.volume == b.volume && a.stretch == b.stretch;
 }
 
@@ -148,6 +158,7 @@ Json to_json(const ViewState& state) {
                  {"slices", planes_json(state.slices)}};
     if (state.solid) json["solid"] = name_of(*state.solid);
     if (state.keep) json["keep"] = to_text(*state.keep);
+    if (!state.cells.empty()) json["cells"] = state.cells;
     if (state.step) json["step"] = *state.step;
     if (state.range) json["range"] = {state.range->lower, state.range->upper};
     if (state.stretch) json["stretch"] = *state.stretch;
@@ -189,6 +200,8 @@ Result<ViewState> state_of(const Json& json) {
         if (choice) state.keep = parse_shown_parts(*choice);
         return state.keep.has_value();
     });
+    reader.read("cells", fmt::format("at most {} texts of at most 4096 bytes", max_cell_choices),
+                [&](const Json& value) { return take_cells(value, state.cells); });
     reader.read("step", "a whole number", [&](const Json& value) {
         state.step = whole_number(value);
         return state.step.has_value();

@@ -23,6 +23,7 @@ namespace isotet::view {
 inline constexpr std::size_t max_isovalues = 32;
 inline constexpr std::size_t max_name_bytes = 4096;
 inline constexpr std::size_t max_planes = 6;            ///< to clip with, and as many slices
+inline constexpr std::size_t max_cell_choices = 8;
 inline constexpr double default_boundary_opacity = 0.1; ///< as SceneLook has it
 
 /// The field as a volume, as isotet render --volume draws it: the server draws.
@@ -54,9 +55,13 @@ struct ViewState {
     std::optional<PartChoice> keep;             ///< of each surface or solid only these connected parts; touching the
                                                 ///< boundary only
     std::vector<Plane> clips, slices;           ///< as SceneLook; at most `max_planes` each
+    std::vector<std::string> cells;             ///< as GridOptions::cells: others are left out of all that is shown
     std::optional<std::uint64_t> step;          ///< nothing: the one that is read
     std::optional<VolumeState> volume;          ///< coloured by `field`, as then nothing is by another one
 };
+
+/// Texts of --cells as messages have them: at most `max_cell_choices`, none longer than `max_name_bytes`.
+bool take_cells(const Json& json, std::vector<std::string>& cells);
 
 /// "above" and "below", and back.
 std::string_view name_of(SolidSide side);

@@ -22,13 +22,14 @@ public:
         return std::move(frame->bytes);
     }
     Result<std::string> chart(const ChartMessage& message, const Run& run) override {
-        const Result<Chart> chart = view_.chart(message.field, message.step, {threads_, run.progress});
+        const Result<Chart> chart = view_.chart(message.field, message.step, {threads_, run.progress}, message.cells);
         if (!chart) return chart.error();
         return chart_text(message.field, view_.step(), *chart);
     }
 
     Result<std::string> spectrum(const SpectrumMessage& message, const Run& run) override {
-        const Result<ContourSpectrum> spectrum = view_.spectrum(message.field, message.step, {threads_, run.progress});
+        const Result<ContourSpectrum> spectrum =
+            view_.spectrum(message.field, message.step, {threads_, run.progress}, message.cells);
         if (!spectrum) return spectrum.error();
         return spectrum_text(message.field, view_.step(), *spectrum);
     }
@@ -155,6 +156,10 @@ void ViewedFile::read_and_pack() {
     view_options.packed = std::move(input->packed);
     view_options.cells = input->cells;
     view_options.read_cells = file_.read_cells;
+    if (file_.only_cells)
+        view_options.only_cells = [this, regions = input->regions](Grid grid, const std::vector<std::string>& cells) {
+            return file_.only_cells(std::move(grid), cells, regions);
+        };
     view_options.refine = options_.refine;
     view_options.regions = input->regions;
     Result<std::unique_ptr<GridView>> made = GridView::create(std::move(input->grid), view_options);

@@ -25,6 +25,9 @@ struct ViewerFile {
     std::function<Result<ViewerInput>(const Run&)> read; ///< called by a thread of its own
     ReadStep read_step;  ///< of any step, as ViewerInput has it; nothing: the file is not read again
     ReadStep read_cells; ///< the same with all cells, where ViewerInput has some
+    std::function<Result<Grid>(Grid grid, const std::vector<std::string>& cells,
+                               const std::vector<RegionName>& regions)>
+        only_cells; ///< empties others, as GridOptions::cells; nothing: all are shown
 };
 
 struct ViewerOptions {

@@ -157,6 +157,21 @@ TEST(ChosenCells, HaveTheFacesBetweenRegionsAsBoundary) {
     EXPECT_EQ(boundary_of(chosen(file, {"layer=1"})).value().triangle_count(), 2u * 32 + 4 * 16);
 }
 
+TEST(ChosenCells, OfAGridThatWasReadAreThoseOfReadingIt) {
+    const test::TemporaryFolder folder;
+    GridOptions options;
+    options.file = written(folder, layered("mixed"));
+    Listener listener;
+    const GridSource source = GridSource::open(options, listener).value();
+    const Grid whole = source.read({}, 0, listener).value();
+    const Grid some = source.only_cells(whole, {"!layer=0", "tenth=:0.15"}, {}).value();
+    EXPECT_EQ(kept(some), kept(chosen(options.file, {"layer=1"})));
+    EXPECT_FALSE(source.only_cells(whole, {"layer=7"}, {}));
+    EXPECT_FALSE(source.only_cells(whole, {"depth=1"}, {}));
+    EXPECT_FALSE(source.only_cells(whole, {"layer=sand"}, {}));
+    EXPECT_TRUE(source.only_cells(whole, {"layer=sand"}, {{"layer", 2, "sand"}}));
+}
+
 TEST(ChosenCells, LeaveAllNumbersAsTheyAre) {
     const test::TemporaryFolder folder;
     const std::string file = written(folder, layered("mixed"));

@@ -122,12 +122,14 @@ TEST(StateOfCommand, TakesVolumesWithSurfacesAndWithout) {
 }
 
 TEST(StateOfCommand, NamesWhatItDoesNotTake) {
-    const auto pasted = state_of_command("isotet render x.vtu -f p -i 0.2 --view +x --zoom=2 --boundary-color-by p "
-                                         "--scale 1,1,5 --merge-points 0 --block a -q --size 800x600 -o y.png",
-                                         {"--merge-points", "0", "--block", "b"});
+    const auto pasted = state_of_command(
+        "isotet render x.vtu -f p -i 0.2 --view +x --zoom=2 --boundary-color-by p "
+        "--scale 1,1,5 --merge-points 0 --block a --cells a=1 --cells '!b=s,2' -q --size 800x600 -o y.png",
+        {"--merge-points", "0", "--block", "b", "--cells", "a=1"});
     ASSERT_TRUE(pasted) << pasted.error().message;
     EXPECT_EQ(pasted->file, "x.vtu");
     EXPECT_EQ(pasted->left_out, (std::vector<std::string>{"--block a"}));
+    EXPECT_EQ(pasted->state.cells, std::vector<std::string>{"!b=s,2"}) << "the file is read with the other ones";
     EXPECT_EQ(pasted->state.stretch, (std::array<double, 3>{1, 1, 5}));
     ASSERT_TRUE(pasted->look);
     EXPECT_EQ(pasted->look->camera.direction, (std::array<double, 3>{1, 0, 0}));

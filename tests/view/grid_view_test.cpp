@@ -926,6 +926,178 @@ TEST_F(LeanGridView, SaysThatTheFileHasChanged) {
         << spectrum.error().message;
 }
 
+/// The cells before a number are empty.
+Grid from_cell(Grid grid, std::size_t first) {
+    std::vector<std::uint8_t> types(grid.cells.count(), 10);
+    std::fill_n(types.begin(), first, std::uint8_t{0});
+    std::vector<std::uint64_t> offsets(types.size() + 1);
+    for (std::size_t i = 0; i < offsets.size(); ++i) offsets[i] = 4 * i;
+    grid.cells.types = Array::own(std::move(types));
+    grid.cells.offsets = Array::own(std::move(offsets));
+    return grid;
+}
+
+/// "cell=N:" in place of isotet::jobs::choose_cells().
+Result<Grid> cells_from(Grid grid, const std::vector<std::string>& cells) {
+    const std::size_t first = std::stoul(cells.front().substr(5));
+    if (first >= grid.cells.count()) return Error{ErrorCode::invalid_argument, "`cells`: none is left"};
+    return from_cell(std::move(grid), first);
+}
+
+class ChosenCellsTest : public testing::Test {
+protected:
+    static constexpr std::size_t side = 12;
+    Grid grid_ = made_grid(side);
+    std::size_t half_ = grid_.cells.count() / 2;
+    int reads_ = 0;
+    std::unique_ptr<GridView> view_, all_ = with_boundary(grid_, {}),
+                                     chosen_ = with_boundary(from_cell(grid_, half_), {});
+
+    static std::unique_ptr<GridView> with_boundary(Grid grid, const GridViewOptions& options) {
+        auto view = GridView::create(std::move(grid), options).value();
+        EXPECT_TRUE(view->find_boundary({}));
+        return view;
+    }
+    GridViewOptions options() {
+        GridViewOptions options;
+        options.only_cells = cells_from;
+        options.read_step = [this](std::size_t, const isotet::Run&) -> Result<Grid> {
+            ++reads_;
+            return made_grid(side);
+        };
+        return options;
+    }
+    std::vector<std::string> from_half() const { return {"cell=" + std::to_string(half_) + ":"}; }
+    static std::vector<std::uint64_t> triangles(GridView& view, const ShowMessage& message) {
+        std::vector<std::string> known;
+        const Json head = head_of(view.frame(message, 0, known, {}).value().bytes);
+        std::vector<std::uint64_t> counts;
+        for (const Json& surface : head["surfaces"]) counts.push_back(surface["triangles"].get<std::uint64_t>());
+        return counts;
+    }
+    /// Of surfaces, solids, slices and the boundary.
+    static std::vector<std::uint64_t> triangles_of_all(GridView& view, const std::vector<std::string>& cells) {
+        std::vector<std::uint64_t> counts;
+        for (const bool solid : {false, true}) {
+            ShowMessage message = show(1, {0.7, 0.4});
+            message.state.cells = cells;
+            message.state.color_by = "seventh";
+            message.state.boundary = 1;
+            message.state.colored_boundary = solid;
+            message.state.slices = {Plane{{1, 2, 0.5}, 0.1}};
+            if (solid) message.state.solid = SolidSide::above;
+            const auto some = triangles(view, message);
+            counts.insert(counts.end(), some.begin(), some.end());
+        }
+        return counts;
+    }
+    void expect_chosen_and_all() {
+        const auto all = triangles_of_all(*all_, {}), chosen = triangles_of_all(*chosen_, {});
+        EXPECT_NE(chosen, all);
+        for (int i = 0; i < 2; ++i) {
+            EXPECT_EQ(triangles_of_all(*view_, from_half()), chosen);
+            EXPECT_EQ(view_->spectrum("sphere", {}, {}, from_half()).value().area,
+                      chosen_->spectrum("sphere", {}).value().area);
+            EXPECT_EQ(view_->chart("sphere", {}, {}, from_half()).value().triangles,
+                      chosen_->chart("sphere", {}).value().triangles);
+            PickMessage pick;
+            pick.state = show(1, {0.7}).state;
+            pick.state.cells = from_half();
+            pick.boundary = true;
+            EXPECT_GE(view_->pick(pick, {}).value().cell, half_);
+            view_->rest();
+            EXPECT_EQ(triangles_of_all(*view_, {}), all);
+            EXPECT_EQ(view_->spectrum("sphere", {}).value().area, all_->spectrum("sphere", {}).value().area);
+            view_->rest();
+        }
+    }
+};
+
+TEST_F(ChosenCellsTest, AreThoseOfAGridThatHasNoOthersDirectAndPacked) {
+    GridViewOptions without_reading = options();
+    without_reading.read_step = {};
+    view_ = with_boundary(grid_, without_reading);
+    expect_chosen_and_all();
+    ASSERT_TRUE(view_->pack("sphere", {}));
+    expect_chosen_and_all();
+}
+
+TEST_F(ChosenCellsTest, PackingThatBeginsThenHasAllCells) {
+    view_ = with_boundary(grid_, options());
+    triangles_of_all(*view_, from_half());
+    ASSERT_TRUE(view_->pack("sphere", {}));
+    EXPECT_EQ(triangles_of_all(*view_, {}), triangles_of_all(*all_, {}));
+}
+
+TEST_F(ChosenCellsTest, BringReleasedCellsBack) {
+    view_ = with_boundary(grid_, options());
+    ASSERT_TRUE(view_->pack("sphere", {}));
+    view_->rest();
+    EXPECT_FALSE(view_->has_cells());
+    expect_chosen_and_all();
+    EXPECT_GE(reads_, 1);
+    triangles(*view_, show(2, {0.7})); // without solids
+    view_->rest();
+    EXPECT_FALSE(view_->has_cells());
+}
+
+TEST_F(ChosenCellsTest, StayInOtherSteps) {
+    GridViewOptions with_steps = options();
+    with_steps.steps = 3;
+    view_ = with_boundary(grid_, with_steps);
+    ASSERT_TRUE(view_->pack("sphere", {}));
+    ShowMessage message = show(1, {0.7});
+    message.state.cells = from_half();
+    const auto first = triangles(*view_, message);
+    message.state.step = 2;
+    EXPECT_EQ(triangles(*view_, message), first);
+    EXPECT_EQ(triangles(*chosen_, show(1, {0.7})), first);
+    message.state.cells.clear();
+    EXPECT_EQ(triangles(*view_, message), triangles(*all_, show(1, {0.7})));
+}
+
+TEST_F(GridViewTest, PicturesHaveTheBoundaryAlone) {
+    ShowMessage message = show(1, {0.7});
+    message.picture = {120, 90};
+    message.state.isosurfaces = false;
+    message.state.boundary = 1;
+    message.state.color_by = "gyroid";
+    message.state.colored_boundary = true;
+    message.state.camera = camera_of(30, 20);
+    message.state.camera->distance = 8;
+    const std::size_t seen = view_->frame(message, 0, known_, {}).value().bytes.size();
+    message.state.boundary = 0;
+    EXPECT_GT(seen, view_->frame(message, 0, known_, {}).value().bytes.size() + 1000);
+}
+
+TEST_F(ChosenCellsTest, PicturesHaveNoOthers) {
+    view_ = with_boundary(grid_, options());
+    ShowMessage message = show(1, {0.7});
+    message.picture = {120, 90};
+    message.state.boundary = 1;
+    message.state.camera = camera_of(30, 20);
+    message.state.camera->distance = 8;
+    const auto bytes = [&](GridView& view) {
+        std::vector<std::string> known;
+        return view.frame(message, 0, known, {}).value().bytes;
+    };
+    const auto end_of = [](const std::string& frame) { return frame.substr(frame.size() - 400); };
+    const std::string all = bytes(*view_), chosen = bytes(*chosen_);
+    message.state.cells = from_half();
+    const std::string now = bytes(*view_);
+    EXPECT_EQ(end_of(now), end_of(chosen));
+    EXPECT_NE(end_of(now), end_of(all));
+}
+
+TEST_F(ChosenCellsTest, ThatLeaveNothingAreRefusedAndTheGridStays) {
+    view_ = with_boundary(grid_, options());
+    ShowMessage message = show(1, {0.7});
+    message.state.cells = {"cell=99999999:"};
+    std::vector<std::string> known;
+    EXPECT_FALSE(view_->frame(message, 0, known, {}));
+    EXPECT_EQ(triangles_of_all(*view_, {}), triangles_of_all(*all_, {}));
+}
+
 /// A grid that lies in a packed file of two steps, beside the same grid in memory.
 class GridViewOfFile : public testing::Test {
 protected:
@@ -952,6 +1124,7 @@ protected:
         options.packed = PackedFile::open(path_).value();
         options.cells = grid_.cells.count();
         options.read_step = [this](std::size_t step, const isotet::Run&) { return read_step(step, 100); };
+        options.only_cells = cells_from;
         options.read_cells = [this](std::size_t step, const isotet::Run&) {
             ++reads_;
             return read_step(step, 0);
@@ -1022,6 +1195,29 @@ TEST_F(GridViewOfFile, ShowsStepsByTheirValuesAlone) {
     message.state.step = 0;
     EXPECT_EQ(triangles(*of_file_, message), triangles(*full_, show(1, {1.4})));
     EXPECT_EQ(reads_, 0);
+}
+
+TEST_F(GridViewOfFile, ReadsAllCellsWhereSomeAreChosenAndGivesThemBack) {
+    ShowMessage message = show(1, {0.7});
+    message.state.boundary = 1;
+    const auto all = triangles(*of_file_, message);
+    const std::size_t half = grid_.cells.count() / 2;
+    const auto chosen = GridView::create(from_cell(read_step(0, 0).value(), half)).value(); // in the order of the file
+    EXPECT_TRUE(chosen->find_boundary({}));
+    const auto expected = triangles(*chosen, message);
+    message.state.cells = {"cell=" + std::to_string(half) + ":"};
+    EXPECT_EQ(triangles(*of_file_, message), expected);
+    EXPECT_EQ(reads_, 1);
+    message.state.step = 1;
+    message.state.isovalues = {1.4};
+    EXPECT_EQ(triangles(*of_file_, message), expected) << "values are twice as large";
+    EXPECT_EQ(reads_, 1);
+    message = show(2, {0.7});
+    message.state.step = 0;
+    message.state.boundary = 1;
+    EXPECT_EQ(triangles(*of_file_, message), all);
+    of_file_->rest();
+    EXPECT_FALSE(of_file_->has_cells());
 }
 
 TEST_F(GridViewOfFile, ReadsAllCellsForSolidsAndGivesThemBack) {

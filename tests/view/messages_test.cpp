@@ -38,6 +38,8 @@ TEST(ParsePageMessage, TakesEveryKind) {
     EXPECT_EQ(std::get<SpectrumMessage>(*parse_page_message(R"({"do":"spectrum","field":"p"})")).field, "p");
     EXPECT_EQ(std::get<ChartMessage>(*parse_page_message(R"({"do":"chart","field":"p"})")).field, "p");
     EXPECT_EQ(std::get<ChartMessage>(*parse_page_message(R"({"do":"chart","field":"p","step":3})")).step, 3U);
+    EXPECT_EQ(std::get<ChartMessage>(*parse_page_message(R"({"do":"chart","field":"p","cells":["a=1"]})")).cells,
+              std::vector<std::string>{"a=1"});
     EXPECT_EQ(std::get<SpectrumMessage>(*parse_page_message(R"({"do":"spectrum","field":"p","step":3})")).step, 3U);
     EXPECT_EQ(std::get<CommandMessage>(*parse_page_message(R"({"do":"command","state":{"field":"q"}})")).state.field,
               "q");
@@ -64,6 +66,9 @@ TEST(ParsePageMessage, RefusesEverythingElse) {
                              R"({"do":"shown","number":"1"})",
                              R"({"do":"chart"})",
                              R"({"do":"chart","field":"p","step":-1})",
+                             R"({"do":"chart","field":"p","cells":"a=1"})",
+                             R"({"do":"show","number":1,"state":{"cells":["","","","","","","","",""]}})",
+                             R"({"do":"show","number":1,"state":{"cells":[1]}})",
                              R"({"do":"spectrum","field":"p","step":"1"})",
                              R"({"do":"paste","text":null})",
                              "{\"do\":\"hello\",\"token\":\"\xff\"}"}) {

@@ -84,6 +84,7 @@ TEST(RenderWords, AreOptionsOfTheProgramWithTheSameMeaning) {
         EXPECT_EQ(render.grid.file, "grid.vtu");
         EXPECT_TRUE(render.grid.keep_pieces);
         EXPECT_EQ(render.grid.step, state.step);
+        EXPECT_EQ(render.grid.cells, state.cells);
         EXPECT_EQ(render.boundary.value_or(state.volume ? 0 : view::default_boundary_opacity), state.boundary);
         expect_same_volume(render, state.volume);
         EXPECT_EQ(render.edges, state.edges);
@@ -117,6 +118,7 @@ TEST(ExtractWords, AreOptionsOfTheProgramWithTheSameMeaning) {
         EXPECT_EQ(line.command, "extract");
         EXPECT_EQ(line.extract.grid.file, "./-grid.vtu");
         EXPECT_EQ(line.extract.field.name, state.field);
+        EXPECT_EQ(line.extract.grid.cells, state.cells);
         EXPECT_EQ(line.extract.isovalues, state.isovalues);
         EXPECT_EQ(line.extract.keep, state.keep);
         EXPECT_EQ(line.extract.out, "surface.vtp");

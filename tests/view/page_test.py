@@ -134,7 +134,7 @@ def test_boundary_alone(browser, viewer):
         browser.value('new Promise(requestAnimationFrame)')
         check(red() == 0 < all_red, f'the region of this colour is hidden: {red()} of {all_red} pixels')
         browser.click('#copy-render')
-        browser.wait('document.getElementById("message").textContent === "Not part of isotet render: hidden regions."')
+        browser.wait('document.getElementById("copied").textContent.includes("\'!tvolume=Region_3\'")')
         browser.click('#regions-list li:nth-child(2) button')
         browser.wait('document.body.dataset.hidden === "Region_2 Region_1 h1_model1_1"')
         browser.value('history.back()')
@@ -1023,6 +1023,18 @@ def rendered(browser, folder):
         return pixels(file.read())
 
 
+def of_server(browser, folder):
+    """Rows of the server's picture above the axes, which are those of the copied command."""
+    browser.value('new Promise(done => setTimeout(done, 500))')
+    browser.wait('document.body.dataset.preview === "false" && document.body.dataset.picture === "image/png" && document.getElementById("message").hidden')
+    x, y, w, h = (int(one) for one in browser.box('#scene'))
+    seen = [row[3 * x:3 * (x + w)] for row in pixels(browser.picture())[2][y:y + h - 100]]
+    drawn = rendered(browser, folder)[2][:h - 100]
+    differ = [j for j in range(h - 100) if seen[j] != drawn[j]]
+    check(not differ, f'isotet render draws the same, but for {len(differ)} rows, {differ[:5]}')
+    return seen
+
+
 def test_pictures_of_the_server(browser, viewer):
     """JPEG while the hand moves; at rest exactly the pixels of `isotet render`."""
     start(browser, viewer, '&labels=0')
@@ -1129,7 +1141,7 @@ def test_heights_of_flat_reservoirs(browser, viewer):
 
 
 def test_hiding_leaves_places_without_data(browser, viewer):
-    """Three cells of the regions 1, 2 and none: those of a hidden region go, grey ones stay."""
+    """Three cells of the regions 1, 2 and none: those of a hidden region go, of all that is shown; grey ones stay."""
     def count():
         """Pixels that are grey, and all others that are not background."""
         browser.value('new Promise(requestAnimationFrame)')
@@ -1149,14 +1161,34 @@ def test_hiding_leaves_places_without_data(browser, viewer):
                                   'CELLS 3 27', *cells, 'CELL_TYPES 3', '12', '12', '12', 'CELL_DATA 3', 'SCALARS region float 1',
                                   'LOOKUP_TABLE default', '1', '2', 'nan', '']))
         with Viewer(path) as other:
-            counts = []
+            counts, view = [], '&labels=0&f=region&by=region&isosurfaces=0&colored=1&boundary=1&i=1.5'
             for hidden in ('', '&hidden=1', '&hidden=2', '&hidden=1&hidden=2'):
-                start(browser, other, '&labels=0&f=region&by=region&isosurfaces=0&colored=1&boundary=1&i=1.5' + hidden)
+                start(browser, other, view + hidden)
                 browser.wait('document.body.dataset.kinds === "boundary" && document.querySelectorAll("#regions-list li").length === 2')
                 counts.append(count())
+                if not hidden:
+                    view += '&camera=' + browser.value('document.body.dataset.camera')
             (grey, colored), *rest = counts
             check(grey > 100 and all(one >= 0.9 * grey for one, _ in rest), f'places without data stay: {counts}')
             check(rest[0][1] < 0.8 * colored and rest[1][1] < 0.8 * colored and rest[2][1] < 0.05 * colored, f'regions go: {counts}')
+            start(browser, other, view + '&drawn=server')
+            pictures = [of_server(browser, folder)]
+            for region, left_out in ((2, '2'), (1, '2,1')):
+                browser.click(f'#regions-list li:nth-child({region}) input')
+                pictures.append(of_server(browser, folder))
+                check(f"'!region={left_out}'" in browser.value('document.getElementById("copied").textContent'), 'it names what is hidden')
+            check(pictures[0] != pictures[1] != pictures[2], 'regions go')
+            for cells, chosen in (("'!region=2'", 'hidden=2'), ('region=:1', 'cells=region%3D%3A1')):
+                browser.click('#command')
+                browser.type(f'isotet render {path} --boundary-color-by region --cells {cells}')
+                browser.key('Enter')
+                browser.wait(f'location.hash.includes("{chosen}")')
+                browser.value('document.activeElement.blur()')
+            check(browser.value('document.getElementById("cells-text").textContent') == 'region=:1', 'it is told which cells are shown')
+            browser.click('#labels-on')
+            check(of_server(browser, folder) != pictures[0], 'others are left out')
+            browser.click('#cells-all')
+            browser.wait('!location.hash.includes("cells=") && document.getElementById("cells").hidden')
             browser.call('Page.navigate', url='about:blank')
 
 

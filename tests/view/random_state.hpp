@@ -59,6 +59,7 @@ inline view::ViewState random_state(unsigned seed) {
             if (chance(0.5)) plane.normal = {0, chance(0.5) ? 1.0 : -1.0, 0};
             planes->push_back(plane);
         }
+    if (chance(0.3)) state.cells = {"!" + name() + "=" + name(), name()};
     if (chance(0.3)) state.step = std::uniform_int_distribution<std::uint64_t>(0, 99)(random);
     if (chance(0.3)) {
         constexpr std::array texts{"ramp", "peaks", "peaks:5", "shell", "-1:0,0:0.5,0:1,1e3:0.25"};

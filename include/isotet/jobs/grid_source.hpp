@@ -115,6 +115,13 @@ public:
     /// The grid of which read_active() gave some cells. Nothing is noted again.
     Result<Grid> read_the_rest(const FieldsToRead& fields, std::size_t step, const Run& run) const;
 
+    /// A grid that was read, with empty cells in place of all but these.
+    /// `cells`     as GridOptions::cells, all of which must hold
+    /// `regions`   of the step; empty: region_names()
+    /// Errors      invalid_argument: no cell is left, or `cells` has what the grid does not have
+    Result<Grid> only_cells(Grid grid, const std::vector<std::string>& cells,
+                            const std::vector<RegionName>& regions) const;
+
     /// One of info().blocks alone, with all fields, as it is in the file; nothing is noted.
     Result<Grid> read_block(const BlockInfo& block, std::size_t step, Caller& caller) const;
 

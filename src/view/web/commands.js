@@ -3,6 +3,7 @@
 import {app, id} from './app.js';
 import {frameAll} from './framing.js';
 import {say} from './notes.js';
+import {takeHidden} from './regions.js';
 import {fromMessage, toMessage} from './state.js';
 import {commit} from './undo.js';
 
@@ -26,8 +27,7 @@ export async function takeCommand(message) {
   id('copied').textContent = text;
   id('copied').title = copied ? 'Copied' : 'The browser did not copy: select it';
   id('copy-' + kind).textContent = copied ? 'Copied' : 'See below';
-  const missing = [own && 'colours and opacities of single surfaces', kind === 'render' && app.state.hidden.length > 0 && 'hidden regions'].filter(Boolean);
-  if (missing.length > 0) say(`Not part of isotet render: ${missing.join(', ')}.`);
+  if (own) say('Not part of isotet render: colours and opacities of single surfaces.');
   setTimeout(() => { id('copy-render').textContent = 'Copy render'; id('copy-extract').textContent = 'Copy extract'; }, 1500);
 }
 
@@ -60,6 +60,7 @@ export function takeState(message) {
   if (next.step === null) next.step = app.state.step;
   next.stretch ??= app.grid.state.stretch ?? null; // as isotet render without --scale
   if (next.planes.some(({kind}) => kind === 'slice') && !next.isosurfaces) next.colorBy ||= next.field;
+  takeHidden(next);
   app.state = {...next, drawn: app.state.drawn, up: message.look?.axis ?? app.state.up};
   if (message.look) lookAsTold(message.look);
   else if (!app.state.camera) app.state.camera = app.camera.text();

@@ -3,7 +3,6 @@
 import {app, css, id} from './app.js';
 import {coloredBy} from './state.js';
 import {numberLabel, ticksOf} from './ticks.js';
-import {serverDraws} from './wishes.js';
 
 const size = 13; // of letters, in pixels of the page
 const line = Math.round(1.45 * size), swatch = size;
@@ -73,7 +72,7 @@ function paintEntry(context, [color, text], x, y) {
 /** At the right: the scale of the colours, else the colours of several surfaces. */
 function paintColumn(context, width, height) {
   const {frame, state} = app, scale = coloredBy(state) ? frame.scale : null, surfaces = shown();
-  const classes = scale?.classes?.filter(({name}) => serverDraws() || !state.hidden.includes(name)).map(({name, color}) => [color, name]), graded = scale && !classes;
+  const classes = scale?.classes?.filter(({name}) => !state.hidden.includes(name)).map(({name, color}) => [color, name]), graded = scale && !classes;
   const entries = classes || (scale || surfaces.length < 2 ? [] : surfaces.map((one) => [colorOf(one), numberLabel(one.isovalue)]).reverse());
   if (!scale && entries.length === 0) return;
   const tall = graded ? Math.round(Math.min(0.55 * height, 320)) : line * entries.length, title = scale ? coloredBy(state) : frame.field;

@@ -8,6 +8,7 @@ import {showIsosurfaces} from './looking.js';
 import {say} from './notes.js';
 import {Player} from './play.js';
 import {forgetParts, forgetPartNumbers} from './parts.js';
+import {cellsOf} from './state.js';
 import {pinColor, showSurfaces, sliderColor} from './surfaces.js';
 import {commit, commitSoon, nameState} from './undo.js';
 import {forgetPoints, showCurve} from './volume.js';
@@ -160,18 +161,26 @@ export function followStep() {
   if (frame?.range) see(frame.field, frame.step, ...frame.range);
   const step = frame?.field === state.field ? frame.step : state.step;
   for (const kind of ['chart', 'spectrum'])
-    if (slider[kind] && (slider[kind].field !== state.field || (state.step !== null && slider[kind].step !== step))) slider[kind] = null;
+    if (slider[kind] && (slider[kind].field !== state.field || (state.step !== null && slider[kind].step !== step) || slider[kind].cells !== cellsKey())) slider[kind] = null;
   if ((!slider.chart || state.value === null) && !time.playing && level.empty !== question()) askChart();
   showValue();
   askSpectrum();
 }
 
-const question = () => `${app.state.step}|${app.state.field}`;
+const question = () => JSON.stringify([app.state.step, app.state.field, cellsOf(app.state)]);
+
+const cellsKey = () => cellsOf(app.state).join('|');
+
+/** What it is about. */
+function questionOf(kind) {
+  const {field, step} = app.state, cells = cellsOf(app.state), message = {do: kind, field};
+  if (step !== null) message.step = step;
+  return cells.length > 0 ? {...message, cells} : message;
+}
 
 export function askChart() {
-  const wanted = question(), message = {do: 'chart', field: app.state.field};
-  if (app.state.step !== null) message.step = app.state.step;
-  if (level.chart !== wanted && app.link.send(message)) level.chart = wanted;
+  const wanted = question();
+  if (level.chart !== wanted && app.link.send(questionOf('chart'))) level.chart = wanted;
 }
 
 export function takeChart(chart) {
@@ -179,7 +188,7 @@ export function takeChart(chart) {
   level.chart = '';
   if (chart.lower <= chart.upper) see(chart.field, chart.step, chart.lower, chart.upper);
   if (chart.field !== state.field || (state.step !== null && chart.step !== state.step)) return;
-  slider.chart = chart.lower <= chart.upper ? chart : null;
+  slider.chart = chart.lower <= chart.upper ? {...chart, cells: cellsKey()} : null;
   level.empty = slider.chart ? '' : question();
   const varies = chart.lower < chart.upper;
   if (state.value === null && slider.chart) {
@@ -203,9 +212,7 @@ export function takeChart(chart) {
 export function askSpectrum() {
   const {slider, state} = app, wanted = question();
   if (!slider.chart || app.time.playing || level.spectrum === wanted || slider.spectrum?.field === state.field) return;
-  const message = {do: 'spectrum', field: state.field};
-  if (state.step !== null) message.step = state.step;
-  if (app.link.send(message)) level.spectrum = wanted;
+  if (app.link.send(questionOf('spectrum'))) level.spectrum = wanted;
 }
 
 /** Another connection knows of no question. */
@@ -217,15 +224,13 @@ export function forgetQuestions() {
 export function takeSpectrum(spectrum) {
   level.spectrum = '';
   if (spectrum.field !== app.state.field || (app.state.step !== null && spectrum.step !== app.state.step)) return;
-  app.slider.spectrum = spectrum.isovalues.length > 0 ? spectrum : null;
+  app.slider.spectrum = spectrum.isovalues.length > 0 ? {...spectrum, cells: cellsKey()} : null;
   showValue();
 }
 
 /** An isovalue by share is found by the server. */
 function askShare({of, percent}) {
-  const {field, step} = app.state, message = {do: 'share', field, of, percent};
-  if (step !== null) message.step = step;
-  if (app.link.send(message)) level.share = `${question()}|${of}|${percent}`;
+  if (app.link.send({...questionOf('share'), of, percent})) level.share = `${question()}|${of}|${percent}`;
 }
 
 export function takeShare({field, step, of, percent, isovalue}) {

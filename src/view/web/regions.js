@@ -1,10 +1,14 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Regions, blocks and other classes that colour, by name: each can be hidden. The browser leaves out what has their colour.
+// Regions, blocks and other classes that colour, by name: each can be hidden. The browser leaves out what has their colour at
+// once; the server leaves out their cells.
 import {app, id} from './app.js';
+import {followStep} from './level.js';
 import {say} from './notes.js';
+import {forgetPartNumbers} from './parts.js';
+import {closePicked} from './picked.js';
 import {drawSoon} from './picture.js';
 import {commit} from './undo.js';
-import {serverDraws} from './wishes.js';
+import {wishSoon} from './wishes.js';
 
 const classes = () => app.frame?.scale?.classes ?? [];
 
@@ -13,7 +17,7 @@ export const hiddenClasses = () => ({count: classes().length, mask: classes().re
 
 /** Rows stay where their number is the same: a control keeps its focus. */
 export function showRegions() {
-  const list = id('regions-list'), all = serverDraws() ? [] : classes();
+  const list = id('regions-list'), all = classes();
   id('regions').hidden = all.length < 2;
   while (list.children.length > all.length) list.lastChild.remove();
   all.forEach(({name, color}, i) => {
@@ -24,6 +28,8 @@ export function showRegions() {
     row.lastChild.setAttribute('aria-label', `Show only ${name}`);
   });
   document.body.dataset.hidden = app.state.hidden.join(' ');
+  id('cells').hidden = app.state.cells.length === 0;
+  id('cells-text').textContent = app.state.cells.join(' and ');
 }
 
 function regionRow(i) {
@@ -35,12 +41,40 @@ function regionRow(i) {
   return row;
 }
 
-function hide(names) {
-  app.state.hidden = names;
+function chosen() {
   say('');
+  forgetPartNumbers();
+  closePicked();
   showRegions();
+  followStep();
+  wishSoon();
   drawSoon();
   commit();
 }
 
+function hide(names) {
+  app.state.hidden = names;
+  chosen();
+}
+
+/** Names of a list, which may have commas where they are known. */
+function namesIn(list) {
+  const names = [], known = classes().map(({name}) => name).sort((a, b) => b.length - a.length);
+  for (let rest = list; rest !== '';) {
+    const name = known.find((one) => `${rest},`.startsWith(`${one},`)) ?? rest.split(',')[0];
+    names.push(name);
+    rest = rest.slice(name.length + 1);
+  }
+  return names;
+}
+
+/** Of choices that a command line has, classes of the colours that are left out are hidden ones. */
+export function takeHidden(state) {
+  const head = `!${state.colorBy}=`, own = state.colorBy ? state.cells.findIndex((one) => one.startsWith(head)) : -1;
+  if (own < 0) return;
+  state.hidden = namesIn(state.cells[own].slice(head.length));
+  state.cells = state.cells.filter((_, i) => i !== own);
+}
+
 id('regions-all').addEventListener('click', () => hide([]));
+id('cells-all').addEventListener('click', () => { app.state.cells = []; chosen(); });

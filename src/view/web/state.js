@@ -10,7 +10,8 @@ export const firstState = () => ({
   keep: '', // connected parts, as --keep takes them; all
   planes: [], step: null, drawn: '', // 'server': pictures, 'browser': never
   volume: null, // {opacity, length, surfaces}: as isotet render --volume draws it
-  hidden: [], // names of classes that colour: what has their colour is left out
+  hidden: [], // names of classes of colorBy: their cells are left out
+  cells: [], // as --cells takes them: only these cells
   up: 'z', stretch: null, // the axis that points upwards; [x, y, z], factors of the axes
   labels: true, // scale, field, isovalue and time in the scene
   span: '', // of the slider: 'step', else all steps that were seen
@@ -55,6 +56,7 @@ export function toAddress(state) {
   if (state.volume?.length) parts.set('length', state.volume.length);
   if (state.volume?.surfaces) parts.set('surfaces', 1);
   for (const name of state.hidden) parts.append('hidden', name);
+  for (const cells of state.cells) parts.append('cells', cells);
   if (state.up !== 'z') parts.set('up', state.up);
   if (state.stretch) parts.set('stretch', state.stretch.join(','));
   if (!state.labels) parts.set('labels', 0);
@@ -104,6 +106,7 @@ export function fromAddress(text) {
     state.volume = {opacity: parts.get('volume').slice(0, 4096), length: length > 0 ? length : null, surfaces: parts.get('surfaces') === '1'};
   }
   state.hidden = parts.getAll('hidden').slice(0, 12);
+  state.cells = parts.getAll('cells').slice(0, 7);
   if (upAxes.includes(parts.get('up'))) state.up = parts.get('up');
   const stretch = (parts.get('stretch') || '').split(',').map(Number);
   if (stretch.length === 3 && stretch.every((one) => one > 0 && one < Infinity)) state.stretch = stretch;
@@ -115,6 +118,9 @@ export function fromAddress(text) {
 /** The field that colours: a volume has its own colours. */
 export const coloredBy = ({volume, field, colorBy}) => (volume ? field : colorBy);
 
+/** Of --cells: without the classes that are hidden. */
+export const cellsOf = ({cells, hidden, colorBy}) => (hidden.length > 0 && colorBy ? [...cells, `!${colorBy}=${hidden.join(',')}`] : cells);
+
 /** As messages have it (src/view/state.hpp). */
 export function toMessage(state) {
   const message = {field: state.field, isovalues: [state.value, ...state.pins.map((pin) => pin.value)], color_by: state.colorBy,
@@ -123,6 +129,7 @@ export function toMessage(state) {
   for (const kind of ['clip', 'slice']) message[kind + 's'] = planesOf(state, kind).map(({normal, offset}) => [...normal, offset]);
   if (state.solid) message.solid = state.solid;
   if (state.keep) message.keep = state.keep;
+  if (cellsOf(state).length > 0) message.cells = cellsOf(state);
   if (state.step !== null) message.step = state.step;
   if (state.value === null) message.isovalues.shift();
   if (state.range) message.range = state.range;
@@ -144,7 +151,7 @@ export function fromMessage(message) {
   return {...state, field: message.field, value, pins: pins.map((one) => ({value: one, color: null, opacity})), opacity,
     colorBy: message.color_by, map: message.map, logarithmic: message.logarithmic, outline: message.outline,
     edges: message.edges, boundary: message.boundary, isosurfaces: message.isosurfaces ?? true, coloredBoundary: message.colored_boundary ?? false,
-    solid: message.solid ?? '', keep: message.keep ?? '', step: message.step ?? null,
+    solid: message.solid ?? '', keep: message.keep ?? '', step: message.step ?? null, cells: message.cells ?? [],
     planes: ['clip', 'slice'].flatMap((kind) => message[kind + 's'].map((plane) => ({kind, normal: plane.slice(0, 3), offset: plane[3]}))),
     volume: message.volume ? {length: null, ...message.volume} : null,
     range: message.range ?? null, camera: message.camera ?? null, stretch: message.stretch ?? null};

@@ -2,7 +2,7 @@
 // What the page asks the server for, and how much of it it can take.
 import {app, id} from './app.js';
 import * as format from './format.js';
-import {planesOf, toMessage} from './state.js';
+import {cellsOf, planesOf, toMessage} from './state.js';
 
 /** Why the server draws, or nothing where the browser does. */
 export const serverDraws = () => (!app.scene ? 'no WebGL2 here' : app.grid?.saved ? '' : app.state.volume ? 'a volume' : app.state.drawn === 'server' ? 'chosen' :
@@ -45,7 +45,7 @@ export function stopWaiting() {
 
 /** What a frame depends on. */
 const wanted = () => JSON.stringify([app.state.field, app.state.value, app.state.pins.map((pin) => pin.value), app.state.colorBy, app.state.map, app.state.range, app.state.logarithmic,
-  planesOf(app.state, 'slice'), app.state.boundary > 0, app.state.isosurfaces, app.state.coloredBoundary, app.state.solid, app.state.keep, app.state.step, document.body.dataset.step, serverDraws() && [app.camera.text(), pictureSize(), toMessage(app.state)]]);
+  planesOf(app.state, 'slice'), app.state.boundary > 0, app.state.isosurfaces, app.state.coloredBoundary, app.state.solid, app.state.keep, cellsOf(app.state), app.state.step, document.body.dataset.step, serverDraws() && [app.camera.text(), pictureSize(), toMessage(app.state)]]);
 
 /** Bytes a ms of the line, by frames that are large enough to tell. */
 export function measureLine(next) {
