@@ -135,8 +135,9 @@ Result<ExitCode> run_export(const ExportCommand& command) {
 
     ExportTimes seconds;
     const Stopwatch reading;
-    Result<view::ViewerInput> input = read_view_input(
-        {grid, command.field, command.isovalues, command.shares, command.color_by}, *source, console, console.run());
+    Result<view::ViewerInput> input = read_view_input({grid, command.field, command.isovalues, command.shares,
+                                                       command.color_by, FirstCells::all, !command.range.empty()},
+                                                      *source, console, console.run());
     if (!input) return input.error();
     seconds.read = reading.seconds();
     if (command.field.name.empty()) { // the one that was chosen may be missing in others

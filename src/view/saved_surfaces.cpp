@@ -65,6 +65,7 @@ private:
     Result<std::string> document_of(const Shown& shown) const;
     SavedSurfaces report_of(const Shown& shown, std::string html) const;
     Result<SavedSurfaces> fit();
+    bool boundary_is_first() const { return !input_.state.isosurfaces; }
 
     std::unique_ptr<GridView> view_;
     const ViewerInput& input_;
@@ -138,6 +139,9 @@ Result<void> SurfaceSaver::code_step(std::size_t step) {
     message.state = input_.state;
     message.state.step = options_.steps[step];
     message.state.boundary = 0;
+    message.state.isosurfaces = true;
+    if (boundary_is_first() && message.state.color_by == message.state.field)
+        message.state.color_by.clear(); // it says nothing on them
     message.refined = options_.refine.has_value();
     std::vector<std::string> known;
     std::vector<SurfacePoints> points;
@@ -172,6 +176,10 @@ void SurfaceSaver::tell_hidden(std::span<const SurfacePoints> points) {
 Result<void> SurfaceSaver::code_boundary(std::size_t step, const ShowMessage& message, std::vector<std::string> known) {
     ShowMessage with_boundary = message;
     with_boundary.state.boundary = 1;
+    if (boundary_is_first()) {
+        with_boundary.state.isosurfaces = false;
+        with_boundary.state.color_by = input_.state.color_by;
+    }
     const Result<FrameParts> parts = view_->frame_parts(with_boundary, known, run_);
     if (!parts) return parts.error();
     for (const FrameSurface& surface : parts->surfaces) {
@@ -213,6 +221,11 @@ Json SurfaceSaver::saved_json(const Shown& shown) const {
     input.state.isovalues = {
         *std::ranges::min_element(shown.isovalues, {}, [&](double value) { return std::abs(value - wanted); })};
     input.state.step.reset();
+    if (boundary_is_first() && shown.boundaries.empty()) {
+        input.state.isosurfaces = true;
+        input.state.boundary = default_boundary_opacity;
+        input.state.colored_boundary = false;
+    }
     input.notes = input_.notes;
     if (options_.steps.size() > 1) {
         input.state.step = 0;
@@ -234,7 +247,8 @@ Json SurfaceSaver::saved_json(const Shown& shown) const {
     return saved;
 }
 
-/// The boundary is left out where it takes more than a quarter of what there is room for.
+/// The boundary is left out where it takes more than a quarter of what there is room for; three quarters where it is what
+/// is seen first.
 SurfaceSaver::Shown SurfaceSaver::shown_with(std::size_t stride) const {
     Shown shown;
     for (std::size_t i = 0; i < isovalues_.size(); ++i)
@@ -246,7 +260,7 @@ SurfaceSaver::Shown SurfaceSaver::shown_with(std::size_t stride) const {
     }
     std::uint64_t boundary_bytes = 0;
     for (const CodedSurface& one : boundaries_) boundary_bytes += one.base64.size();
-    if (boundary_bytes > options_.max_bytes / 4) return shown;
+    if (boundary_bytes > options_.max_bytes / 4 * (boundary_is_first() ? 3 : 1)) return shown;
     for (const CodedSurface& one : boundaries_) shown.boundaries.push_back(&one);
     shown.bytes += boundary_bytes;
     return shown;
@@ -274,7 +288,8 @@ SavedSurfaces SurfaceSaver::report_of(const Shown& shown, std::string html) cons
                                         "(`max_size`)",
                                         out.isovalues.size(), isovalues_.size(), format_bytes(options_.max_bytes)));
     if (!out.boundary && !boundaries_.empty())
-        out.notes.push_back("the boundary of the grid is left out: it would take more than a quarter of `max_size`");
+        out.notes.push_back(fmt::format("the boundary of the grid is left out: it would take more than {} of `max_size`",
+                                        boundary_is_first() ? "three quarters" : "a quarter"));
     if (simplified_)
         out.notes.push_back(fmt::format("surfaces with more than {} triangles are simplified", options_.max_triangles));
     return out;

@@ -40,7 +40,8 @@ struct SavedSurfaces {
 
 /// Extracts the isosurfaces of a state and makes the page of them. Where it would be larger than `max_bytes`, of
 /// `count` surfaces as many are left out as it takes, evenly: every second, third and so on stays; the boundary goes
-/// first where it alone takes a quarter.
+/// first where it alone takes a quarter. A state without isosurfaces begins with the boundary, which may then take three
+/// quarters.
 ///
 /// `input`      whose state says field, colours, camera and what else is shown at the beginning
 /// `read_step`  of any step; may be empty for one step

@@ -120,6 +120,28 @@ def test_colors(browser, folder):
     check(browser.value('[...document.querySelectorAll("[data-needs=isotet]")].every((one) => one.hidden)'), 'nothing needs isotet')
 
 
+def test_begins_with_the_boundary(browser, folder):
+    """Where only regions are known, the boundary shows them, each with a colour; isosurfaces can be chosen."""
+    model = os.path.join(os.path.dirname(__file__), '../../data/gocad/geomodel3d_tsolid.so')
+    path, _ = export(folder, 'regions.html', model, '--surfaces', '5')
+    browser.call('Page.navigate', url='about:blank')
+    browser.open('file://' + urllib.parse.quote(path))
+    regions = 'document.body.dataset.kinds === "boundary" && document.body.dataset.classes === "Region_2 Region_3 Region_1 h1_model1_1"'
+    browser.wait(regions)
+    check(browser.value('document.getElementById("shown").textContent') == 'Boundary shown', 'it is said')
+    check(browser.value('document.getElementById("boundary").value') == '1', 'it is opaque')
+    browser.click('#regions-list li:nth-child(2) input')
+    browser.wait('document.body.dataset.hidden === "Region_3"')
+    browser.click('#regions-all')
+    browser.click('#isosurfaces')
+    browser.wait('document.body.dataset.kinds === "surface boundary" && document.body.dataset.classes === ""')
+    browser.click('#isosurfaces')
+    browser.wait(regions)
+    path, _ = export(folder, 'surfaces.html', model, '-f', 'tvolume', '--surfaces', '5')
+    start(browser, path)
+    check(browser.value('document.body.dataset.kinds') == 'surface boundary', 'a field that is named has isosurfaces')
+
+
 def test_files(browser, folder):
     """Surfaces are written by the page itself."""
     path, report = export(folder, 'files.html', GRID, '-f', 'sphere', '-i', '0.5')
@@ -155,7 +177,7 @@ def test_files(browser, folder):
 
 
 def test_steps(browser, folder):
-    path, report = export(folder, 'steps.html', STEPS, '--all-steps', '--surfaces', '3')
+    path, report = export(folder, 'steps.html', STEPS, '-f', 'nodal_Cauchy_Stress_1', '--all-steps', '--surfaces', '3')
     check(report['steps'] == 3, 'all steps are there')
     start(browser, path)
     check(not browser.value('document.getElementById("time").hidden'), 'they can be chosen')

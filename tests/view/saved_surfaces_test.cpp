@@ -290,6 +290,37 @@ TEST(SaveSurfaces, LeavesSurfacesOutEvenlyUntilTheFileFits) {
     EXPECT_EQ(none.error().code, ErrorCode::invalid_argument);
 }
 
+/// What the page is told.
+Json saved_in(const SavedSurfaces& saved) {
+    const std::string begin = R"(id="saved">)";
+    const std::size_t at = saved.html.find(begin) + begin.size();
+    return parse_json(saved.html.substr(at, saved.html.find("</script>", at) - at)).value();
+}
+
+TEST(SaveSurfaces, BeginWithTheColouredBoundaryWhereItIsSeenFirst) {
+    ViewerInput input = sphere_input(12);
+    const std::uint64_t isosurfaces_first = save_surfaces(input, {}, some_options()).value().triangles;
+    input.state.isosurfaces = false;
+    input.state.boundary = 1;
+    input.state.color_by = input.state.field;
+    input.state.colored_boundary = true;
+    const SavedSurfaces saved = save_surfaces(input, {}, some_options()).value();
+    EXPECT_EQ(saved.triangles, isosurfaces_first);
+    Json told = saved_in(saved);
+    EXPECT_EQ(told["grid"]["state"]["isosurfaces"], false);
+    EXPECT_EQ(told["boundaries"].size(), 1U);
+    EXPECT_TRUE(told["boundaries"][0].contains("scale"));
+    EXPECT_FALSE(told["surfaces"][0].contains("scale")) << "the colour of one value says nothing";
+
+    SavedSurfacesOptions options = some_options();
+    options.max_bytes = 1;
+    while (options.max_bytes < saved.html.size() && !save_surfaces(input, {}, options))
+        options.max_bytes = options.max_bytes * 11 / 10 + 1;
+    const SavedSurfaces least = save_surfaces(input, {}, options).value();
+    told = saved_in(least);
+    EXPECT_EQ(told["grid"]["state"]["isosurfaces"], !least.boundary);
+}
+
 TEST(SaveSurfaces, KeepsIsovaluesThatWereNamed) {
     const ViewerInput input = sphere_input(8);
     SavedSurfacesOptions options = some_options();

@@ -122,11 +122,12 @@ function fill(select, names, chosen) {
 }
 
 /** The page is a file, of some isosurfaces or of a grid: it has nothing that only isotet can do, or only who has the grid. */
-function takeSaved({saved, values}) {
+function takeSaved({saved, values, state}) {
   app.slider.stops = values ?? null;
   app.save.endings = '.stl or .glb';
   const gone = saved === 'grid' ? ['isotet'] : ['isotet', 'grid'];
   for (const one of document.querySelectorAll('[data-needs]')) one.hidden = one.disabled = gone.includes(one.dataset.needs);
+  if (state.isosurfaces === false) id('isosurfaces').parentElement.hidden = false; // the way back to the boundary
 }
 
 function takeGrid(message) {

@@ -83,7 +83,7 @@ export class Link {
 
   async frame({number, state, picture}) {
     if (picture) throw new Error('this browser has no WebGL2, which draws it');
-    const step = state.step ?? 0, start = performance.now(), shown = state.isovalues.map((value) => this.nearest(step, value));
+    const step = state.step ?? 0, start = performance.now(), shown = state.isosurfaces ? state.isovalues.map((value) => this.nearest(step, value)) : [];
     const once = [...new Set(shown)], looks = looksOf(once, this.saved.welcome.maps[state.map], state.opacity ?? null);
     const surfaces = shown.map((one) => ({key: one.part, kind: 'surface', isovalue: one.isovalue, triangles: one.triangles, ...looks[once.indexOf(one)], told: one.mesh}));
     const boundary = this.saved.boundaries.filter((one) => one.step <= step).pop(); // it goes on until there is another one
@@ -99,7 +99,7 @@ export class Link {
       delete one.told;
     }
     this.known = keys;
-    const {notes, range, field_bound, scale} = shown[0];
+    const {notes, range, field_bound, scale} = shown[0] ?? boundary ?? {notes: []};
     return {number, preview: false, method: 'saved', extract_ms: 0, mesh_ms: performance.now() - start, wait_ms: 0, step, field: state.field, notes, range, field_bound, scale, surfaces, bytes};
   }
 
