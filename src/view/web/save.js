@@ -48,7 +48,11 @@ export class Save {
     id('save-to').options[1].disabled = !this.out;
     id('save-to').options[1].textContent = this.out ? `Folder ${this.out} of the server` : 'Folder of the server: start with --out FOLDER';
     if (!this.out) id('save-to').value = '';
-    for (const kind of ['steps.webp', 'series.glb']) id('save-kind').querySelector(`[value="${kind}"]`).hidden = this.endings !== '' || this.on.steps() < 2;
+    for (const kind of ['steps.webp', 'series.glb']) {
+        const option = id('save-kind').querySelector(`[value="${kind}"]`);
+        option.hidden = option.disabled =
+            this.endings !== '' || this.on.steps() < 2; // some browsers list what is hidden
+    }
     this.command = null;
     this.on.send({do: 'command', state: this.on.state()});
     this.show();
