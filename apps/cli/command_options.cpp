@@ -371,6 +371,9 @@ void add_view(const Command& program, ViewCommand& view) {
     command.add_text("--listen", view.listen, "ADDRESS",
                      "Serve at this address of the machine (0.0.0.0: all) instead of 127.0.0.1: whoever knows the "
                      "printed address can look, over an open line; or unix:PATH, a socket that only you can open");
+    command.add_count(
+        "--pages", {1, 30}, [&](std::uint64_t n) { view.pages = n; }, "N",
+        "Pages that may be open at once, of which two beside each other are two; default: 4");
     command.add_flag(
         "--keep", view.keep,
         "Keep running after the last page was closed; default: end after a minute, or half an hour after it "

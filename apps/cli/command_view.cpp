@@ -206,6 +206,7 @@ Result<ExitCode> run_view(const ViewCommand& command) {
     options.hosts = command.hosts;
     options.version = ISOTET_VERSION;
     options.keep = command.keep;
+    options.max_pages = command.pages;
     options.threads = command.common.threads;
     if (!command.out.empty()) {
         std::error_code ignored;

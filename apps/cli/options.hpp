@@ -67,6 +67,7 @@ struct ViewCommand {
     std::string beside;             ///< a second file, read as the first; empty: none
     std::uint64_t port = 0;         ///< 0: a free one
     std::vector<std::string> hosts; ///< names beside localhost by which a browser reaches the page
+    std::uint64_t pages = 4;        ///< that may be open at once
     bool keep = false;
     bool no_browser = false;
     std::string out;    ///< a folder where the page may save files; empty: none

@@ -101,7 +101,9 @@ void Viewer::Data::take_hello(ConnectionNumber from, const HelloMessage& message
     if (!is_same_token(message.token, options.token))
         return refuse("token", "This address is of an earlier run: open the one that isotet view printed last.");
     if (admitted() >= options.max_pages)
-        return refuse("pages", fmt::format("{} pages are open already, which is the limit.", options.max_pages));
+        return refuse("pages",
+                      fmt::format("{} {} open already, which is the limit; isotet view --pages N sets another one.",
+                                  options.max_pages, options.max_pages == 1 ? "page is" : "pages are"));
     pages[from].admitted = was_opened = true;
     alone_until.reset();
     longest_wait.reset();

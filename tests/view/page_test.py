@@ -385,6 +385,40 @@ def test_keyboard_only(browser, viewer):
     check(missing == [], f'controls without a name: {missing}')
 
 
+def test_keys_of_one_character_can_be_switched_off(browser, viewer):
+    """Who speaks to the machine, or hits keys by chance, sets off none; others go on."""
+    start(browser, viewer)
+    browser.click('#help-open')
+    browser.click('#character-keys')
+    browser.click('#help-close')
+    browser.value('document.activeElement.blur()')
+    for _ in range(2):  # it is remembered
+        browser.key('p')
+        browser.key('?')
+        browser.value('document.getElementById("slider").focus()')
+        before = shown(browser)
+        browser.key('ArrowRight')
+        browser.wait(f'Number(document.body.dataset.shown) > {before}')
+        check(browser.value('document.querySelectorAll("#surfaces li").length') < 2, 'no surface is pinned')
+        check(not browser.value('document.getElementById("help").open'), 'no help comes')
+        start(browser, viewer)
+    browser.click('#help-open')
+    browser.click('#character-keys')
+    browser.click('#help-close')
+    browser.value('document.activeElement.blur()')
+    browser.key('p')
+    browser.wait('document.querySelectorAll("#surfaces li").length === 2')
+
+
+def test_one_page_too_many_is_told_once(browser, viewer):
+    with Viewer(GRID, '--pages', '1') as other:
+        start(browser, other)
+        browser.value('(() => { const frame = document.createElement("iframe"); frame.src = location.href.replace("/#", "/?other#"); document.body.append(frame); })()')
+        browser.wait('document.querySelector("iframe").contentDocument?.getElementById("message")?.textContent.includes("--pages N")')
+        check(browser.value('document.querySelector("iframe").contentDocument.getElementById("lost").hidden'), 'nothing more is told')
+        browser.call('Page.navigate', url='about:blank')
+
+
 def type_value(browser, text):
     browser.value('(() => { const box = document.getElementById("value"); box.focus(); box.value = "%s"; '
                   'box.dispatchEvent(new KeyboardEvent("keydown", {key: "Enter"})); box.blur(); return 1; })()' % text)
