@@ -43,13 +43,13 @@ check_tree() {
 make_archive() {
     rm -rf "$folder"
     mkdir -p "$folder"
-    git archive --prefix="isotet-$version/" HEAD | xz -T0 >"$folder/isotet-$version.tar.xz"
+    git archive --prefix="isotet-$version/" HEAD | xz -T0 >"$folder/isotet-$version.tar.xz" || return
     tar -xf "$folder/isotet-$version.tar.xz" -C "$folder"
 }
 
 make_package() {
     build_source=$source build release "$folder/tree" -DCMAKE_BUILD_TYPE=Release -DISOTET_TESTS=OFF || return
-    in_log "Debian package" "$folder/package.log" cpack --config "$folder/tree/CPackConfig.cmake" -B "$folder"
+    in_log "Debian package" "$folder/package.log" cpack --config "$folder/tree/CPackConfig.cmake" -B "$folder" || return
     rm -rf "$folder/_CPack_Packages"
 }
 

@@ -71,6 +71,10 @@ public:
         return {};
     }
 
+    std::vector<std::string> files() const {
+        return source_ ? source_->info().files : std::vector<std::string>{command_.grid.file};
+    }
+
     /// As open(), but fields that it does not have are only noted; other errors are those of reading it.
     void open_beside() {
         Result<void> opened = open();
@@ -199,6 +203,7 @@ Result<ExitCode> run_view(const ViewCommand& command) {
     options.file = file.to_view();
     if (!command.beside.empty()) {
         second.open_beside();
+        if (auto paths = check_output_paths(second.files(), {command.common.json}); !paths) return paths.error();
         options.second = second.to_view();
     }
     options.refine = command.refine;

@@ -78,8 +78,7 @@ ISOTET_API Result<SolidMeasure> measure_solid(const Surface& surface);
 /// curved cells are taken as linear cells, curved ones refined for all isovalues. Faces on the side of the solid stay
 /// whole, those that the isosurface crosses are cut where it crosses their edges, and share its vertices there. So both
 /// together are closed: also at ties, beside cells without data, and where cells do not fit together, whose faces are
-/// then boundary on both sides. Triangles of the isosurface that lie back to back with others, where faces of cells are tied,
-/// are left out with these. A quadrilateral that is not flat gets a vertex inside each of its parts where it is
+/// then boundary on both sides. Double sheets, where faces of cells are tied, are left out. A quadrilateral that is not flat gets a vertex inside each of its parts where it is
 /// cut, so placed that the solids above and below an isovalue have the volume of the grid together.
 ///
 /// Threads   one call at a time
@@ -113,7 +112,8 @@ public:
     ///
     /// Guarantees   the same bytes for any thread count and on every engine; closed where Solid::open_edges is 0: always,
     ///              unless cells are repeated
-    /// Cost         as Contour::extract(), and O(n) in the faces of the boundary
+    /// Cost         as Contour::extract(), and O(n) in the faces of the boundary; at ties O(n log n) in the triangles there,
+    ///              and for pieces the isosurface of the ghost cells
     /// Errors       invalid_argument when no end of the range is finite, or lower >= upper; as Contour::extract()
     Result<Solid> extract(const SolidRange& range, const Run& run = {});
 

@@ -266,6 +266,7 @@ Result<Surface> keep_parts(const Surface& surface, const SurfaceParts& parts, co
         std::erase_if(numbered.cell_fields, [](const Field& field) { return field.name == "part"; });
         numbered.cell_fields.push_back({"part", parts.numbers});
         if (surface.triangle_count() == 0) return numbered;
+        if (const auto mesh = checking::Mesh::open(surface); !mesh) return mesh.error();
         const auto numbers = parts.numbers.as<std::uint32_t>();
         std::vector<std::uint64_t> triangles;
         for (std::uint64_t i = 0; i < numbers.size(); ++i)

@@ -2,22 +2,15 @@
 #include "grid/boundary_faces.hpp"
 
 #include <algorithm>
-#include <span>
 
 #include <tbb/parallel_sort.h>
+
+#include "grid/renumber.hpp"
 
 namespace isotet::core {
 
 void place_vertices(Surface& surface, const Array& all, const std::vector<std::uint64_t>& points) {
-    const auto gathered = [&]<class Real>(Real) {
-        const std::span<const Real> from = all.as<Real>();
-        std::vector<Real> out(3 * points.size());
-        parallel_each(points.size(), 1 << 14, [&](std::size_t i) {
-            for (std::size_t axis = 0; axis < 3; ++axis) out[3 * i + axis] = from[3 * points[i] + axis];
-        });
-        return Array::own(std::move(out), 3);
-    };
-    surface.positions = all.type() == ScalarType::float32 ? gathered(float{}) : gathered(double{});
+    surface.positions = in_order(all, points);
     std::vector<std::int64_t> ends(2 * points.size());
     parallel_each(ends.size(), 1 << 14, [&](std::size_t i) { ends[i] = static_cast<std::int64_t>(points[i / 2]); });
     surface.edge_ends = Array::own(std::move(ends), 2);

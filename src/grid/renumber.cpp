@@ -55,7 +55,7 @@ Array renumbered(const IndexColumn& connectivity, std::size_t size, const Buffer
 
 } // namespace
 
-Array in_order(const Array& values, const Buffer<std::uint64_t>& original) {
+Array in_order(const Array& values, std::span<const std::uint64_t> original) {
     const std::size_t components = values.components();
     return values.visit([&]<class T>(std::span<const T> typed) {
         Buffer<T> out(original.size() * components);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include <isotet/grid.hpp>
 
@@ -22,7 +23,7 @@ Result<void> check_point_numbers(const Grid& grid);
 /// Errors   as check_point_numbers()
 Result<Renumbered> sort_points_by_number(const Grid& grid);
 
-/// Tuples in the new order.
-Array in_order(const Array& values, const Buffer<std::uint64_t>& original);
+/// The tuples with some numbers, in their order.
+Array in_order(const Array& values, std::span<const std::uint64_t> original);
 
 } // namespace isotet::core

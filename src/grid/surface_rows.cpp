@@ -6,20 +6,12 @@
 
 #include "base/buffer.hpp"
 #include "base/parallel.hpp"
+#include "grid/renumber.hpp"
 
 namespace isotet::core {
 
 Array rows_of(const Array& array, const std::vector<std::uint64_t>& rows) {
-    if (array.empty()) return array;
-    const std::size_t components = array.components();
-    return array.visit([&](auto values) {
-        using Value = std::remove_cvref_t<decltype(values[0])>;
-        Buffer<Value> out(rows.size() * components);
-        parallel_each(rows.size(), 1 << 14, [&](std::size_t i) {
-            for (std::size_t k = 0; k < components; ++k) out[i * components + k] = values[rows[i] * components + k];
-        });
-        return std::move(out).to_array(components);
-    });
+    return array.empty() ? array : in_order(array, rows);
 }
 
 Surface with_triangles(const Surface& surface, const std::vector<std::uint64_t>& triangles) {

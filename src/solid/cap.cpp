@@ -69,9 +69,15 @@ public:
         for_parts(sides, [&](std::span<const PartVertex> part) {
             std::array<Corner, 16> polygon;
             const std::size_t count = corners_of(face, part, polygon);
-            // Any fan of a flat part will do; that of a whole face starts in its lowest point, as when cells are split.
-            add_fan(std::span(polygon).first(count), is_cut ? 0 : lowest_corner(face), number_of(face), out.triangles);
+            const auto corners = std::span(polygon).first(count);
+            add_fan(corners, first_corner(face, corners, is_cut), number_of(face), out.triangles);
         });
+    }
+
+    /// `place`   of a point of the boundary
+    bool is_tied(std::uint32_t place) const {
+        return (cuts_.lower && stored_[place] == cuts_.lower->isovalue.tied) ||
+               (cuts_.upper && stored_[place] == cuts_.upper->isovalue.tied);
     }
 
 private:
@@ -94,7 +100,8 @@ private:
         std::uint64_t crossings = 0;
         for (std::size_t k = 0; k < sides.size(); ++k) {
             const Side one = sides[k], next = sides[(k + 1) % sides.size()];
-            crossings += ((one == Side::below) != (next == Side::below)) + ((one == Side::above) != (next == Side::above));
+            crossings +=
+                ((one == Side::below) != (next == Side::below)) + ((one == Side::above) != (next == Side::above));
         }
         return crossings / 2;
     }
@@ -136,6 +143,24 @@ private:
                 return found + (*cut)->first_vertex;
         }
         return place | point_bit;
+    }
+
+    /// Where the fan of a part begins. Where three corners are vertices of isosurfaces, as at ties, these may have a triangle
+    /// there: the fan has the same one, so that both can be left out. Else a whole face begins in its lowest point, as when
+    /// cells are split; so do those that are not flat.
+    std::size_t first_corner(const BoundaryFace& face, std::span<const Corner> corners, bool is_cut) const {
+        const std::size_t n = corners.size();
+        const auto is_vertex = [&](std::size_t k) {
+            const Corner corner = corners[k % n];
+            return (corner & point_bit) == 0 || is_tied(static_cast<std::uint32_t>(corner));
+        };
+        std::size_t vertices = 0;
+        for (std::size_t k = 0; k < n; ++k) vertices += is_vertex(k);
+        if (n > 3 && vertices == 3 && !is_warped(face))
+            for (std::size_t k = 0; k < n; ++k)
+                for (std::size_t i = k + 1; is_vertex(k) && i + 1 < k + n; ++i)
+                    if (is_vertex(i) && is_vertex(i + 1)) return k;
+        return is_cut ? 0 : lowest_corner(face);
     }
 
     static std::size_t lowest_corner(const BoundaryFace& face) {
@@ -292,7 +317,8 @@ struct DirectedEdge {
 
 template <class Real>
 Cap make_cap(const BoundaryFaces& boundary, const Array& points, const Array& values, const Cuts<Real>& cuts) {
-    RawCap raw = raw_cap(boundary, CapMaker<Real>(boundary, points, values, cuts));
+    const CapMaker<Real> maker(boundary, points, values, cuts);
+    RawCap raw = raw_cap(boundary, maker);
     std::vector<std::uint32_t> numbers(boundary.points.size(), Rim::no_vertex);
     for (const RawTriangle& triangle : raw.triangles)
         for (const Corner corner : triangle.corners)
@@ -304,6 +330,7 @@ Cap make_cap(const BoundaryFaces& boundary, const Array& points, const Array& va
         if (numbers[place] == Rim::no_vertex) continue;
         numbers[place] = cuts.vertices + static_cast<std::uint32_t>(cap.points.size());
         cap.points.push_back(boundary.points[place]);
+        cap.tied.push_back(maker.is_tied(static_cast<std::uint32_t>(place)));
     }
     const std::uint32_t first_apex = cuts.vertices + static_cast<std::uint32_t>(cap.points.size());
     const auto vertex_of = [&](Corner corner) {
@@ -318,8 +345,7 @@ Cap make_cap(const BoundaryFaces& boundary, const Array& points, const Array& va
     });
     if (std::ranges::any_of(boundary.faces, [](const BoundaryFace& face) { return face.mark.any(); })) {
         cap.marks.resize(raw.triangles.size());
-        for (std::size_t i = 0; i < cap.marks.size(); ++i)
-            cap.marks[i] = boundary.faces[raw.triangles[i].face].mark;
+        for (std::size_t i = 0; i < cap.marks.size(); ++i) cap.marks[i] = boundary.faces[raw.triangles[i].face].mark;
     }
     cap.apexes.resize(raw.apexes.size());
     core::parallel_each(raw.apexes.size(), 1 << 12, [&](std::size_t i) {

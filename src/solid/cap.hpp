@@ -57,6 +57,7 @@ struct Cap {
     std::vector<std::uint64_t> cells;                    ///< of the grid, one a triangle
     std::vector<FaceMark> marks;                         ///< of the faces, one a triangle; empty: no face has one
     std::vector<std::uint64_t> points; ///< of the grid: vertices behind those of the isosurfaces, ascending
+    std::vector<std::uint8_t> tied;    ///< of each of these points: whether it is
     std::vector<Apex> apexes;          ///< vertices behind these
     std::uint64_t seam_edges = 0;      ///< where isosurfaces end in doubled walls
     std::uint64_t unfit_edges = 0;     ///< where they end in unfit ones

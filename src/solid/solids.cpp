@@ -23,7 +23,7 @@
 #include "solid/assemble.hpp"
 #include "solid/boundary_faces.hpp"
 #include "solid/cap.hpp"
-#include "solid/flat_walls.hpp"
+#include "solid/double_sheets.hpp"
 #include "solid/patches.hpp"
 #include "solid/rim.hpp"
 #include "solid/solid_input.hpp"
@@ -146,6 +146,7 @@ Result<Contour> contour_of_ghosts(const ContourInput& all, const Array& marks, c
     bare.point_fields = {};
     bare.cell_fields = {};
     ContourOptions same_triangles;
+    same_triangles.method = options.method;
     same_triangles.precision = options.precision;
     same_triangles.split_cells = options.split_cells;
     same_triangles.frame = options.frame;
@@ -159,30 +160,24 @@ std::vector<solid::Shell> shells_of(std::vector<Extraction>& surfaces, const Sol
     return shells;
 }
 
-/// Triangles of the solid.
-Result<std::vector<std::uint64_t>> flat_walls(const Surface& solid, std::span<const solid::Shell> shells,
-                                              std::optional<Contour>& of_ghosts, const SolidRange& range,
-                                              const Run& run) {
-    if (!solid::has_tied_vertices(shells)) return std::vector<std::uint64_t>();
-    std::vector<solid::Shell> others;
-    if (of_ghosts) {
-        Result<ContourResult> found = of_ghosts->extract(solid::ends_of_range(range), run);
-        if (!found) return found.error();
-        others = shells_of(found->surfaces, range);
-    }
-    return solid::triangles_of_flat_walls(solid, shells, others);
+bool has_tied_points(const ContourResult& result) {
+    return std::ranges::any_of(result.surfaces, [](const Extraction& one) { return one.report.tied_points > 0; });
 }
 
-void leave_out_walls(std::span<const std::uint64_t> walls, Solid& out, solid::Cap& cap) {
-    out.surface = solid::without_triangles(out.surface, walls);
-    const auto first_of_cap = std::ranges::lower_bound(walls, out.isosurface_triangles);
+/// Also of the marks of the cap.
+Result<void> leave_out_double_sheets(std::span<const solid::Shell> shells, std::span<const solid::Shell> others,
+                                     const Array& points, const Progress& progress, Solid& out, solid::Cap& cap) {
+    const auto left_out = solid::leave_out_double_sheets(out.surface, shells, cap, others, points, progress);
+    if (!left_out) return left_out.error();
+    const auto first_of_cap = std::ranges::lower_bound(*left_out, out.isosurface_triangles);
     std::vector<solid::FaceMark> marks;
-    auto wall = first_of_cap;
+    auto next = first_of_cap;
     for (std::size_t i = 0; i < cap.marks.size(); ++i)
-        if (wall != walls.end() && *wall == out.isosurface_triangles + i) ++wall;
+        if (next != left_out->end() && *next == out.isosurface_triangles + i) ++next;
         else marks.push_back(cap.marks[i]);
     cap.marks = std::move(marks);
-    out.isosurface_triangles -= static_cast<std::uint64_t>(first_of_cap - walls.begin());
+    out.isosurface_triangles -= static_cast<std::uint64_t>(first_of_cap - left_out->begin());
+    return {};
 }
 
 } // namespace
@@ -280,9 +275,16 @@ Result<Solid> Solids::extract(const SolidRange& range, const Run& run) {
             out.open_edges = solid::count_open_edges(
                 cap, out.surface.triangles.as<std::uint32_t>().first(3 * out.isosurface_triangles),
                 static_cast<std::uint32_t>(out.surface.vertex_count()));
-        Result<std::vector<std::uint64_t>> walls = flat_walls(out.surface, shells, data.of_ghosts, range, inside);
-        if (!walls) return walls.error();
-        if (!walls->empty()) leave_out_walls(*walls, out, cap);
+        if (has_tied_points(out.contour)) {
+            std::vector<solid::Shell> others;
+            if (data.of_ghosts) {
+                Result<ContourResult> found = data.of_ghosts->extract(isovalues, inside);
+                if (!found) return found.error();
+                others = shells_of(found->surfaces, range);
+            }
+            if (auto done = leave_out_double_sheets(shells, others, data.input.grid.points, progress, out, cap); !done)
+                return done.error();
+        }
         if (auto made = add_normals(data.options.normals, out.surface, inside); !made) return made.error();
         out.seam_edges = cap.seam_edges;
         out.unfit_edges = cap.unfit_edges;

@@ -514,6 +514,7 @@ TEST_F(Program, ExtractDoesNotOverwriteTheFileOfIsovalues) {
     EXPECT_EQ(isotet({"render", "make:kuhn:4:sphere", "-i", "@" + levels, "--json", levels}).status, 2);
     EXPECT_EQ(isotet({"bench", "make:kuhn:4:sphere", "-i", "@" + levels, "--json", levels}).status, 2);
     EXPECT_EQ(isotet({"view", "make:kuhn:4:sphere", "-i", "@" + levels, "--json", levels}).status, 2);
+    EXPECT_EQ(isotet({"view", "make:kuhn:4:sphere", "--beside", levels, "--json", levels}).status, 2);
     EXPECT_EQ(content_of(levels), "0.5\n");
     EXPECT_EQ(content_of(as_surface), "0.5\n");
 }

@@ -13,10 +13,11 @@ namespace {
 using namespace isotet::view;
 
 void check_state(const ViewState& state) {
-    const auto json = parse_json(text_of(to_json(state)));
+    const std::string text = text_of(to_json(state));
+    const auto json = parse_json(text);
     if (!json) std::abort();
     const auto back = state_of(*json);
-    if (!back) std::abort();
+    if (!back || text_of(to_json(*back)) != text) std::abort();
     const auto words = render_words(state, "grid.vtu");
     const auto command = state_of_command(shell_text(words));
     if (!command || render_words(command->state, "grid.vtu") != words) std::abort();

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <numeric>
+#include <random>
 #include <utility>
 #include <vector>
 
@@ -54,6 +56,81 @@ std::size_t back_to_back(const Surface& surface) {
         ++turns[from_lowest];
     }
     return count;
+}
+
+/// Edges at which two triangles lie flat on each other.
+std::size_t folds(const Surface& surface) {
+    using Vector = std::array<double, 3>;
+    const auto triangles = surface.triangles.as<std::uint32_t>();
+    const auto at = [&](std::uint32_t vertex) {
+        return Vector{surface.positions.at(vertex, 0), surface.positions.at(vertex, 1), surface.positions.at(vertex, 2)};
+    };
+    const auto difference = [](const Vector& a, const Vector& b) { return Vector{a[0] - b[0], a[1] - b[1], a[2] - b[2]}; };
+    const auto dot = [](const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<Vector>> normals; // by directed edge
+    for (std::size_t i = 0; i < triangles.size(); i += 3) {
+        const Vector a = difference(at(triangles[i + 1]), at(triangles[i])), b = difference(at(triangles[i + 2]), at(triangles[i]));
+        Vector normal{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+        const double length = std::sqrt(dot(normal, normal));
+        if (length < 1e-9) continue;
+        for (double& x : normal) x /= length;
+        for (std::size_t k = 0; k < 3; ++k) normals[{triangles[i + k], triangles[i + (k + 1) % 3]}].push_back(normal);
+    }
+    std::size_t count = 0;
+    for (const auto& [edge, some] : normals) {
+        const auto back = normals.find({edge.second, edge.first});
+        if (back == normals.end() || edge.first > edge.second) continue;
+        for (const Vector& one : some)
+            for (const Vector& other : back->second) count += dot(one, other) < -1 + 1e-10;
+    }
+    return count;
+}
+
+/// The 24 ways to number the corners of a hexahedron that do not turn it inside out.
+std::vector<std::array<std::uint8_t, 8>> turns_of_a_hexahedron() {
+    using Turn = std::array<std::uint8_t, 8>;
+    const Turn about_z{1, 2, 3, 0, 5, 6, 7, 4}, about_x{3, 2, 6, 7, 0, 1, 5, 4};
+    std::vector<Turn> all{{0, 1, 2, 3, 4, 5, 6, 7}};
+    for (std::size_t i = 0; i < all.size(); ++i)
+        for (const Turn& next : {about_z, about_x}) {
+            Turn made{};
+            for (std::size_t k = 0; k < 8; ++k) made[k] = all[i][next[k]];
+            if (std::ranges::find(all, made) == all.end()) all.push_back(made);
+        }
+    return all;
+}
+
+/// Hexahedra askew in space with the values 0, 1 and 2, their corners and points in any order.
+NastyGrid turned_hexahedra(std::uint32_t seed, bool single) {
+    std::mt19937 random(seed);
+    const Grid made = made_grid("hex", 4, {});
+    const std::size_t count = made.points.tuples();
+    std::vector<std::int64_t> place(count);
+    std::iota(place.begin(), place.end(), 0);
+    for (std::size_t i = count; i > 1; --i) std::swap(place[i - 1], place[random() % i]);
+    std::vector<double> points(3 * count), values(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const double x = made.points.at(i, 0), y = made.points.at(i, 1), z = made.points.at(i, 2);
+        const auto to = static_cast<std::size_t>(place[i]);
+        points[3 * to] = 0.36 * x + 0.48 * y - 0.8 * z;
+        points[3 * to + 1] = -0.8 * x + 0.6 * y;
+        points[3 * to + 2] = 0.48 * x + 0.64 * y + 0.6 * z;
+        values[to] = random() % 3;
+    }
+    const auto turns = turns_of_a_hexahedron();
+    std::vector<std::int64_t> connectivity, offsets{0};
+    for (std::size_t cell = 0; cell < made.cells.count(); ++cell) {
+        for (const std::uint8_t corner : turns[random() % turns.size()])
+            connectivity.push_back(place[static_cast<std::size_t>(made.cells.connectivity.at(8 * cell + corner))]);
+        offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
+    }
+    NastyGrid out;
+    out.grid.points = single ? Array::own(std::vector<float>(points.begin(), points.end()), 3) : Array::own(std::move(points), 3);
+    out.grid.cells.connectivity = Array::own(std::move(connectivity));
+    out.grid.cells.offsets = Array::own(std::move(offsets));
+    out.grid.cells.types = Array::own(std::vector<std::uint8_t>(made.cells.count(), 12));
+    out.field = {"value", Array::own(std::move(values)), false, {}};
+    return out;
 }
 
 Solids solids_of(const NastyGrid& g, const ContourOptions& options) {
@@ -145,15 +222,34 @@ TEST(Solid, OfCellsWithWarpedFacesIsClosedAndWhole) {
                          {.precision = Precision::float64}, {-0.3, 0, 0.5, 1}, of_doubles);
 }
 
-TEST(Solid, HasNoWallsWithoutThickness) {
+TEST(Solid, HasNoDoubleSheets) {
     for (const core::CellKind kind : core::cell_kinds)
         for (const NastyGrid& g : {all_cases(kind), all_neighbours(kind)})
             for (const SolidRange& range : {SolidRange::above(1), SolidRange::below(1), SolidRange{0.5, 1}}) {
                 SCOPED_TRACE(testing::Message() << "from " << range.lower << " to " << range.upper);
                 const Solid solid = solids_of(g, {.precision = Precision::float64}).extract(range).value();
                 EXPECT_EQ(back_to_back(solid.surface), 0u);
+                EXPECT_EQ(folds(solid.surface), 0u);
                 for (const SurfacePart& part : find_parts(solid.surface).value().parts)
                     EXPECT_GT(part.volume, 1e-9 * part.area);
+            }
+}
+
+TEST(Solid, HasNoDoubleSheetsWhateverTheOrderOfCorners) {
+    EXPECT_EQ(turns_of_a_hexahedron().size(), 24u);
+    for (const bool single : {false, true})
+        for (const Precision precision : {Precision::float32, Precision::float64})
+            for (const std::uint32_t seed : Seeds(900, 6)) {
+                SCOPED_TRACE(testing::Message() << (single ? "float32" : "float64") << " points, "
+                                                << (precision == Precision::float32 ? "single" : "double"));
+                Solids solids = solids_of(turned_hexahedra(seed, single), {.precision = precision});
+                for (const SolidRange& range : {SolidRange::above(1), SolidRange::below(1), SolidRange{0.5, 1}}) {
+                    const Solid solid = solids.extract(range).value();
+                    EXPECT_EQ(solid.open_edges, 0u);
+                    EXPECT_EQ(unbalanced_edges(solid.surface), 0u);
+                    EXPECT_EQ(back_to_back(solid.surface), 0u);
+                    EXPECT_EQ(folds(solid.surface), 0u);
+                }
             }
 }
 
