@@ -582,6 +582,10 @@ class HandedToVtk(unittest.TestCase):
         contour.SetSolidToBetween()
         contour.Update()
         self.assertIn("takes two of them", contour.said[0])
+        clip = start(sphere(2), kind=vtkIsotetClip)
+        clip.SetSolid(vtkIsotetClip.NO_SOLID)
+        clip.Update()
+        self.assertIn("Solid is NO_SOLID", clip.said[0])
 
     def test_blocks_with_quadratic_cells_are_not_refined(self):
         blocks = vtkMultiBlockDataSet()

@@ -126,7 +126,7 @@ std::string Blocks::why_pieces_have_walls(const Ranks& ranks, const Looked& look
     int with_cells = 0, with_ghosts = 0;
     for (const auto& [index, block] : blocks_) {
         with_cells |= block.has_contoured();
-        with_ghosts |= block.cells().has_ghosts();
+        with_ghosts |= block.cells().has_cells_of_other_pieces();
     }
     if (ranks.sum(with_cells) < 2 || ranks.sum(with_ghosts) > 0) return {};
     const std::string need =

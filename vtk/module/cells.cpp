@@ -44,8 +44,8 @@ std::bitset<256> tetrahedra() {
     return std::bitset<256>().set(static_cast<std::size_t>(isotet::CellType::tetrahedron));
 }
 
-bool has_ghost(const isotet::Array& marks) {
-    return std::ranges::any_of(marks.as<std::uint8_t>(), [](std::uint8_t mark) { return (mark & ghost_bits) != 0; });
+bool has_mark(const isotet::Array& marks, std::uint8_t bits) {
+    return std::ranges::any_of(marks.as<std::uint8_t>(), [bits](std::uint8_t mark) { return (mark & bits) != 0; });
 }
 
 #if VTK_MAJOR_VERSION > 9 || (VTK_MAJOR_VERSION == 9 && VTK_MINOR_VERSION >= 4)
@@ -92,7 +92,8 @@ isotet::Result<void> SharedCells::take(vtkUnstructuredGrid* grid, const isotet::
     kinds_ = kinds_of(types);
     if (kinds_[polyhedron]) share_faces(grid);
     own_ = all_;
-    has_ghosts_ = has_ghost(marks_);
+    has_ghosts_ = has_mark(marks_, ghost_bits);
+    has_others_cells_ = has_mark(marks_, duplicate_bit);
     if (has_ghosts_)
         if (auto ok = leave_out_ghosts(points); !ok) return ok;
     if (has_others()) {

@@ -32,6 +32,7 @@ public:
     const isotet::Cells& all() const { return all_; }
     const isotet::Cells& own() const { return own_; }
     bool has_ghosts() const { return has_ghosts_; }
+    bool has_cells_of_other_pieces() const { return has_others_cells_; }
     const isotet::Array& ghosts() const { return marks_; }
 
     /// Whether the last take() found other cells.
@@ -54,7 +55,7 @@ private:
     isotet::Cells all_, own_;
     isotet::Array marks_;
     std::bitset<256> kinds_;
-    bool has_ghosts_ = false, changed_ = true, refines_ = false;
+    bool has_ghosts_ = false, has_others_cells_ = false, changed_ = true, refines_ = false;
 };
 
 } // namespace isotet_vtk

@@ -30,6 +30,10 @@ namespace
 /// Empty where the values fit the side.
 std::string WhyNoRange(const isotet_vtk::Wishes& wishes)
 {
+  if (wishes.solid == isotet_vtk::SolidWish::none)
+  {
+    return "a clip takes cells above, below or between values, but Solid is NO_SOLID";
+  }
   const std::set<double> different(wishes.isovalues.begin(), wishes.isovalues.end());
   if (wishes.solid == isotet_vtk::SolidWish::between)
   {
