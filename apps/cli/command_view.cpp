@@ -27,9 +27,10 @@ namespace isotet::cli {
 
 namespace {
 
-/// Options that say how the file is read and refined, for command lines of the page.
+/// Files of further steps, and options that say how all are read and refined, for command lines of the page.
 std::vector<std::string> reading_options(const GridOptions& grid, const RefineChoice& refine) {
     std::vector<std::string> words;
+    for (const std::string& file : grid.more_files) words.push_back((file.starts_with('-') ? "./" : "") + file);
     const auto add = [&](const char* name, const std::string& value) { words.insert(words.end(), {name, value}); };
     if (!grid.format.empty()) add("--format", grid.format);
     if (grid.merge_points) add("--merge-points", shortest(*grid.merge_points));

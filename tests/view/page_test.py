@@ -410,6 +410,17 @@ def test_keys_of_one_character_can_be_switched_off(browser, viewer):
     browser.wait('document.querySelectorAll("#surfaces li").length === 2')
 
 
+def test_commands_name_files_of_further_steps(browser, viewer):
+    with tempfile.TemporaryDirectory() as folder:
+        files = [os.path.join(folder, f'grid{step}.vtu') for step in (1, 2)]
+        for side, file in enumerate(files, 3):
+            subprocess.run([os.environ['ISOTET_PROGRAM'], 'make', 'kuhn', '--side', str(side), '-o', file, '-q'], check=True)
+        with Viewer(*files, '--step', '1') as other:
+            start(browser, other, '&labels=0&drawn=server')
+            of_server(browser, folder)
+            browser.call('Page.navigate', url='about:blank')
+
+
 def test_one_page_too_many_is_told_once(browser, viewer):
     with Viewer(GRID, '--pages', '1') as other:
         start(browser, other)
