@@ -682,8 +682,9 @@ void add_out_and_more_files(const Command& command, GridOptions& grid, std::stri
     const auto by_place = std::make_shared<bool>(false); // OUT was given by its place
     const auto take = [&grid, &out, by_place](const std::string& option, const std::string& name) {
         if (name.empty()) refuse_value(option, name, "the name of a file");
-        if (is_of_grid(name)) return add_step(option, name, grid);
-        if (!out.empty() && !*by_place) refuse_value(option, name, "nothing beside -o but grids of further time steps");
+        const bool is_named = !out.empty() && !*by_place; // by -o
+        if (is_of_grid(name) || (is_named && kinds_of(name).grid)) return add_step(option, name, grid);
+        if (is_named) refuse_value(option, name, "nothing beside -o but grids of further time steps");
         if (*by_place) add_step(option, out, grid); // the last one is OUT
         out = name;
         *by_place = true;

@@ -589,6 +589,16 @@ TEST_F(Program, PiecesAreTogetherTheSurfaceOfTheWhole) {
     }
 }
 
+/// .vtk is an ending of grids and of surfaces.
+TEST_F(Program, FilesOfLegacyVtkAreTimeStepsBesideANamedOutput) {
+    const std::string steps[] = {path("s_0.vtk"), path("s_1.vtk")};
+    for (const std::string& step : steps)
+        std::filesystem::copy_file(source_folder() / "data/vtk/lox_post_pressure.vtk", step);
+    const json report = json_of({"extract", steps[0], steps[1], "-o", path("s-{step}.vtp"), "--all-steps"});
+    EXPECT_EQ(report["surfaces"].size(), 2u);
+    EXPECT_EQ(isotet({"extract", steps[0], path("b.ply"), "-o", path("a.ply")}).status, 2);
+}
+
 TEST_F(Program, PiecesOfFilesAreTogetherTheSurfaceOfTheWhole) {
     const std::string data = (source_folder() / "data").string();
     const std::string files[][2] = {{data + "/vtkhdf/can_hex.hdf", "DISPL:z"},
