@@ -73,11 +73,7 @@ Result<std::vector<Item>> items_of(const CellChoice& choice, const std::vector<R
     std::vector<Item> items;
     for (std::size_t i = 0, begin = 0; i < ends.size(); begin = ends[i++] + 1) {
         std::string part = choice.list.substr(begin, ends[i] - begin);
-        if (auto item = number_or_range(part)) {
-            items.push_back(*std::move(item));
-            continue;
-        }
-        bool found = false;
+        bool found = false; // names first: some are numbers of other regions
         for (std::size_t last = ends.size(); last-- > i && !found;) {
             const std::string name = choice.list.substr(begin, ends[last] - begin);
             for (const RegionName& region : regions) {
@@ -88,7 +84,10 @@ Result<std::vector<Item>> items_of(const CellChoice& choice, const std::vector<R
             }
             if (found) i = last;
         }
-        if (!found) return no_such_item(choice, part, regions);
+        if (found) continue;
+        std::optional<Item> item = number_or_range(part);
+        if (!item) return no_such_item(choice, part, regions);
+        items.push_back(*std::move(item));
     }
     return items;
 }

@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <compare>
+#include <iterator>
 #include <utility>
 
 #include <tbb/parallel_sort.h>
 
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
+#include "grid/orientation.hpp"
 #include "grid/surface_rows.hpp"
 #include "solid/warped_face.hpp"
 
@@ -55,16 +57,23 @@ class TiedTriangles {
 public:
     static constexpr std::uint64_t of_others = ~std::uint64_t{0};
 
+    explicit TiedTriangles(std::size_t count) { triangles_.reserve(count); }
+
     void add(const Corners& corners, bool whole, std::uint64_t number) {
         triangles_.push_back(tied_triangle(corners, number));
         triangles_.back().whole = whole;
     }
 
-    /// `is_flat(corners)`   of four tied vertices
-    template <class IsFlat>
-    void cancel(const IsFlat& is_flat) {
-        pair_triangles();
-        while (pair_quadrilaterals(is_flat)) pair_triangles();
+    /// `shape`        is_flat() of four tied vertices, are_opposed() of two triangles of these
+    /// `isosurface`   triangles of the solid with lower numbers are of isosurfaces
+    /// Returns        false: it was cancelled
+    template <class Shape>
+    bool cancel(const Shape& shape, std::uint64_t isosurface, const Progress& progress) {
+        do {
+            if (progress.cancelled()) return false;
+            pair_triangles();
+        } while (pair_quadrilaterals(shape, isosurface));
+        return true;
     }
 
     /// Triangles of the solid that are left with other corners.
@@ -102,10 +111,10 @@ private:
 
     /// abc and acd are one side of a quadrilateral abcd, adb and bdc the other. Returns whether there was one. Parts of faces
     /// have three corners on isosurfaces at most.
-    template <class IsFlat>
-    bool pair_quadrilaterals(const IsFlat& is_flat) {
+    template <class Shape>
+    bool pair_quadrilaterals(const Shape& shape, std::uint64_t isosurface) {
         const std::size_t before = triangles_.size();
-        const std::vector<std::array<Vertex, 4>> quadrilaterals = find_quadrilaterals(is_flat);
+        const std::vector<std::array<Vertex, 4>> quadrilaterals = find_quadrilaterals(shape);
         for (const auto& [a, b, c, d] : quadrilaterals) {
             const auto found = find_all({{{a, b, c}, {a, c, d}, {a, d, b}, {b, d, c}}});
             if (std::ranges::find(found, nullptr) != found.end()) continue;
@@ -114,8 +123,14 @@ private:
         std::vector<TiedTriangle> left;
         for (const auto& [a, b, c, d] : quadrilaterals) {
             const auto [first, second, across, other] = find_all({{{a, b, c}, {a, c, d}, {a, d, b}, {b, d, c}}});
-            if (!first || !second || !(across || other)) continue;
-            for (TiedTriangle* triangle : {first, second, across ? across : other}) triangle->taken = true;
+            TiedTriangle* const against = across ? across : other;
+            if (!first || !second || !against) continue;
+            // What is left has the vertices, and is of the part and the piece, that both are of.
+            if ((first->number == of_others) != (second->number == of_others)) continue;
+            if ((first->number < isosurface) != (second->number < isosurface)) continue;
+            // Else it lies beside them: three triangles around a point.
+            if (!shape.are_opposed({a, b, c}, across ? Corners{a, d, b} : Corners{b, d, c})) continue;
+            for (TiedTriangle* triangle : {first, second, against}) triangle->taken = true;
             TiedTriangle* const kept = std::min(first, second, by_number);
             left.push_back(tied_triangle(across ? Corners{b, c, d} : Corners{a, b, d}, kept->number));
             left.back().whole = left.back().reshaped = true;
@@ -127,9 +142,10 @@ private:
     }
 
     /// In an order that follows from the triangles alone; each several times.
-    template <class IsFlat>
-    std::vector<std::array<Vertex, 4>> find_quadrilaterals(const IsFlat& is_flat) const {
+    template <class Shape>
+    std::vector<std::array<Vertex, 4>> find_quadrilaterals(const Shape& shape) const {
         std::vector<HalfEdge> edges;
+        edges.reserve(3 * static_cast<std::size_t>(std::ranges::count_if(triangles_, &TiedTriangle::whole)));
         for (const TiedTriangle& triangle : triangles_) {
             if (!triangle.whole) continue;
             Corners at = triangle.corners;
@@ -151,7 +167,7 @@ private:
                 for (const HalfEdge& across : along(a, c)) {
                     const Vertex d = across.third;
                     if (d == b || (along(b, d).empty() && along(d, b).empty())) continue;
-                    if (is_flat(std::array{a, b, c, d})) found[range].push_back({a, b, c, d});
+                    if (shape.is_flat({a, b, c, d})) found[range].push_back({a, b, c, d});
                 }
             }
         });
@@ -231,8 +247,14 @@ public:
     /// By no more than coordinates are rounded. Of tied vertices.
     bool is_flat(const std::array<Vertex, 4>& corners) const {
         std::array<Place3, 4> places;
-        for (std::size_t k = 0; k < 4; ++k) places[k] = points_[static_cast<std::uint64_t>(names_[corners[k]].below)];
+        for (std::size_t k = 0; k < 4; ++k) places[k] = place_of(corners[k]);
         return !is_warped(places, rounding_ * largest_coordinate(places));
+    }
+
+    /// Whether two triangles of one plane face opposite ways. Of tied vertices.
+    bool are_opposed(const Corners& one, const Corners& other) const {
+        const Place3 a = area_of(one), b = area_of(other);
+        return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] < 0;
     }
 
     /// The numbers of another shell's vertices: those of equal ones, else new ones.
@@ -256,11 +278,16 @@ public:
     }
 
 private:
+    Place3 place_of(Vertex vertex) const { return points_[static_cast<std::uint64_t>(names_[vertex].below)]; }
+    Place3 area_of(const Corners& corners) const {
+        return polygon_of(std::array{place_of(corners[0]), place_of(corners[1]), place_of(corners[2])}).area;
+    }
+
     core::PointReader points_;
     std::size_t on_isosurfaces_, of_solid_;
     double rounding_; ///< of points
     std::vector<Name> names_;
-    std::vector<std::uint8_t> tied_; ///< of those that the cap adds
+    std::vector<std::uint8_t> tied_;               ///< of those that the cap adds
     std::vector<std::pair<Name, Vertex>> by_name_; ///< of the solid
 };
 
@@ -291,6 +318,7 @@ Result<std::vector<std::uint64_t>> leave_out_double_sheets(Surface& solid, std::
                                                            const Cap& cap, std::span<const Shell> others,
                                                            const Array& points, const Progress& progress) {
     Vertices vertices(solid, shells, cap, points);
+    const std::uint64_t isosurface = solid.triangle_count() - cap.triangles.size();
     const auto count_tied = [&](const Corners& corners) {
         return std::ranges::count_if(corners, [&](Vertex vertex) { return vertices.is_tied(vertex); });
     };
@@ -300,9 +328,10 @@ Result<std::vector<std::uint64_t>> leave_out_double_sheets(Surface& solid, std::
     };
     std::uint64_t tied = 0;
     for (std::size_t i = 0; i < solid.triangle_count(); ++i) tied += count_tied(corners_of(i)) > 0;
-    constexpr std::uint64_t bytes_a_triangle = 120;
+    for (const Shell& shell : others) tied += shell.surface.triangle_count();
+    constexpr std::uint64_t bytes_a_triangle = 150;
     if (auto ok = core::require_memory("leaving out double sheets", bytes_a_triangle * tied); !ok) return ok.error();
-    TiedTriangles sheets;
+    TiedTriangles sheets(tied);
     for (std::size_t i = 0; i < solid.triangle_count(); ++i)
         if (const auto count = count_tied(corners_of(i))) sheets.add(corners_of(i), count == 3, i);
     for (const Shell& shell : others) {
@@ -314,8 +343,8 @@ Result<std::vector<std::uint64_t>> leave_out_double_sheets(Surface& solid, std::
             if (const auto count = count_tied(corners)) sheets.add(corners, count == 3, TiedTriangles::of_others);
         }
     }
-    if (progress.cancelled()) return Error{ErrorCode::cancelled, "leaving out double sheets was cancelled"};
-    sheets.cancel([&](const std::array<Vertex, 4>& corners) { return vertices.is_flat(corners); });
+    if (!sheets.cancel(vertices, isosurface, progress))
+        return Error{ErrorCode::cancelled, "leaving out double sheets was cancelled"};
     if (const auto reshaped = sheets.reshaped(); !reshaped.empty())
         solid.triangles = with_corners(solid.triangles, reshaped);
     std::vector<std::uint64_t> left_out = std::move(sheets).left_out();

@@ -22,7 +22,7 @@ namespace isotet::solid {
 /// `others`   isosurfaces of cells that belong to other pieces: a triangle of the solid may lie on one of theirs
 /// `points`   of the grid
 /// Returns    the triangles that were left out, ascending
-/// Cost       O(n log n) in the triangles with a tied vertex, 120 bytes each while it works, and 24 bytes a vertex
+/// Cost       O(n log n) in the triangles with a tied vertex, 150 bytes each while it works, and 24 bytes a vertex
 /// Errors     out_of_memory, cancelled
 Result<std::vector<std::uint64_t>> leave_out_double_sheets(Surface& solid, std::span<const Shell> shells,
                                                            const Cap& cap, std::span<const Shell> others,

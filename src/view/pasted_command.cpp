@@ -259,7 +259,7 @@ constexpr PageOption more_page_options[] = {
     {"--cells", "", "FIELD=LIST, at most 8 times",
      [](Pasting& pasting, const std::string& value) {
          std::vector<std::string>& cells = pasting.pasted.state.cells;
-         if (value.size() > max_name_bytes || cells.size() >= max_cell_choices) return false;
+         if (value.size() > max_name_bytes || cells.size() + 1 >= max_cell_choices) return false;
          cells.push_back(value);
          return true;
      }},

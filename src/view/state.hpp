@@ -23,7 +23,7 @@ namespace isotet::view {
 inline constexpr std::size_t max_isovalues = 32;
 inline constexpr std::size_t max_name_bytes = 4096;
 inline constexpr std::size_t max_planes = 6;            ///< to clip with, and as many slices
-inline constexpr std::size_t max_cell_choices = 8;
+inline constexpr std::size_t max_cell_choices = 9; ///< of messages: those of a pasted line, and hidden classes
 inline constexpr double default_boundary_opacity = 0.1; ///< as SceneLook has it
 
 /// The field as a volume, as isotet render --volume draws it: the server draws.

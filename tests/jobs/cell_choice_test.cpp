@@ -417,6 +417,13 @@ TEST(BlockField, ChoosesCellsAndColoursByName) {
     const auto counts = count_cells_by_type(grid.cells);
     EXPECT_EQ(grid.cells.count() - counts.at(0), cells);
     EXPECT_EQ(grid.cell_fields.size(), 2u) << "the field that chooses is not read by it";
+    GridOptions by_number = options;
+    by_number.file = blocks_of(folder, {"2", "1"}); // the names of the other ones' numbers
+    for (const char* name : {"1", "2"}) {
+        by_number.cells = {std::string("block=") + name};
+        const Grid one = GridSource::open(by_number, listener)->read({}, 0, listener).value();
+        EXPECT_EQ(one.cells.types.at(0) == 0, std::string(name) == "1") << "names come before numbers";
+    }
     options.cells = {"block=stator"};
     EXPECT_FALSE(GridSource::open(options, listener));
     DrawJob job;

@@ -6,12 +6,14 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <utility>
 #include <vector>
 
 #include <isotet/pieces.hpp>
 #include <isotet/solid.hpp>
 
+#include "support/random_grid.hpp"
 #include "support/small_grid.hpp"
 
 namespace isotet::test {
@@ -101,6 +103,68 @@ TEST(SolidPieces, HaveNoDoubleSheetsWhereTheyMeet) {
             EXPECT_EQ(below.isosurface_triangles, 0u);
             EXPECT_GT(below.surface.triangle_count(), 0u);
         }
+    }
+}
+
+/// Three cells around a point above a plane of it, and three below; the field is the height.
+NastyGrid cells_around_a_point(bool hexahedra) {
+    std::vector<double> points, values;
+    std::vector<std::int64_t> connectivity, offsets{0};
+    for (const double z : {0.0, 1.0, -1.0}) {
+        points.insert(points.end(), {0, 0, z});
+        for (int k = 0; k < 6; ++k)
+            points.insert(points.end(), {std::cos(std::numbers::pi / 3 * k), std::sin(std::numbers::pi / 3 * k), z});
+    }
+    for (std::size_t i = 2; i < points.size(); i += 3) values.push_back(points[i]);
+    const auto add = [&](const std::vector<std::int64_t>& corners) {
+        connectivity.insert(connectivity.end(), corners.begin(), corners.end());
+        offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
+    };
+    for (const std::int64_t k : {0, 2, 4}) {
+        const std::int64_t a = 1 + k, b = 1 + (k + 1) % 6, c = 1 + (k + 2) % 6;
+        if (hexahedra) {
+            add({a, b, c, 0, a + 7, b + 7, c + 7, 7});
+            add({a + 14, b + 14, c + 14, 14, a, b, c, 0});
+        } else {
+            add({0, a, c, 7});
+            add({0, c, a, 14});
+        }
+    }
+    NastyGrid out;
+    out.grid.points = Array::own(std::move(points), 3);
+    out.grid.cells.connectivity = Array::own(std::move(connectivity));
+    out.grid.cells.types = Array::own(std::vector<std::uint8_t>(offsets.size() - 1, hexahedra ? 12 : 10));
+    out.grid.cells.offsets = Array::own(std::move(offsets));
+    out.field = {"height", Array::own(std::move(values)), false, {}};
+    return out;
+}
+
+/// Three triangles around a point of a plane are no double sheet, whichever pieces they are of.
+TEST(SolidPieces, KeepWhatLiesBesideEachOther) {
+    for (const bool hexahedra : {false, true}) {
+        SCOPED_TRACE(hexahedra ? "hexahedra" : "tetrahedra");
+        const NastyGrid g = cells_around_a_point(hexahedra);
+        const ContourInput whole{g.grid, g.field, {}, {}};
+        ContourOptions options{.precision = Precision::float64}; // points keep their places, whose vertices they are
+        const Solid all = Solids::create(whole, options).value().extract(SolidRange::above(0)).value();
+        const Extraction surface = Contour::create(whole).value().extract(0.0).value().surfaces[0];
+        EXPECT_EQ(all.isosurface_triangles, surface.surface.triangle_count());
+        EXPECT_EQ(all.open_edges, 0u);
+        std::vector<Triangle> expected, found;
+        append(all.surface, expected);
+        for (std::size_t own = 0; own < g.grid.cells.count(); ++own) {
+            std::vector<std::uint8_t> ghosts(g.grid.cells.count(), 1);
+            ghosts[own] = 0;
+            options.frame = take_piece(whole, {0, 1}).value().frame;
+            Solids solids = Solids::create_piece(whole, Array::own(std::move(ghosts)), options).value();
+            const Solid part = solids.extract(SolidRange::above(0)).value();
+            for (const std::uint32_t vertex : part.surface.triangles.as<std::uint32_t>())
+                ASSERT_LT(vertex, part.surface.vertex_count());
+            append(part.surface, found);
+        }
+        std::ranges::sort(expected);
+        std::ranges::sort(found);
+        EXPECT_TRUE(expected == found);
     }
 }
 
