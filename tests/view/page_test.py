@@ -1072,15 +1072,23 @@ def rendered(browser, folder):
 
 
 def of_server(browser, folder):
-    """Rows of the server's picture above the axes, which are those of the copied command."""
+    """Rows of the server's picture above the axes, which become those of the copied command."""
     browser.value('new Promise(done => setTimeout(done, 500))')
+    end = time.monotonic() + 30
+    while True:
+        seen, differ = rows_of_server(browser, folder)
+        if not differ:
+            return seen
+        check(time.monotonic() < end, f'isotet render draws the same, but for {len(differ)} rows, {differ[:5]}')
+
+
+def rows_of_server(browser, folder):
+    """Those of the picture that is there, and which of them are others than those of the copied command."""
     browser.wait('document.body.dataset.preview === "false" && document.body.dataset.picture === "image/png" && document.getElementById("message").hidden')
     x, y, w, h = (int(one) for one in browser.box('#scene'))
     seen = [row[3 * x:3 * (x + w)] for row in pixels(browser.picture())[2][y:y + h - 100]]
     drawn = rendered(browser, folder)[2][:h - 100]
-    differ = [j for j in range(h - 100) if seen[j] != drawn[j]]
-    check(not differ, f'isotet render draws the same, but for {len(differ)} rows, {differ[:5]}')
-    return seen
+    return seen, [j for j in range(h - 100) if seen[j] != drawn[j]]
 
 
 def test_pictures_of_the_server(browser, viewer):
@@ -1533,8 +1541,8 @@ def test_heights_and_the_axis_upwards(browser, viewer):
     browser.wait('document.body.dataset.camera.includes(":0,0,1:0,1,0:") && location.hash.includes("%3A0%2C0%2C1%3A0%2C1%2C0%3A")')
     browser.value('history.back()')
     browser.wait('document.getElementById("up").value === "y" && !document.body.dataset.camera.includes(":0,0,1:0,1,0:")')
-    browser.value('location.reload()')
-    browser.wait('document.getElementById("up")?.value === "y" && document.getElementById("heights-text")?.value === "3"')
+    browser.value('window.isOld = true, location.reload()')
+    browser.wait('!window.isOld && document.getElementById("up")?.value === "y" && document.getElementById("heights-text")?.value === "3"')
     browser.call('Page.navigate', url='about:blank')
 
 
