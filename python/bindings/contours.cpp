@@ -370,11 +370,12 @@ void add_solids(nb::module_& module) {
 }
 
 /// The grid with the arrays beside it as fields.
-Grid with_sources(const ClippedGrid& clipped) {
+/// `source_cells`   they were asked for: a grid without cells has them, too
+Grid with_sources(const ClippedGrid& clipped, bool source_cells) {
     Grid grid = clipped.grid;
-    const bool is_empty = clipped.source_cells.empty();
-    grid.cell_fields.push_back(
-        {"source_cell", is_empty ? Array::own(std::vector<std::int64_t>()) : clipped.source_cells});
+    if (source_cells)
+        grid.cell_fields.push_back({"source_cell", clipped.source_cells.empty() ? Array::own(std::vector<std::int64_t>())
+                                                                                : clipped.source_cells});
     if (!clipped.edge_ends.empty()) {
         grid.point_fields.push_back({"edge_ends", clipped.edge_ends});
         grid.point_fields.push_back({"edge_weights", clipped.edge_weights});
@@ -406,12 +407,12 @@ void add_clippers(nb::module_& module) {
             "grid"_a, "field"_a, "fields"_a, "cell_fields"_a, "options"_a, "call"_a)
         .def(
             "clip",
-            [](Clipper& self, double lower, double upper, bool polyhedra, const CallOptions& how) {
+            [](Clipper& self, double lower, double upper, bool polyhedra, bool source_cells, const CallOptions& how) {
                 const ClippedGrid clipped =
                     call(how, [&](const Run& run) { return self.clip({lower, upper}, {polyhedra}, run); });
-                return nb::make_tuple(with_sources(clipped), clipped_out(clipped), clipped.contour.notes);
+                return nb::make_tuple(with_sources(clipped, source_cells), clipped_out(clipped), clipped.contour.notes);
             },
-            "lower"_a, "upper"_a, "polyhedra"_a, "call"_a);
+            "lower"_a, "upper"_a, "polyhedra"_a, "source_cells"_a, "call"_a);
 }
 
 void add_packed_grids(nb::module_& module) {

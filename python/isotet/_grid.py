@@ -835,7 +835,7 @@ class Clipper:
             raise ValueError("clipping needs above, below or both")
         lower = -math.inf if above is None else float(above)
         upper = math.inf if below is None else float(below)
-        grid, told, notes = self._clipper.clip(lower, upper, bool(polyhedra), call_options(threads, progress))
+        grid, told, notes = self._clipper.clip(lower, upper, bool(polyhedra), True, call_options(threads, progress))
         return Grid._of(grid, told, 0, notes)
 
     def __repr__(self) -> str:

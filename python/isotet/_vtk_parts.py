@@ -206,7 +206,7 @@ class IsotetClip(_Sided):
         single = how["points"] is None and points_of(block.grid).dtype == block.scalars.values.dtype == np.float32
         options = self._options(how, self._precision if single else "float64")
         clipper = _isotet.Clipper(mine, field, self._fields(block), carried_of(block.grid.GetCellData(), "vtkGhostType"), options, call)
-        grid, told, _ = clipper.clip(*ranges[0], self._polyhedra, call)
+        grid, told, _ = clipper.clip(*ranges[0], self._polyhedra, False, call)
         if told["folded_pieces"]:
             self._warn(f"pieces with cells inside out, as no point sees all of them: {told['folded_pieces']}; Polyhedra avoids them")
         kinds = {name: values.dtype for name, values in self._fields(block)}
