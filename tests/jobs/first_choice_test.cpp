@@ -18,6 +18,7 @@
 #include <isotet/write.hpp>
 
 #include "jobs/listener.hpp"
+#include "jobs/read_here.hpp"
 #include "support/places.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -188,14 +189,6 @@ bool is_right(const FirstView& view, const Wanted& wanted) {
     return wanted.fields.empty() ? view.field.empty() : std::ranges::any_of(wanted.fields, is_it);
 }
 
-bool is_read_here(const std::string& path) {
-    const std::string ending = path.substr(path.rfind('.'));
-    const auto knows = [&](const Format& format) {
-        return format.reads_grid && std::ranges::find(format.extensions, ending) != format.extensions.end();
-    };
-    return std::ranges::any_of(formats(), knows);
-}
-
 TEST(FirstChoice, IsThatOfAPersonForNearlyAllFiles) {
     const test::TemporaryFolder folder;
     std::size_t right = 0, all = 0;
@@ -208,11 +201,11 @@ TEST(FirstChoice, IsThatOfAPersonForNearlyAllFiles) {
                                          static_cast<int>(view.draw), fmt::join(wanted.fields, " or ")));
     };
     for (const RealFile& file : real_files())
-        if (is_read_here(file.path))
+        if (test::is_read_here(file.path))
             look(file.path, test::source_folder().string() + "/data/" + file.path, file.wanted);
     for (const MadeFile& file : made_files()) look(file.what, write_made(file, folder.file("made.vtu")), file.wanted);
     EXPECT_GE(20 * right, 19 * all) << right << " of " << all << " are right:\n" << fmt::to_string(fmt::join(wrong, "\n"));
-    if (is_read_here("a.e")) {
+    if (test::is_read_here("a.e")) {
         EXPECT_GE(all, 40u);
     }
 }

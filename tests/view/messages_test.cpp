@@ -67,7 +67,7 @@ TEST(ParsePageMessage, RefusesEverythingElse) {
                              R"({"do":"chart"})",
                              R"({"do":"chart","field":"p","step":-1})",
                              R"({"do":"chart","field":"p","cells":"a=1"})",
-                             R"({"do":"show","number":1,"state":{"cells":["","","","","","","","",""]}})",
+                             R"({"do":"show","number":1,"state":{"cells":["","","","","","","","","",""]}})",
                              R"({"do":"show","number":1,"state":{"cells":[1]}})",
                              R"({"do":"spectrum","field":"p","step":"1"})",
                              R"({"do":"paste","text":null})",
