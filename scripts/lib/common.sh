@@ -72,12 +72,13 @@ in_log() {
 }
 
 # use_ccache: compiles by way of ccache, where it is installed: what was compiled before, in any checkout, is taken from the
-# user's cache.
+# user's cache. Results that other settings of ccache put there are not: where a header may be younger than the compiler's
+# start, a header changed while it was read is kept with the result of the old one, in precompiled headers too.
 use_ccache() {
     if ! command -v ccache >/dev/null; then return; fi
     export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
     export CCACHE_BASEDIR=$root CCACHE_NOHASHDIR=1 CCACHE_COMPILERCHECK=content
-    export CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
+    export CCACHE_NAMESPACE=isotet CCACHE_SLOPPINESS=pch_defines,time_macros
 }
 
 # build NAME FOLDER CMAKE_OPTIONS...: configures and builds the tree in FOLDER; does next to nothing when it is up to date.
