@@ -11,6 +11,7 @@ from chromium import Browser
 
 DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'data')
 ARTERY = os.path.join(DATA, 'vtu', 'artery_flow_tet_wedge.vtu')
+FOAM = os.path.join(DATA, '..', 'tests', 'corruption', 'samples', 'openfoam')
 TETGEN = [os.path.join(DATA, 'tetgen', 'ellipsoid_16k' + ending) for ending in ('.node', '.ele')]
 
 
@@ -32,9 +33,9 @@ def start(browser, path):
     browser.wait('document.getElementById("drop") !== null')
 
 
-def choose(browser, files):
+def choose(browser, files, input='#chosen-files'):
     document = browser.call('DOM.getDocument')['root']['nodeId']
-    node = browser.call('DOM.querySelector', nodeId=document, selector='#chosen-files')['nodeId']
+    node = browser.call('DOM.querySelector', nodeId=document, selector=input)['nodeId']
     browser.call('DOM.setFileInputFiles', nodeId=node, files=[os.path.abspath(file) for file in files])
 
 
@@ -82,6 +83,23 @@ def test_files_are_chosen_and_dropped(browser, path, folder):
     ready(browser, 'ellipsoid_16k.node')
     check_triangles(browser, TETGEN[0])
     check(browser.value('document.getElementById("drop").hidden'), 'the picture is not covered')
+
+
+def test_folders_of_openfoam_are_dropped(browser, path, folder):
+    """The case's folder, what is in it, and files without their folders."""
+    files = [os.path.join(top, name) for top, _, names in os.walk(FOAM) for name in names]
+    for dropped, name in [([FOAM], 'openfoam'), ([os.path.join(FOAM, one) for one in os.listdir(FOAM)], 'OpenFOAM case'), (files, 'OpenFOAM case')]:
+        start(browser, path)
+        drop(browser, dropped)
+        ready(browser, name)
+        check_triangles(browser, FOAM)
+    start(browser, path)
+    choose(browser, [FOAM], '#chosen-folder')
+    ready(browser, 'openfoam')
+    start(browser, path)
+    drop(browser, [os.path.join(FOAM, '0')])
+    browser.wait('!document.getElementById("message").hidden')
+    check('no format' in sentence(browser), f'a folder without a grid is a sentence: {sentence(browser)}')
 
 
 def test_broken_files_are_sentences(browser, path, folder):

@@ -3,6 +3,31 @@
 
 const noEntry = 44, badDescriptor = 8, notSupported = 58; // of WASI
 const folder = 3, plainFile = 4, aFolder = 3;
+const entryBytes = 24; // of a name in a folder, before its letters
+
+/** "/a/./b/../c" as "a/c". */
+function plainPath(path) {
+  const parts = [];
+  for (const part of path.split('/')) {
+    if (part === '..') parts.pop();
+    else if (part !== '' && part !== '.') parts.push(part);
+  }
+  return parts.join('/');
+}
+
+/** What each folder of paths holds: name -> whether it is a folder. */
+function foldersOf(paths) {
+  const folders = new Map([['', new Map()]]);
+  for (const path of paths) {
+    const parts = path.split('/');
+    for (let i = 0; i < parts.length; ++i) {
+      const at = parts.slice(0, i).join('/');
+      if (!folders.has(at)) folders.set(at, new Map());
+      folders.get(at).set(parts[i], i + 1 < parts.length);
+    }
+  }
+  return folders;
+}
 
 /** Bytes in memory, read as a file. */
 export const bytesAsFile = (bytes) => ({size: bytes.length, read: (at, count) => bytes.subarray(at, at + count)});
@@ -26,19 +51,36 @@ export function blobAsFile(blob) {
 export class Files {
   /** @param files  {path: {size, read(at, count)}} */
   constructor(files) {
-    this.files = new Map(Object.entries(files));
+    this.files = new Map(Object.entries(files).map(([path, file]) => [plainPath(path), file]));
+    this.folders = foldersOf(this.files.keys());
     this.opened = new Map(); // by descriptor
     this.next = folder + 1;
   }
 
   view() { return new DataView(this.memory.buffer); }
 
-  /** Files that were given without their folders are found by their names. */
-  find(at, length) {
-    const path = new TextDecoder().decode(new Uint8Array(this.memory.buffer, at, length)).replace(/^[./]+/, '');
-    if (this.files.has(path)) return this.files.get(path);
-    const name = path.split('/').pop(), same = [...this.files].filter(([other]) => other.split('/').pop() === name);
-    return path.includes('/') && same.length === 1 ? same[0][1] : undefined;
+  path(at, length) { return plainPath(new TextDecoder().decode(new Uint8Array(this.memory.buffer, at, length))); }
+
+  /** A file that was given without its folder is found by its name. */
+  find(path) { return this.files.get(path) ?? this.files.get(path.split('/').pop()); }
+
+  /** The names of a folder from a place on, as WASI has them; returns how many bytes. */
+  list(names, from, to, room) {
+    const view = this.view();
+    let at = 0;
+    for (let i = from; i < names.length && at < room; ++i) {
+      const [name, isFolder] = names[i], letters = new TextEncoder().encode(name), entry = new DataView(new ArrayBuffer(entryBytes));
+      entry.setBigUint64(0, BigInt(i + 1), true);
+      entry.setBigUint64(8, BigInt(i + 1), true);
+      entry.setUint32(16, letters.length, true);
+      entry.setUint8(20, isFolder ? aFolder : plainFile);
+      for (const part of [new Uint8Array(entry.buffer), letters]) { // the last may be cut: it is asked for again
+        const count = Math.min(part.length, room - at);
+        new Uint8Array(view.buffer).set(part.subarray(0, count), to + at);
+        at += count;
+      }
+    }
+    return at;
   }
 
   /** Fills parts of memory with a file from a place on; returns how many bytes. */
@@ -76,35 +118,42 @@ export class Files {
       fd_fdstat_get: (file, to) => {
         const view = this.view();
         for (let i = 0; i < 24; i += 8) view.setBigUint64(to + i, 0n, true);
-        view.setUint8(to, file === folder ? aFolder : plainFile);
+        view.setUint8(to, file === folder || this.opened.get(file)?.names ? aFolder : plainFile);
         view.setBigUint64(to + 8, 0xffffffffn, true);
         view.setBigUint64(to + 16, 0xffffffffn, true);
         return 0;
       },
       fd_filestat_get: (number, to) => {
         const opened = this.opened.get(number);
-        return opened ? this.status(to, plainFile, opened.file.size, number) : this.status(to, aFolder, 0);
+        return opened?.file ? this.status(to, plainFile, opened.file.size, number) : this.status(to, aFolder, 0);
       },
       path_filestat_get: (_folder, _flags, name, length, to) => {
-        const file = this.find(name, length);
+        const path = this.path(name, length), file = this.find(path);
+        if (this.folders.has(path)) return this.status(to, aFolder, 0);
         return file ? this.status(to, plainFile, file.size) : noEntry;
       },
       path_open: (_folder, _lookup, name, length, _flags, _rights, _inherited, _more, to) => {
-        const file = this.find(name, length);
-        if (!file) return noEntry;
-        this.opened.set(this.next, {file, at: 0});
+        const path = this.path(name, length), names = this.folders.get(path), file = names ? null : this.find(path);
+        if (file === undefined) return noEntry;
+        this.opened.set(this.next, {file, names: names && [...names], at: 0});
         this.view().setUint32(to, this.next++, true);
+        return 0;
+      },
+      fd_readdir: (number, to, room, from, count) => {
+        const names = this.opened.get(number)?.names;
+        if (!names) return badDescriptor;
+        this.view().setUint32(count, this.list(names, Number(from), to, room), true);
         return 0;
       },
       fd_pread: (number, parts, count, from, to) => {
         const opened = this.opened.get(number);
-        if (!opened) return badDescriptor;
+        if (!opened?.file) return badDescriptor;
         this.view().setUint32(to, this.read(opened.file, Number(from), parts, count), true);
         return 0;
       },
       fd_read: (number, parts, count, to) => {
         const opened = this.opened.get(number);
-        if (!opened) return badDescriptor;
+        if (!opened?.file) return badDescriptor;
         const got = this.read(opened.file, opened.at, parts, count);
         opened.at += got;
         this.view().setUint32(to, got, true);
