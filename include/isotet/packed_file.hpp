@@ -35,7 +35,7 @@ struct SavePackedOptions {
 ISOTET_API Result<void> save_packed(const PackedGrid& packed, const std::string& path,
                                     const SavePackedOptions& options = {}, const Run& run = {});
 
-/// Saves the steps of a series that have the same cells and points, one after another.
+/// Saves the steps of a series that have the same cells, one after another. Points may move: PackedGrid::with_points().
 class ISOTET_API PackedWriter {
 public:
     /// Writes cells, points and the field of `packed` as step 0.
@@ -44,12 +44,12 @@ public:
                                        const SavePackedOptions& options = {}, const Run& run = {});
 
     /// Adds to a file that is there: the field of `packed` becomes the next step. The grid must be the one that was saved, of
-    /// the file (PackedFile::load() and with_field()) or packed again in the same way. What is there stays where it is, and who
+    /// the file (PackedFile::load(), with_field() and with_points()) or packed again in the same way. What is there stays where it is, and who
     /// has the file open sees the old steps. At every moment the file is whole: with all of the new steps after commit(), without
     /// any of them before.
     ///
     /// Cost     a pass over cells and points, which are compared by checksums
-    /// Errors   invalid_argument: other cells or points, with the first chunk that differs; as PackedFile::open();
+    /// Errors   invalid_argument: other cells, with the first chunk that differs; as PackedFile::open();
     ///          cannot_write: another writer has the file, or it cannot be written
     static Result<PackedWriter> append(const PackedGrid& packed, const std::string& path, std::optional<double> time,
                                        const Run& run = {});
@@ -58,7 +58,7 @@ public:
     PackedWriter& operator=(PackedWriter&&) noexcept;
     ~PackedWriter();
 
-    /// Another field of the same step, or the first of the next one.
+    /// Another field of the same step, with the same points, or the first of the next one.
     /// `time`   of the step; the same for all fields of it
     /// Errors   as save_packed(); after an error of writing the file is given up
     Result<void> add_field(const PackedGrid& packed);
@@ -93,6 +93,12 @@ struct PackedCellFieldInfo {
     std::size_t components = 1;
 };
 
+/// Other points, from this step on until there are others.
+struct PackedPointsInfo {
+    std::size_t step = 0;
+    std::array<double, 3> lower{}, upper{}; ///< bounds of the points that cells use
+};
+
 /// What a packed file holds: all that opening it tells.
 struct PackedFileInfo {
     std::uint32_t major = 1, minor = 0; ///< version of the format
@@ -103,11 +109,12 @@ struct PackedFileInfo {
     PackReport report;
     std::uint64_t chunks = 0;
     bool source_cells = false;
-    std::array<double, 3> lower{}, upper{}; ///< bounds of the points that cells use
+    std::array<double, 3> lower{}, upper{}; ///< bounds of the points that cells use, at step 0
     std::size_t steps = 1;
     std::vector<double> times;           ///< one a step; empty where they are not known
     std::vector<PackedFieldInfo> fields; ///< by step, then in the order of saving
     std::vector<PackedCellFieldInfo> cell_fields; ///< likewise
+    std::vector<PackedPointsInfo> moved_points;   ///< by step
 };
 
 struct PackedFileOptions {
@@ -154,7 +161,7 @@ public:
     /// Errors       invalid_argument: there is no such field or step; file, invalid_data; out_of_memory
     Result<PackedGrid> grid(std::string_view field = {}, std::size_t step = 0, const Run& run = {}) const;
 
-    /// The same with all of its arrays in memory, everything checked.
+    /// The same as grid() with all of its arrays in memory, everything checked.
     Result<PackedGrid> load(std::string_view field = {}, std::size_t step = 0, const Run& run = {}) const;
 
     /// A cell field at a step, by the user's cells, for ExtractOptions::cell_fields. All of it is read.

@@ -127,7 +127,7 @@ TEST(BrokenPackedFile, SaysWhatIsWrong) {
     newer[8] = 2;
     const std::uint32_t checksum = io::crc32c(std::as_bytes(std::span(newer)).first(20));
     std::memcpy(newer.data() + 20, &checksum, 4);
-    EXPECT_EQ(message(newer), folder.file("x") + ": it has version 2.1 of the format, but this isotet reads 1.x");
+    EXPECT_EQ(message(newer), folder.file("x") + ": it has version 2.2 of the format, but this isotet reads 1.x");
     EXPECT_EQ(message("solid"), folder.file("x") + ": a packed file has at least 4096 bytes, but this one has 5");
     EXPECT_EQ(message(std::string(5'000, 'x')), folder.file("x") + ": it does not begin as packed files do");
     EXPECT_EQ(message(whole.substr(0, 5'000)),

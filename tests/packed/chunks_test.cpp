@@ -275,26 +275,28 @@ TEST(PackedChunks, HaveValuesAtTheBoundaryOfTheirGridOnly) {
     EXPECT_EQ(refused.error().message, "field 'gyroid' is of another packed grid than the boundary");
 }
 
-/// Written by version 1.0: `isotet pack make:mixed:2:gyroid --source-cells --gradients`.
+/// Written by these versions: `isotet pack make:mixed:2:gyroid --source-cells --gradients`.
 TEST(PackedChunks, OfAnOldVersionAreReadAndAddedTo) {
     const Grid grid = made_grid("mixed", 2, {"gyroid"});
     PackOptions options;
     options.source_cells = options.gradients = true;
     const PackedGrid packed = pack(grid, point_field(grid), options).value();
     const TemporaryFolder folder;
-    const std::string path =
-        folder.write("old.isotet", content_of((source_folder() / "tests/packed/data/version_1_0.isotet").string()));
-    for (const std::size_t steps : {1, 2}) {
-        const PackedFile file = PackedFile::open(path).value();
-        ASSERT_EQ(file.info().steps, steps);
-        EXPECT_EQ(file.info().minor, 0u);
-        EXPECT_TRUE(file.check());
-        const PackedGrid last = file.grid({}, steps - 1).value();
-        EXPECT_TRUE(bytes_of(boundary_of(last).value()) == bytes_of(boundary_of(packed).value()));
-        EXPECT_TRUE(bytes_of(extract(last, 0.1, with_all(Ties::merge)).value().surface) ==
-                    bytes_of(extract(packed, 0.1, with_all(Ties::merge)).value().surface));
-        if (steps == 1) PackedWriter::append(packed, path, 1.0).value().commit().value();
-    }
+    for (const std::uint32_t minor : {0U, 1U})
+        for (const std::size_t steps : {1, 2}) {
+            const auto name = "version_1_" + std::to_string(minor) + ".isotet";
+            const std::string path = folder.file(name);
+            if (steps == 1) folder.write(name, content_of((source_folder() / "tests/packed/data" / name).string()));
+            const PackedFile file = PackedFile::open(path).value();
+            ASSERT_EQ(file.info().steps, steps);
+            EXPECT_EQ(file.info().minor, minor);
+            EXPECT_TRUE(file.check());
+            const PackedGrid last = file.grid({}, steps - 1).value();
+            EXPECT_TRUE(bytes_of(boundary_of(last).value()) == bytes_of(boundary_of(packed).value()));
+            EXPECT_TRUE(bytes_of(extract(last, 0.1, with_all(Ties::merge)).value().surface) ==
+                        bytes_of(extract(packed, 0.1, with_all(Ties::merge)).value().surface));
+            if (steps == 1) PackedWriter::append(packed, path, 1.0).value().commit().value();
+        }
 }
 
 } // namespace

@@ -47,7 +47,7 @@ class Cursor:
 
 def read_directory(data):
     check(data[:8] == b"isotetP\n", "magic")
-    check(struct.unpack_from("<HHII", data, 8) == (1, 1, 0x01020304, 4096), "version")
+    check(struct.unpack_from("<HHII", data, 8) == (1, 2, 0x01020304, 4096), "version")
     check(crc32c(data[:20]) == struct.unpack_from("<I", data, 20)[0], "header")
     slots = []
     for at in (512, 1024):
@@ -101,6 +101,20 @@ def check_cell_field(data, content, cells):
     print(content[c.at + 4:c.at + 4 + c.take("I")].decode(), "of cells", components)
 
 
+def check_moved_points(data, content, chunks, real, boundary_points):
+    c = Cursor(content)
+    step, boundary_crc = c.take("II")
+    c.take("9d")
+    _, _, at, boundary_at = c.take("4Q")
+    for k, chunk in enumerate(chunks):
+        size = 3 * real * chunk[1]
+        read_piece(data, at, size, c.take("I"), f"moved points of chunk {k}")
+        at += align(size)
+    places = numbers("f" if real == 4 else "d",
+                     read_piece(data, boundary_at, 3 * real * boundary_points, boundary_crc, "moved points of the boundary"))
+    print("moved", step, sum(places))
+
+
 def numbers(form, data):
     out = array(form)
     out.frombytes(data)
@@ -139,13 +153,17 @@ def local_points(record, links, first_own, cluster):
 
 def main(path):
     data = open(path, "rb").read()
-    grid, chunks, fields = None, None, []
+    grid, chunks, fields, moved = None, None, [], []
     for name, content in sections(read_directory(data)):
         if name == "GRID":
             grid = read_grid(content)
         elif name == "CHUNKS":
             chunks = list(struct.iter_unpack("<8I", content))
-        elif name == "FIELD":
+        elif name == "POINTS":
+            moved.append(content)
+        elif name in ("FIELD", "MFIELD"):
+            check((name == "MFIELD") == bool(moved and struct.unpack_from("<I", moved[0])[0] <= struct.unpack_from("<I", content)[0]),
+                  "a field's name where points have moved")
             fields.append(read_field(content, len(chunks)))
         elif name == "CELLFLD":
             check_cell_field(data, content, grid["user_cells"])
@@ -207,6 +225,8 @@ def main(path):
         print(f"{kind}: {by_type[kind]}")
     print("sums", corner_sum, repr(value_sum))
 
+    for content in moved:
+        check_moved_points(data, content, chunks, real, boundary[0])
     points, triangles, at, crc = boundary
     wide = grid["counts"][1] >= 1 << 32
     size = points * ((8 if wide else 4) + 3 * real) + 12 * triangles

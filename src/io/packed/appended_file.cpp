@@ -30,9 +30,11 @@ Error AppendedFile::failed(int number) const {
 }
 
 Result<OpenedForAppending> AppendedFile::open(const std::string& path) {
-    if (const auto there = open_plain_file(path); !there) return there.error();
+    Result<PlainFile> there = open_plain_file(path);
+    if (!there) return there.error();
     OpenedForAppending opened{AppendedFile(), {}, {}};
     AppendedFile& file = opened.file;
+    file.before_ = *std::move(there);
     file.path_ = path;
     file.file_ = Descriptor(::open(path.c_str(), O_RDWR | O_CLOEXEC));
     if (!file.file_) return file.failed(errno);
@@ -47,7 +49,7 @@ Result<OpenedForAppending> AppendedFile::open(const std::string& path) {
     file.end_ = (*source)->slot.file_bytes;
     opened.directory = (*source)->directory;
     if (opened.directory.boundary) {
-        Result<StoredBoundary> boundary = read_boundary(**source);
+        Result<StoredBoundary> boundary = read_boundary(**source, 0);
         if (!boundary) return boundary.error();
         opened.boundary_points = std::move(boundary->points);
     }
@@ -74,6 +76,10 @@ Result<void> AppendedFile::write(std::span<const std::byte> bytes) {
     end_ += buffered_.size();
     buffered_.clear();
     return {};
+}
+
+Result<void> AppendedFile::read(std::uint64_t at, std::span<std::byte> to) const {
+    return read_at(before_, path_, at, to);
 }
 
 Result<void> AppendedFile::flush_to_disk() {

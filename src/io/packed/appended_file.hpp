@@ -11,6 +11,7 @@
 #include <isotet/result.hpp>
 
 #include "io/files/file_kind.hpp"
+#include "io/files/plain_file.hpp"
 #include "io/packed/format.hpp"
 
 namespace isotet::io {
@@ -25,6 +26,8 @@ public:
     static Result<OpenedForAppending> open(const std::string& path);
 
     Result<void> write(std::span<const std::byte> bytes);
+    /// What was there when it was opened.
+    Result<void> read(std::uint64_t at, std::span<std::byte> to) const;
     std::uint64_t bytes() const noexcept { return end_ + buffered_.size(); } ///< of the file so far
 
     /// All is on the disk before the other slot is written.
@@ -38,6 +41,7 @@ private:
 
     std::string path_;
     Descriptor file_;
+    PlainFile before_;
     std::uint64_t end_ = 0;
     std::vector<std::byte> buffered_;
     std::size_t next_slot_ = 0; ///< the one that does not hold

@@ -70,12 +70,12 @@ Result<void> check_numbers(const PackedDirectory& d, const std::vector<std::uint
 
 /// Positions in the user's coordinates.
 template <class Real>
-Result<Array> user_positions(const PackedDirectory& d, std::vector<Real> stored) {
+Result<Array> user_positions(const PackedDirectory& d, const std::array<double, 3>& origin, std::vector<Real> stored) {
     if (std::ranges::any_of(stored, [](Real x) { return !(std::abs(x) <= largest_position); }))
         return broken_boundary("a coordinate is not finite, or larger than is stored");
     if (d.point_type == ScalarType::float32) return Array::own(std::move(stored), 3);
     std::vector<double> out(stored.size());
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = static_cast<double>(stored[i]) + d.origin[i % 3];
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = static_cast<double>(stored[i]) + origin[i % 3];
     return Array::own(std::move(out), 3);
 }
 
@@ -103,13 +103,31 @@ std::vector<std::byte> encode_boundary(const Packed& packed, const core::PackedB
     return out;
 }
 
+std::vector<std::byte> encode_boundary_positions(const Packed& packed, const std::vector<std::uint64_t>& points) {
+    std::vector<std::byte> out;
+    std::visit([&](const auto& reals) { append_of_points(out, reals.positions, 3, points); }, packed.reals);
+    return out;
+}
+
 std::vector<std::byte> encode_boundary_values(const Packed& packed, const std::vector<std::uint64_t>& points) {
     std::vector<std::byte> out;
     std::visit([&](const auto& reals) { append_of_points(out, reals.values, 1, points); }, packed.reals);
     return out;
 }
 
-Result<StoredBoundary> read_boundary(const PackedSource& source) {
+namespace {
+
+/// Positions of the boundary's points.
+Result<Array> decode_positions(const PackedDirectory& d, const std::array<double, 3>& origin,
+                               std::span<const std::byte>& bytes) {
+    const std::uint64_t points = d.boundary->points;
+    return d.precision == Precision::float32 ? user_positions(d, origin, take_numbers<float>(bytes, 3 * points))
+                                             : user_positions(d, origin, take_numbers<double>(bytes, 3 * points));
+}
+
+} // namespace
+
+Result<StoredBoundary> read_boundary(const PackedSource& source, std::uint32_t step) {
     const PackedDirectory& d = source.directory;
     const BoundaryEntry& entry = *d.boundary;
     const auto piece = read_summed(source, entry.offset, d.boundary_bytes(), entry.checksum);
@@ -121,12 +139,18 @@ Result<StoredBoundary> read_boundary(const PackedSource& source) {
         const auto narrow = take_numbers<std::uint32_t>(left, entry.points);
         boundary.points.assign(narrow.begin(), narrow.end());
     }
-    auto positions = d.precision == Precision::float32
-                         ? user_positions(d, take_numbers<float>(left, 3 * entry.points))
-                         : user_positions(d, take_numbers<double>(left, 3 * entry.points));
+    auto positions = decode_positions(d, d.origin, left);
     if (!positions) return source.in_file(positions.error());
     auto triangles = take_numbers<std::uint32_t>(left, 3 * entry.triangles);
     if (auto ok = check_numbers(d, boundary.points, triangles); !ok) return source.in_file(ok.error());
+    if (const PointsEntry* const moved = d.points_at(step)) {
+        const auto bytes =
+            read_summed(source, moved->boundary_offset, 3 * entry.points * d.real_bytes(), moved->boundary_checksum);
+        if (!bytes) return bytes.error();
+        std::span<const std::byte> moved_bytes = *bytes;
+        positions = decode_positions(d, moved->origin, moved_bytes);
+        if (!positions) return source.in_file(positions.error());
+    }
     boundary.surface.positions = *std::move(positions);
     boundary.surface.triangles = Array::own(std::move(triangles), 3);
     return boundary;

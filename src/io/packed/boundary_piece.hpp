@@ -18,7 +18,8 @@ namespace isotet::io {
 /// The piece of a grid in memory.
 std::vector<std::byte> encode_boundary(const core::Packed& packed, const core::PackedBoundary& boundary);
 
-/// Stored values of a field at points.
+/// Stored positions of points, and values of a field.
+std::vector<std::byte> encode_boundary_positions(const core::Packed& packed, const std::vector<std::uint64_t>& points);
 std::vector<std::byte> encode_boundary_values(const core::Packed& packed, const std::vector<std::uint64_t>& points);
 
 /// As boundary_of() gives it, and the packed points, numbered as packing has them. The file has it.
@@ -27,7 +28,8 @@ struct StoredBoundary {
     Surface surface;
     std::vector<std::uint64_t> points;
 };
-Result<StoredBoundary> read_boundary(const PackedSource& source);
+/// `step`   whose points it has
+Result<StoredBoundary> read_boundary(const PackedSource& source, std::uint32_t step);
 
 /// The values of a field at the points of the boundary, in the user's type. Errors as above
 Result<Array> read_boundary_values(const PackedSource& source, const FieldEntry& field);

@@ -94,6 +94,10 @@ Result<void> check_points(const Packed& packed, const ChunkRange& chunk) {
         !all_ids_below(packed.wide_point_ids, chunk.first_point, chunk.points, packed.user_points))
         return invalid_data(fmt::format("a point has a number that the user's grid of {} points has not",
                                         packed.user_points));
+    return check_positions(packed, chunk);
+}
+
+Result<void> check_positions(const Packed& packed, const ChunkRange& chunk) {
     const bool finite = std::visit(
         [&](const auto& reals) {
             bool all = true;

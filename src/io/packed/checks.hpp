@@ -30,6 +30,9 @@ constexpr double largest_position = 2 * core::stored_infinity; ///< relative to 
 /// Positions and the user's numbers.
 Result<void> check_points(const core::Packed& packed, const ChunkRange& chunk);
 
+/// Positions alone.
+Result<void> check_positions(const core::Packed& packed, const ChunkRange& chunk);
+
 /// Corners, neighbours, ghost points and seams. Needs all headers.
 Result<void> check_topology(const core::Packed& packed, const ChunkRange& chunk);
 

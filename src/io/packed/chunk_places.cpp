@@ -51,6 +51,16 @@ PieceOffsets::PieceOffsets(const PackedDirectory& directory) {
     }
 }
 
+std::vector<std::uint64_t> positions_offsets(const PackedDirectory& directory, const PointsEntry& points) {
+    std::vector<std::uint64_t> offsets;
+    std::uint64_t next = points.offset;
+    for (const ChunkEntry& chunk : directory.chunks) {
+        offsets.push_back(next);
+        next += align_piece(directory.positions_bytes(chunk));
+    }
+    return offsets;
+}
+
 std::vector<std::uint64_t> values_offsets(const PackedDirectory& directory, const FieldEntry& field) {
     std::vector<std::uint64_t> offsets;
     std::uint64_t next = field.values_offset;

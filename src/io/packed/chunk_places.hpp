@@ -33,6 +33,7 @@ struct PieceOffsets {
 
     explicit PieceOffsets(const PackedDirectory& directory);
 };
+std::vector<std::uint64_t> positions_offsets(const PackedDirectory& directory, const PointsEntry& points);
 std::vector<std::uint64_t> values_offsets(const PackedDirectory& directory, const FieldEntry& field);
 
 } // namespace isotet::io

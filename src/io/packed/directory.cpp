@@ -89,7 +89,8 @@ private:
 
 constexpr std::string_view grid_section = "GRID    ", chunk_section = "CHUNKS  ", frame_section = "FRAME   ",
                            boundary_section = "BOUNDARY", boundary_values_section = "BVALUES ",
-                           field_section = "FIELD   ", cell_field_section = "CELLFLD ";
+                           field_section = "FIELD   ", cell_field_section = "CELLFLD ", points_section = "POINTS  ",
+                           moved_field_section = "MFIELD  "; ///< so that readers of 1.1 do not take the old points
 
 constexpr std::uint32_t has_wide_points = 1, has_cells = 2, has_wide_cells = 4, has_ranks = 8; ///< bits of flags
 
@@ -144,6 +145,20 @@ std::vector<std::byte> encode_frame(const Frame& frame) {
         out.number(static_cast<std::uint64_t>(field.type));
         for (const double x : {field.lower, field.upper, field.smallest, field.largest}) out.number(x);
     }
+    return out.take();
+}
+
+std::vector<std::byte> encode_points(const PointsEntry& points) {
+    ByteWriter out;
+    out.number(points.step);
+    out.number(points.boundary_checksum);
+    for (const auto* numbers : {&points.origin, &points.lower, &points.upper})
+        for (const double x : *numbers) out.number(x);
+    for (const std::uint64_t n :
+         {points.flushed_coordinates, points.coarse_clusters, points.offset, points.boundary_offset})
+        out.number(n);
+    for (const std::uint32_t checksum : points.checksums) out.number(checksum);
+    out.pad();
     return out.take();
 }
 
@@ -309,6 +324,28 @@ Result<void> decode_boundary_values(ByteCursor in, PackedDirectory& d) {
 }
 
 /// `chunks`   of the file
+Result<void> decode_points(ByteCursor in, std::size_t chunks, PackedDirectory& d) {
+    PointsEntry points;
+    in.into(points.step);
+    in.into(points.boundary_checksum);
+    bool finite = true;
+    for (auto* numbers : {&points.origin, &points.lower, &points.upper})
+        for (double& x : *numbers) {
+            in.into(x);
+            finite &= std::isfinite(x);
+        }
+    for (std::uint64_t* n :
+         {&points.flushed_coordinates, &points.coarse_clusters, &points.offset, &points.boundary_offset})
+        in.into(*n);
+    if (in.left() / 4 < chunks) return broken_directory("moved points have fewer checksums than there are chunks");
+    for (std::size_t k = 0; k < chunks; ++k) points.checksums.push_back(in.number<std::uint32_t>());
+    if (!in.ok()) return broken_directory("a section of moved points ends early");
+    if (!finite) return broken_directory("bounds or the origin of moved points are not finite");
+    d.moved_points.push_back(std::move(points));
+    return {};
+}
+
+/// `chunks`   of the file
 Result<void> decode_field(ByteCursor in, std::size_t chunks, PackedDirectory& d) {
     FieldEntry field;
     in.into(field.step);
@@ -409,6 +446,13 @@ Result<void> check_places(const PackedDirectory& d, std::uint64_t file_bytes) {
             if (!lies_within(field.boundary_offset, d.boundary->points * d.real_bytes(), file_bytes))
                 return outside("values of a field at the boundary");
     }
+    for (const PointsEntry& points : d.moved_points) {
+        std::uint64_t positions_bytes = 0;
+        for (const ChunkEntry& chunk : d.chunks) positions_bytes += align_piece(d.positions_bytes(chunk));
+        if (!lies_within(points.offset, positions_bytes, file_bytes) ||
+            (d.boundary && !lies_within(points.boundary_offset, 3 * d.boundary->points * d.real_bytes(), file_bytes)))
+            return outside("positions of moved points");
+    }
     for (const CellFieldEntry& field : d.cell_fields)
         if (!lies_within(field.offset, field.bytes(d.user_cells), file_bytes)) return outside("values of a cell field");
     for (const FieldEntry& field : d.fields) {
@@ -429,6 +473,15 @@ Result<void> check_cell_fields(const PackedDirectory& d) {
         for (std::size_t k = i; k-- > 0 && d.cell_fields[k].step == field.step;)
             if (d.cell_fields[k].name == field.name)
                 return broken_directory(fmt::format("step {} has two cell fields of the same name", field.step));
+    }
+    return {};
+}
+
+Result<void> check_moved_points(const PackedDirectory& d) {
+    for (std::size_t i = 0; i < d.moved_points.size(); ++i) {
+        const std::uint32_t step = d.moved_points[i].step, before = i == 0 ? 0 : d.moved_points[i - 1].step;
+        if (step <= before || step > d.fields.back().step)
+            return broken_directory("steps of moved points do not ascend from 1, or there is no such step");
     }
     return {};
 }
@@ -460,7 +513,9 @@ std::vector<std::byte> encode_directory(const PackedDirectory& directory) {
     add(grid_section, encode_grid(directory));
     add(chunk_section, encode_chunks(directory));
     if (directory.frame) add(frame_section, encode_frame(*directory.frame));
-    for (const FieldEntry& field : directory.fields) add(field_section, encode_field(field));
+    for (const PointsEntry& points : directory.moved_points) add(points_section, encode_points(points));
+    for (const FieldEntry& field : directory.fields)
+        add(directory.points_at(field.step) ? moved_field_section : field_section, encode_field(field));
     for (const CellFieldEntry& field : directory.cell_fields) add(cell_field_section, encode_cell_field(field));
     if (!directory.boundary) return out;
     add(boundary_section, encode_boundary_entry(*directory.boundary));
@@ -487,7 +542,10 @@ Result<PackedDirectory> decode_directory(std::span<const std::byte> bytes, std::
             chunks = true;
         } else if (name == frame_section) {
             decoded = decode_frame(content, d);
-        } else if (name == field_section) {
+        } else if (name == points_section) {
+            decoded = chunks ? decode_points(content, d.chunks.size(), d)
+                             : broken_directory("moved points stand before the chunks");
+        } else if (name == field_section || name == moved_field_section) {
             decoded = chunks ? decode_field(content, d.chunks.size(), d)
                              : broken_directory("a field stands before the chunks");
         } else if (name == cell_field_section) {
@@ -503,6 +561,7 @@ Result<PackedDirectory> decode_directory(std::span<const std::byte> bytes, std::
     if (!grid || !chunks) return broken_directory("the section of the grid or of the chunks is missing");
     if (auto ok = check_fields(d); !ok) return ok.error();
     if (auto ok = check_cell_fields(d); !ok) return ok.error();
+    if (auto ok = check_moved_points(d); !ok) return ok.error();
     if (d.boundary.has_value() != boundary_values.has_value())
         return broken_directory("the section of the boundary or that of its values is missing");
     if (boundary_values)

@@ -3,12 +3,31 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <map>
 #include <memory>
+#include <mutex>
 
 #include "io/packed/chunk_cache.hpp"
 #include "packed/packed.hpp"
 
 namespace isotet::io {
+
+/// Positions of points from a step on, which fields of several steps share.
+struct MovedPoints {
+    MovedPoints(ChunkCache& cache, const PointsEntry& entry, const core::Packed& packed);
+    MovedPoints(const MovedPoints&) = delete;
+    MovedPoints& operator=(const MovedPoints&) = delete;
+    ~MovedPoints() { cache.remove(*pieces); }
+
+    /// In place of those of the chunks.
+    void give_to(core::Packed& other) const;
+
+    ChunkCache& cache;
+    const PointsEntry& entry;
+    core::Packed packed; ///< only its positions count
+    std::unique_ptr<CachedPieces> pieces;
+};
 
 /// What all grids of a file share: headers, points and topology.
 class PackedStore {
@@ -22,17 +41,24 @@ public:
 
     ChunkCache& cache() { return cache_; }
     const PackedSource& source() const { return cache_.source(); }
+    CachedPieces& points() { return *points_; }
+    CachedPieces& topology() { return *topology_; }
+    const core::Packed& packed() const { return packed_; } ///< without a field
+
+    /// Null where the points of a step are those of the chunks. Must not outlive the store.
+    std::shared_ptr<const MovedPoints> moved_points(std::uint32_t step);
 
     /// As PackedFile::read_ahead().
     std::uint64_t read_ahead(const FieldEntry& field) const;
 
 private:
     PackedStore(std::shared_ptr<const PackedSource> source, std::uint64_t limit);
-    friend class FileResidency;
 
     ChunkCache cache_;
-    core::Packed packed_; ///< without a field
+    core::Packed packed_;
     std::unique_ptr<CachedPieces> points_, topology_;
+    std::mutex mutex_;
+    std::map<const PointsEntry*, std::weak_ptr<const MovedPoints>> moved_;
 };
 
 /// A grid of which parts are read as they are needed.

@@ -5,6 +5,7 @@
 //   chunks        each: points (positions, user's numbers, ranks), then topology (cells, links, user's cells); 64-byte aligned
 //   clusters      20 bytes each: the counts of their headers
 //   boundary      its points by packed number, their positions, triangles
+//   moved points  of a step: positions a chunk; then of the boundary
 //   field, step   ranges and has_no_data of all clusters; then a piece a chunk: values, group ranges, gradients; then values at
 //                 the points of the boundary
 //   cell fields   the user's arrays
@@ -28,7 +29,7 @@
 namespace isotet::io {
 
 constexpr std::string_view packed_magic = "isotetP\n";
-constexpr std::uint16_t packed_major = 1, packed_minor = 1;
+constexpr std::uint16_t packed_major = 1, packed_minor = 2;
 constexpr std::uint32_t packed_byte_order = 0x01020304;
 constexpr std::size_t packed_header_bytes = 4096, packed_minor_at = 10;
 constexpr std::array<std::size_t, 2> packed_slots{512, 1024}; ///< a sector each: written at once
@@ -64,6 +65,17 @@ struct ChunkEntry {
 struct BoundaryEntry {
     std::uint64_t points = 0, triangles = 0, offset = 0;
     std::uint32_t checksum = 0;
+};
+
+/// Positions of the points from a step on, until there are others.
+struct PointsEntry {
+    std::uint32_t step = 0;
+    std::array<double, 3> origin{}, lower{}, upper{}; ///< bounds of the points
+    std::uint64_t flushed_coordinates = 0, coarse_clusters = 0;
+    std::uint64_t offset = 0;
+    std::vector<std::uint32_t> checksums; ///< a chunk
+    std::uint64_t boundary_offset = 0;    ///< of those of the boundary, where the file has it
+    std::uint32_t boundary_checksum = 0;
 };
 
 /// A field at a step.
@@ -110,6 +122,7 @@ struct PackedDirectory {
     std::optional<Frame> frame;
     std::vector<ChunkEntry> chunks;
     std::optional<BoundaryEntry> boundary; ///< since version 1.1
+    std::vector<PointsEntry> moved_points; ///< by step, from 1 on; since version 1.2
     std::vector<FieldEntry> fields;
     std::vector<CellFieldEntry> cell_fields; ///< by step; since version 1.1; source cells are there
 
@@ -124,6 +137,16 @@ struct PackedDirectory {
     std::uint64_t topology_bytes(const ChunkEntry& chunk) const {
         const std::uint64_t cell_id = !cell_ids ? 0 : wide_cell_ids ? 8 : 4;
         return chunk.count(Unit::words) * (4 + cell_id) + chunk.count(Unit::links) * 4;
+    }
+    std::uint64_t positions_bytes(const ChunkEntry& chunk) const {
+        return chunk.count(Unit::points) * 3 * real_bytes();
+    }
+    /// Null where the points of a step are those of the chunks.
+    const PointsEntry* points_at(std::uint32_t step) const {
+        const PointsEntry* found = nullptr;
+        for (const PointsEntry& points : moved_points)
+            if (points.step <= step) found = &points;
+        return found;
     }
     /// Of the boundary's piece, which there is.
     std::uint64_t boundary_bytes() const {

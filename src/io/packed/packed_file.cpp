@@ -56,6 +56,8 @@ PackedFileInfo info_of(const io::PackedSource& source) {
     }
     for (const io::CellFieldEntry& field : d.cell_fields)
         info.cell_fields.push_back({field.step, field.name, field.type, field.components});
+    for (const io::PointsEntry& points : d.moved_points)
+        info.moved_points.push_back({points.step, points.lower, points.upper});
     if (info.times.size() < info.steps) info.times.clear();
     return info;
 }
@@ -63,7 +65,7 @@ PackedFileInfo info_of(const io::PackedSource& source) {
 /// The boundary in the file against that of the cells. Its points.
 Result<std::vector<std::uint64_t>> check_boundary(const io::PackedSource& source, const core::Packed& packed,
                                                   const Progress& progress) {
-    auto stored = io::read_boundary(source);
+    auto stored = io::read_boundary(source, 0);
     if (!stored) return stored.error();
     const auto found = core::find_boundary(packed, progress);
     if (!found) return found.error();
@@ -74,9 +76,20 @@ Result<std::vector<std::uint64_t>> check_boundary(const io::PackedSource& source
     return std::move(stored->points);
 }
 
+/// Moved positions of the boundary's points against those of the grid.
+Result<void> check_boundary_positions(const io::PackedSource& source, const io::FieldEntry& field,
+                                      const core::Packed& packed, const std::vector<std::uint64_t>& points) {
+    const io::PointsEntry* const moved = source.directory.points_at(field.step);
+    if (!moved || io::crc32c(io::encode_boundary_positions(packed, points)) == moved->boundary_checksum) return {};
+    return source.in_file(invalid_data(
+        fmt::format("the boundary is broken: its points at step {} are not those of the grid", field.step)));
+}
+
 /// Values of a field at the points of the boundary against those of the grid.
 Result<void> check_boundary_values(const io::PackedSource& source, const io::FieldEntry& field,
                                    const core::Packed& packed, const std::vector<std::uint64_t>& points) {
+    if (auto ok = check_boundary_positions(source, field, packed, points); !ok) return ok;
+    if (const auto read = io::read_boundary(source, field.step); !read) return read.error();
     if (const auto values = io::read_boundary_values(source, field); !values) return values.error();
     if (io::crc32c(io::encode_boundary_values(packed, points)) == field.boundary_checksum) return {};
     return source.in_file(invalid_data(fmt::format(

@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <variant>
 
 #include <fmt/core.h>
 
+#include "base/buffer.hpp"
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
 #include "io/files/crc32c.hpp"
@@ -53,8 +56,9 @@ std::vector<ChunkEntry> cut_into_chunks(const Packed& packed, std::uint32_t chun
     return chunks;
 }
 
-/// Of the points, in the user's coordinates.
-void find_bounds(const Packed& packed, PackedDirectory& d) {
+/// Of the points, in the user's coordinates: into an entry with `lower` and `upper`.
+template <class Entry>
+void find_bounds(const Packed& packed, Entry& d) {
     d.lower.fill(std::numeric_limits<double>::max());
     d.upper.fill(std::numeric_limits<double>::lowest());
     std::visit(
@@ -133,7 +137,8 @@ public:
 
 private:
     Result<std::uint32_t> write_piece(const Parts& parts, bool aligned);
-    Parts points_of(std::size_t k) const;
+    Parts points_of(const Packed& packed, std::size_t k) const;
+    Parts positions_of(const Packed& packed, std::size_t k) const;
     Parts topology_of(std::size_t k) const;
     std::vector<std::uint16_t> clusters_of(std::size_t k) const;
     Result<void> write_chunk(std::size_t k);
@@ -146,6 +151,14 @@ private:
     }
     Result<void> align();
     Result<void> check_new_field(const Packed& packed, std::uint32_t step) const;
+    Result<bool> has_numbers_of_chunk(std::size_t k) const;
+    bool has_points_of_chunks(const Packed& packed) const;
+    bool has_points_of(const Packed& packed, std::uint32_t step) const;
+    void remember_points(const Packed& packed) {
+        std::visit([&](const auto& reals) { positions_ = reals.positions; }, packed.reals);
+    }
+    Result<void> write_points(const Packed& packed, std::uint32_t step);
+    Result<void> take_points(const Packed& packed, std::uint32_t step);
     template <class Real>
     Result<void> write_values(const Packed& packed, FieldEntry& entry);
 
@@ -154,7 +167,15 @@ private:
     PackedDirectory directory_;
     ChunkPlaces places_;
     std::vector<std::uint64_t> boundary_points_; ///< packed ones, where the file has the boundary
+    /// Those of the last step, once a grid with them was given.
+    std::optional<std::variant<core::SharedBuffer<float>, core::SharedBuffer<double>>> positions_;
 };
+
+static std::uint32_t checksum_of(const PackedOutput::Parts& parts) {
+    std::uint32_t checksum = 0;
+    for (const auto& part : parts) checksum = crc32c(part, checksum);
+    return checksum;
+}
 
 Result<void> PackedOutput::align() {
     static constexpr std::array<std::byte, piece_alignment> zeros{};
@@ -173,14 +194,20 @@ Result<std::uint32_t> PackedOutput::write_piece(const Parts& parts, bool aligned
     return checksum;
 }
 
-PackedOutput::Parts PackedOutput::points_of(std::size_t k) const {
+PackedOutput::Parts PackedOutput::positions_of(const Packed& packed, std::size_t k) const {
+    const std::uint64_t first = places_.of(Unit::points, k), count = directory_.chunks[k].count(Unit::points);
+    return std::visit([&](const auto& reals) { return Parts{part_of(reals.positions, 3 * first, 3 * count)}; },
+                      packed.reals);
+}
+
+PackedOutput::Parts PackedOutput::points_of(const Packed& packed, std::size_t k) const {
     const std::uint64_t first = places_.of(Unit::points, k), count = directory_.chunks[k].count(Unit::points);
     return std::visit(
         [&](const auto& reals) {
-            return Parts{part_of(reals.positions, 3 * first, 3 * count), part_of(packed_->point_ids, first, count),
-                         part_of(packed_->wide_point_ids, first, count), part_of(packed_->point_ranks, first, count)};
+            return Parts{part_of(reals.positions, 3 * first, 3 * count), part_of(packed.point_ids, first, count),
+                         part_of(packed.wide_point_ids, first, count), part_of(packed.point_ranks, first, count)};
         },
-        packed_->reals);
+        packed.reals);
 }
 
 PackedOutput::Parts PackedOutput::topology_of(std::size_t k) const {
@@ -202,7 +229,7 @@ std::vector<std::uint16_t> PackedOutput::clusters_of(std::size_t k) const {
 }
 
 Result<void> PackedOutput::write_chunk(std::size_t k) {
-    const auto of_points = write_piece(points_of(k), true);
+    const auto of_points = write_piece(points_of(*packed_, k), true);
     if (!of_points) return of_points.error();
     const auto of_topology = write_piece(topology_of(k), true);
     if (!of_topology) return of_topology.error();
@@ -222,7 +249,18 @@ Result<void> PackedOutput::write_clusters() {
     return align();
 }
 
-/// The packed grid against the checksums of the file.
+/// Whether the user's numbers and the ranks of a chunk's points are those of the file that is added to.
+Result<bool> PackedOutput::has_numbers_of_chunk(std::size_t k) const {
+    const std::uint64_t positions = directory_.positions_bytes(directory_.chunks[k]);
+    core::Buffer<std::byte> there(directory_.points_bytes(directory_.chunks[k]) - positions);
+    const std::uint64_t at = PieceOffsets(directory_).points[k] + positions;
+    if (auto ok = std::get<AppendedFile>(file_).read(at, {there.data(), there.size()}); !ok) return ok.error();
+    Parts numbers = points_of(*packed_, k);
+    numbers.erase(numbers.begin());
+    return checksum_of(numbers) == crc32c({there.data(), there.size()});
+}
+
+/// The packed grid against the checksums of the file. Points may have moved.
 Result<void> PackedOutput::compare_cells() const {
     const Packed& packed = *packed_;
     const PackedDirectory own = directory_of(packed, most_chunk_bytes);
@@ -233,26 +271,84 @@ Result<void> PackedOutput::compare_cells() const {
     };
     if (own.clusters != directory_.clusters || own.counts != directory_.counts ||
         own.user_points != directory_.user_points || own.user_cells != directory_.user_cells ||
-        own.precision != directory_.precision || own.origin != directory_.origin)
-        return differs(fmt::format("the file has {} packed points and {} clusters of a grid of {} points and {} cells, and the "
-                                   "new step {} and {} of {} and {}, or another precision or origin",
-                                   directory_.count(Unit::points), directory_.clusters, directory_.user_points,
-                                   directory_.user_cells, own.count(Unit::points), own.clusters, own.user_points,
-                                   own.user_cells));
-    const auto checksum_of = [](const Parts& parts) {
-        std::uint32_t checksum = 0;
-        for (const auto& part : parts) checksum = crc32c(part, checksum);
-        return checksum;
-    };
+        own.precision != directory_.precision)
+        return differs(
+            fmt::format("the file has {} packed points and {} clusters of a grid of {} points and {} cells, and the "
+                        "new step {} and {} of {} and {}, or another precision",
+                        directory_.count(Unit::points), directory_.clusters, directory_.user_points,
+                        directory_.user_cells, own.count(Unit::points), own.clusters, own.user_points, own.user_cells));
     for (std::size_t k = 0; k < directory_.chunks.size(); ++k) {
         const ChunkEntry& chunk = directory_.chunks[k];
         const std::vector<std::uint16_t> records = clusters_of(k);
         if (checksum_of({std::as_bytes(std::span(records))}) != chunk.clusters_checksum ||
             checksum_of(topology_of(k)) != chunk.topology_checksum)
             return differs(fmt::format("the cells of chunk {} differ", k));
-        if (checksum_of(points_of(k)) != chunk.points_checksum)
-            return differs(fmt::format("the points of chunk {} differ", k));
+        if (checksum_of(points_of(packed, k)) == chunk.points_checksum) continue;
+        const Result<bool> same = has_numbers_of_chunk(k);
+        if (!same) return same.error();
+        if (!*same) return differs(fmt::format("the points of chunk {} have other numbers", k));
     }
+    return {};
+}
+
+bool PackedOutput::has_points_of_chunks(const Packed& packed) const {
+    for (std::size_t k = 0; k < directory_.chunks.size(); ++k)
+        if (checksum_of(points_of(packed, k)) != directory_.chunks[k].points_checksum) return false;
+    return packed.origin == directory_.origin;
+}
+
+/// Whether the points of a grid of the same cells are those that a step has so far.
+bool PackedOutput::has_points_of(const Packed& packed, std::uint32_t step) const {
+    const auto is_same = [&](const auto& reals) {
+        using Buffer = std::remove_cvref_t<decltype(reals.positions)>;
+        const auto* const known = positions_ ? std::get_if<Buffer>(&*positions_) : nullptr;
+        return known && known->data() == reals.positions.data();
+    };
+    if (std::visit(is_same, packed.reals)) return true;
+    const PointsEntry* const moved = directory_.points_at(step);
+    if (!moved) return has_points_of_chunks(packed);
+    for (std::size_t k = 0; k < directory_.chunks.size(); ++k)
+        if (checksum_of(positions_of(packed, k)) != moved->checksums[k]) return false;
+    return packed.origin == moved->origin;
+}
+
+/// The points of a step, which the file does not have.
+Result<void> PackedOutput::write_points(const Packed& packed, std::uint32_t step) {
+    PointsEntry entry;
+    entry.step = step;
+    entry.origin = packed.origin;
+    find_bounds(packed, entry);
+    entry.flushed_coordinates = packed.report.flushed_coordinates;
+    entry.coarse_clusters = packed.report.coarse_clusters;
+    entry.offset = bytes();
+    for (std::size_t k = 0; k < directory_.chunks.size(); ++k) {
+        const auto checksum = write_piece(positions_of(packed, k), true);
+        if (!checksum) return checksum.error();
+        entry.checksums.push_back(*checksum);
+    }
+    if (directory_.boundary) {
+        entry.boundary_offset = bytes();
+        const auto checksum = write_piece({encode_boundary_positions(packed, boundary_points_)}, true);
+        if (!checksum) return checksum.error();
+        entry.boundary_checksum = *checksum;
+    }
+    directory_.moved_points.push_back(std::move(entry));
+    return {};
+}
+
+/// Writes the points of the first field of a step where they are new; another field must have the same.
+Result<void> PackedOutput::take_points(const Packed& packed, std::uint32_t step) {
+    if (!has_points_of(packed, step)) {
+        const std::string name = in_quotes(packed.field_report.name);
+        if (directory_.fields.empty() || directory_.fields.back().step == step)
+            return invalid_argument(
+                fmt::format("field {} of step {} has other points than the fields before it", name, step));
+        if (packed.point_type != directory_.point_type)
+            return invalid_argument(fmt::format("the points of step {} are {}, but those of the file {}", step,
+                                                name_of(packed.point_type), name_of(directory_.point_type)));
+        if (auto ok = write_points(packed, step); !ok) return ok;
+    }
+    remember_points(packed);
     return {};
 }
 
@@ -264,6 +360,7 @@ Result<void> PackedOutput::write_cells(const Progress& progress) {
         if (auto ok = write_chunk(k); !ok) return ok;
         progress("write", 0.8 * static_cast<double>(k + 1) / static_cast<double>(directory_.chunks.size()));
     }
+    remember_points(*packed_);
     return write_clusters();
 }
 
@@ -281,16 +378,9 @@ Result<void> PackedOutput::write_boundary(const Progress& progress) {
 
 Result<void> PackedOutput::check_new_field(const Packed& packed, std::uint32_t step) const {
     const std::string& name = packed.field_report.name;
-    const bool same_positions = std::visit(
-        [&]<class Values>(const Values& reals) {
-            const auto* const other = std::get_if<Values>(&packed.reals);
-            return other && other->positions.data() == reals.positions.data();
-        },
-        packed_->reals);
-    if (packed.headers.data() != packed_->headers.data() || !same_positions)
-        return invalid_argument(fmt::format("field {} is of other cells or points than the file, but must be of the same "
-                                            "packed grid",
-                                            in_quotes(name)));
+    if (packed.headers.data() != packed_->headers.data() || packed.reals.index() != packed_->reals.index())
+        return invalid_argument(fmt::format(
+            "field {} is of other cells than the file, but must be of the same packed grid", in_quotes(name)));
     for (const FieldEntry& field : directory_.fields)
         if (field.step == step && field.name == name)
             return invalid_argument(fmt::format("step {} has field {} already", step, in_quotes(name)));
@@ -331,6 +421,7 @@ Result<void> PackedOutput::write_values(const Packed& packed, FieldEntry& entry)
 
 Result<void> PackedOutput::write_field(const Packed& packed, std::uint32_t step, std::optional<double> time) {
     if (auto ok = check_new_field(packed, step); !ok) return ok;
+    if (auto ok = take_points(packed, step); !ok) return ok;
     FieldEntry entry;
     entry.name = packed.field_report.name;
     entry.step = step;

@@ -1,0 +1,220 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Steps of a packed file: points that move.
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include <isotet/boundary.hpp>
+#include <isotet/contour.hpp>
+#include <isotet/packed_file.hpp>
+
+#include "packed/packed_samples.hpp"
+#include "packed/packed.hpp"
+#include "packed/right_checksums.hpp"
+#include "support/places.hpp"
+#include "support/run_program.hpp"
+
+namespace isotet::test {
+namespace {
+
+constexpr std::array<std::uint64_t, 3> memory_limits{1, 200'000, std::uint64_t{1} << 30};
+
+/// The points, drawn away from the first by a factor.
+Array stretched_points(const Array& points, double factor) {
+    std::vector<double> wide;
+    std::vector<float> narrow;
+    for (std::size_t i = 0; i < points.tuples(); ++i)
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            wide.push_back(factor * (points.at(i, axis) + 0.01 * static_cast<double>(axis)));
+            narrow.push_back(static_cast<float>(wide.back()));
+        }
+    return points.type() == ScalarType::float32 ? Array::own(std::move(narrow), 3) : Array::own(std::move(wide), 3);
+}
+
+/// A grid of mixed cells at three steps: its points move at the second, values at all.
+struct MovingGrid {
+    Precision precision;
+    std::vector<PackedGrid> steps;
+
+    MovingGrid(Precision chosen, bool wide_points) : precision(chosen) {
+        MixedOptions options;
+        options.side = 5;
+        options.values = 0;
+        options.wide = wide_points;
+        options.no_data = 0.03;
+        const NastyGrid nasty = mixed_grid(4, options);
+        const PackedGrid first = pack(nasty.grid, nasty.field, packing_of_all(precision)).value();
+        const PackedGrid second =
+            with_more(first, nasty, 0.01).with_points(stretched_points(nasty.grid.points, 1.1)).value();
+        steps = {first, second, with_more(second, nasty, 0.02)};
+    }
+
+    static PackedGrid with_more(const PackedGrid& packed, const NastyGrid& nasty, double more) {
+        std::vector<double> values;
+        for (std::size_t i = 0; i < nasty.field.values.tuples(); ++i) values.push_back(nasty.field.values.at(i) + more);
+        PointField field = nasty.field;
+        field.values = Array::own(std::move(values));
+        return packed.with_field(field).value();
+    }
+
+    std::string saved_in(const TemporaryFolder& folder) const {
+        SavePackedOptions options;
+        options.chunk_bytes = 1'000;
+        options.time = 0;
+        PackedWriter writer = PackedWriter::create(steps[0], folder.file("moving.isotet"), options).value();
+        for (std::size_t step = 1; step < steps.size(); ++step)
+            writer.add_step(steps[step], static_cast<double>(step)).value();
+        writer.commit().value();
+        return folder.file("moving.isotet");
+    }
+};
+
+std::vector<MovingGrid> moving_grids() {
+    std::vector<MovingGrid> grids;
+    for (const Precision precision : {Precision::float32, Precision::float64})
+        for (const bool wide : {false, true}) grids.emplace_back(precision, wide);
+    return grids;
+}
+
+TEST(MovingPoints, AreThoseOfTheirStep) {
+    for (const MovingGrid& grid : moving_grids()) {
+        const TemporaryFolder folder;
+        const std::string path = grid.saved_in(folder);
+        for (const std::uint64_t memory : memory_limits) {
+            const PackedFile file = PackedFile::open(path, {memory}).value();
+            for (std::size_t step = 0; step < grid.steps.size(); ++step) {
+                const PackedGrid of_file = file.grid("", step).value();
+                const PackedGrid& expected = grid.steps[step];
+                EXPECT_TRUE(bytes_of(extract(of_file, 0.1, with_all(Ties::merge)).value().surface) ==
+                            bytes_of(extract(expected, 0.1, with_all(Ties::merge)).value().surface))
+                    << step << ", " << memory << " bytes";
+                EXPECT_TRUE(bytes_of(file.load("", step).value()) == bytes_of(expected)) << step;
+                EXPECT_TRUE(bytes_of(boundary_of(of_file, {of_file}).value()) ==
+                            bytes_of(boundary_of(expected, {expected}).value()))
+                    << step;
+            }
+            file.check().value();
+            ASSERT_EQ(file.info().moved_points.size(), 1u) << "the third step has those of the second";
+            EXPECT_EQ(file.info().moved_points[0].step, 1u);
+            EXPECT_GT(file.info().moved_points[0].upper[0], file.info().upper[0]);
+        }
+    }
+}
+
+TEST(MovingPoints, AreAddedToAFileThatIsThere) {
+    const MovingGrid grid(Precision::float32, false);
+    const TemporaryFolder folder;
+    const std::string path = folder.file("moving.isotet");
+    SavePackedOptions options;
+    options.chunk_bytes = 1'000;
+    options.time = 0;
+    save_packed(grid.steps[0], path, options).value();
+    for (const std::size_t step : {1, 2})
+        PackedWriter::append(grid.steps[step], path, static_cast<double>(step)).value().commit().value();
+    const std::string appended = content_of(path);
+    const PackedFile file = PackedFile::open(path).value();
+    file.check().value();
+    EXPECT_EQ(file.info().moved_points.size(), 1u);
+    for (std::size_t step = 0; step < 3; ++step)
+        EXPECT_TRUE(bytes_of(file.load("", step).value()) == bytes_of(grid.steps[step])) << step;
+    PackedWriter::append(grid.steps[0], path, 3).value().commit().value(); // back to where they were
+    const PackedFile longer = PackedFile::open(path).value();
+    EXPECT_EQ(longer.info().moved_points.size(), 2u);
+    EXPECT_TRUE(bytes_of(longer.load("", 3).value()) == bytes_of(grid.steps[0]));
+}
+
+TEST(MovingPoints, OfFieldsOfOneStepAreTheSame) {
+    const MovingGrid grid(Precision::float32, false);
+    const TemporaryFolder folder;
+    PackedWriter writer = PackedWriter::create(grid.steps[0], folder.file("a.isotet")).value();
+    const Result<void> added = writer.add_field(grid.steps[1]);
+    ASSERT_FALSE(added);
+    EXPECT_EQ(added.error().code, ErrorCode::invalid_argument);
+}
+
+TEST(MovingPoints, AreReadWhereASessionNeedsThem) {
+    const Grid grid = made_grid("kuhn", 16, {"sphere"});
+    const PackedGrid first = pack(grid, point_field(grid)).value();
+    const PackedGrid second = first.with_points(stretched_points(grid.points, 1.25)).value();
+    const TemporaryFolder folder;
+    SavePackedOptions options;
+    options.chunk_bytes = 2'000;
+    PackedWriter writer = PackedWriter::create(first, folder.file("a.isotet"), options).value();
+    writer.add_step(second, std::nullopt).value();
+    writer.commit().value();
+    const PackedFile file = PackedFile::open(folder.file("a.isotet")).value();
+    const auto input = [&](std::size_t step) {
+        ContourInput of_step;
+        of_step.packed = file.grid("", step).value();
+        return of_step;
+    };
+    Contour contour = Contour::create(input(0)).value();
+    const std::uint64_t all = contour.extract(0.2).value().file_bytes_read;
+    EXPECT_EQ(contour.set(input(1)).value(), ContourUpdate::points);
+    const ContourResult moved = contour.extract(0.2).value();
+    EXPECT_TRUE(bytes_of(moved.surfaces[0].surface) == bytes_of(extract(second, 0.2).value().surface));
+    EXPECT_LT(moved.file_bytes_read, all) << "cells stay in memory";
+    EXPECT_EQ(contour.set(input(0)).value(), ContourUpdate::points);
+    EXPECT_TRUE(bytes_of(contour.extract(0.2).value().surfaces[0].surface) ==
+                bytes_of(extract(first, 0.2).value().surface));
+}
+
+TEST(MovingPoints, AreReadByAnotherReaderWrittenFromItsDescription) {
+    const std::string script = (source_folder() / "tests/packed/read_packed.py").string();
+    if (run_program({"/usr/bin/env", "python3", "-c", "0"}).status != 0) GTEST_SKIP() << "there is no Python";
+    for (const MovingGrid& grid : moving_grids()) {
+        const TemporaryFolder folder;
+        const RunResult run = run_program({"/usr/bin/env", "python3", script, grid.saved_in(folder)});
+        EXPECT_EQ(run.status, 0) << run.err;
+        const std::size_t moved = run.out.find("moved 1 ");
+        ASSERT_NE(moved, std::string::npos) << run.out;
+        const Array places = boundary_of(grid.steps[1]).value().positions;
+        double sum = 0, origin = 0;
+        for (std::size_t i = 0; i < places.tuples(); ++i)
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                sum += places.at(i, axis);
+                origin += grid.steps[1].data().origin[axis];
+            }
+        EXPECT_NEAR(std::stod(run.out.substr(moved + 8)), sum - origin, 1e-6 * static_cast<double>(places.size()));
+    }
+}
+
+TEST(MovingPoints, WithWrongNumbersAreErrors) {
+    const MovingGrid grid(Precision::float32, false);
+    const TemporaryFolder folder;
+    const std::string path = grid.saved_in(folder), content = content_of(path);
+    const auto all = std::as_bytes(std::span(content));
+    const io::DirectorySlot slot = io::decode_packed_header(all, content.size()).value();
+    const io::PackedDirectory d = io::decode_directory(all.subspan(slot.offset, slot.bytes), content.size()).value();
+    const auto message = [&](const std::string& broken) {
+        folder.write("moving.isotet", broken);
+        const auto file = PackedFile::open(path);
+        if (!file) return file.error().message;
+        const auto checked = file->check();
+        return checked ? std::string() : checked.error().message;
+    };
+    std::string changed = content;
+    changed[d.moved_points[0].offset] ^= 1;
+    EXPECT_NE(message(changed).find("chunk 0 is broken: its checksum differs"), std::string::npos);
+    changed = content;
+    changed[d.moved_points[0].boundary_offset] ^= 1;
+    EXPECT_NE(message(changed).find("the boundary is broken"), std::string::npos);
+    const auto with_points = [&](auto change) {
+        io::PackedDirectory other = d;
+        change(other.moved_points[0]);
+        return message(with_directory(content, slot, other));
+    };
+    EXPECT_NE(with_points([](io::PointsEntry& points) { points.step = 3; }).find("there is no such step"),
+              std::string::npos);
+    EXPECT_NE(with_points([](io::PointsEntry& points) { points.step = 0; }).find("ascend from 1"), std::string::npos);
+    EXPECT_NE(with_points([](io::PointsEntry& points) {
+                  points.offset = ~std::uint64_t{0} - 100;
+              }).find("positions of moved points lie outside of the file"),
+              std::string::npos);
+    EXPECT_NE(with_points([](io::PointsEntry& points) { points.origin[1] = std::nan(""); }).find("not finite"),
+              std::string::npos);
+}
+
+} // namespace
+} // namespace isotet::test
