@@ -161,6 +161,17 @@ public:
     /// Errors       invalid_argument: there is no such field or step; file, invalid_data; out_of_memory
     Result<PackedGrid> grid(std::string_view field = {}, std::size_t step = 0, const Run& run = {}) const;
 
+    /// The grid of a field between a step and the next: values (1 - fraction) a + fraction b, each product and the sum rounded
+    /// once as values are stored; points likewise where they move. A point without data in either step has none. Cell fields
+    /// are those of the steps. There are no gradients; the range in its report is that of both steps.
+    ///
+    /// `fraction`   0 to 1; at the ends grid() of that step
+    /// Guarantees   surfaces are the same bytes as those of the grid in memory with such values
+    /// Cost         two tables; surfaces read values of both steps
+    /// Errors       as grid(); invalid_argument: the fraction is outside, or the next step lacks the field
+    Result<PackedGrid> interpolated(std::string_view field, std::size_t step, double fraction,
+                                    const Run& run = {}) const;
+
     /// The same as grid() with all of its arrays in memory, everything checked.
     Result<PackedGrid> load(std::string_view field = {}, std::size_t step = 0, const Run& run = {}) const;
 

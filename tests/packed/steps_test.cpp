@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Steps of a packed file: points that move.
+// Steps of a packed file: points that move, and grids between two steps.
 #include <cmath>
 #include <limits>
 
@@ -214,6 +214,139 @@ TEST(MovingPoints, WithWrongNumbersAreErrors) {
               std::string::npos);
     EXPECT_NE(with_points([](io::PointsEntry& points) { points.origin[1] = std::nan(""); }).find("not finite"),
               std::string::npos);
+}
+
+/// (1 - w) a + w b in the precision of the grid, of stored numbers that are the user's.
+template <class Real>
+std::vector<Real> between(const Array& a, const Array& b, double fraction) {
+    const Real w = static_cast<Real>(fraction), u = Real(1) - w;
+    std::vector<Real> out;
+    for (std::size_t i = 0; i < a.tuples(); ++i)
+        for (std::size_t c = 0; c < a.components(); ++c) {
+            const Real at_a = static_cast<Real>(a.at(i, c)), at_b = static_cast<Real>(b.at(i, c));
+            const Real of_a = u * at_a, of_b = w * at_b;
+            out.push_back(fraction == 0 ? at_a : fraction == 1 ? at_b : of_a + of_b);
+        }
+    return out;
+}
+
+template <class Real>
+void expect_grids_between(const Grid& grid, const std::vector<Real>& next, bool moves) {
+    PackOptions options;
+    options.precision = sizeof(Real) == 4 ? Precision::float32 : Precision::float64;
+    options.source_cells = true;
+    const PointField field{
+        "p", Array::own(between<Real>(grid.point_fields[0].values, grid.point_fields[0].values, 0)), false, {}};
+    const Array points = Array::own(between<Real>(grid.points, grid.points, 0), 3);
+    Grid typed = grid;
+    typed.points = points;
+    const Array next_values = Array::own(next), next_points = stretched_points(points, moves ? 1.125 : 1);
+    const PackedGrid first = pack(typed, field, options).value();
+    PackedGrid second = first.with_field({"p", next_values, false, {}}).value();
+    if (moves) second = second.with_points(next_points).value();
+    const TemporaryFolder folder;
+    SavePackedOptions saving;
+    saving.chunk_bytes = 1'000;
+    PackedWriter writer = PackedWriter::create(first, folder.file("a.isotet"), saving).value();
+    writer.add_step(second, std::nullopt).value();
+    writer.commit().value();
+    for (const double fraction : {0.0, 0.25, 1.0 / 3, 0.9, 1.0}) {
+        PackedGrid expected =
+            first.with_field({"p", Array::own(between<Real>(field.values, next_values, fraction)), false, {}}).value();
+        if (moves) expected = expected.with_points(Array::own(between<Real>(points, next_points, fraction), 3)).value();
+        for (const std::uint64_t memory : memory_limits) {
+            const PackedFile file = PackedFile::open(folder.file("a.isotet"), {memory}).value();
+            const PackedGrid blended = file.interpolated("p", 0, fraction).value();
+            ExtractOptions carried;
+            carried.edge_ends = carried.source_cells = true;
+            carried.packed_fields = {blended};
+            ExtractOptions by_memory = carried;
+            by_memory.packed_fields = {expected};
+            for (const double isovalue : {-0.2, 0.0, 0.1, 1.0})
+                EXPECT_TRUE(bytes_of(extract(blended, isovalue, carried).value().surface) ==
+                            bytes_of(extract(expected, isovalue, by_memory).value().surface))
+                    << fraction << ", " << isovalue << ", " << memory << " bytes";
+            EXPECT_TRUE(bytes_of(boundary_of(blended, {blended}).value()) ==
+                        bytes_of(boundary_of(expected, {expected}).value()))
+                << fraction;
+            std::string whole, of_expected;
+            append_bytes(whole, unpack(blended).value().point_fields[0].values);
+            append_bytes(of_expected, unpack(expected).value().point_fields[0].values);
+            EXPECT_TRUE(whole == of_expected) << fraction;
+        }
+    }
+}
+
+TEST(GridsBetweenSteps, HaveTheSurfacesOfGridsWithThoseValues) {
+    const Grid grid = made_grid("mixed", 6, {"gyroid", "sphere"});
+    for (const bool moves : {false, true}) {
+        std::vector<float> next(grid.point_fields[1].values.as<float>().begin(),
+                                grid.point_fields[1].values.as<float>().end());
+        next[7] = std::numeric_limits<float>::quiet_NaN();
+        next[40] = std::numeric_limits<float>::infinity();
+        expect_grids_between<float>(grid, next, moves);
+        expect_grids_between<double>(grid, {next.begin(), next.end()}, moves);
+    }
+}
+
+TEST(GridsBetweenSteps, MissNoClusterWhereRoundingLeavesTheRange) {
+    const Grid grid = made_grid("kuhn", 6, {"integer"});
+    const PackedGrid packed = pack(grid, point_field(grid)).value();
+    std::vector<float> values;
+    for (std::size_t i = 0; i < grid.points.tuples(); ++i)
+        values.push_back(0.1F * static_cast<float>(grid.point_fields[0].values.at(i)));
+    const PackedGrid tenths = packed.with_field(field_of(values, "integer")).value();
+    const TemporaryFolder folder;
+    SavePackedOptions saving;
+    saving.chunk_bytes = 500;
+    PackedWriter writer = PackedWriter::create(tenths, folder.file("a.isotet"), saving).value();
+    writer.add_step(tenths, std::nullopt).value();
+    writer.commit().value();
+    const PackedFile file = PackedFile::open(folder.file("a.isotet")).value();
+    for (int i = 1; i < 60; ++i) {
+        const double fraction = i / 60.0;
+        const Array between_both = Array::own(between<float>(Array::borrow(values), Array::borrow(values), fraction));
+        const PackedGrid expected = tenths.with_field({"integer", between_both, false, {}}).value();
+        const PackedGrid blended = file.interpolated("integer", 0, fraction).value();
+        for (const std::size_t point : {0, 100, 200})
+            ASSERT_TRUE(bytes_of(extract(blended, between_both.at(point)).value().surface) ==
+                        bytes_of(extract(expected, between_both.at(point)).value().surface))
+                << fraction;
+    }
+}
+
+TEST(GridsBetweenSteps, BlendValuesThatAreScaledOtherwise) {
+    const Grid grid = made_grid("kuhn", 6, {"gyroid"});
+    std::vector<double> a, b, mean;
+    for (std::size_t i = 0; i < grid.points.tuples(); ++i) {
+        a.push_back(1e6 + 1e-3 * grid.point_fields[0].values.at(i));
+        b.push_back(2e6 + 3e-6 * grid.point_fields[0].values.at(i));
+        mean.push_back(0.5 * a.back() + 0.5 * b.back());
+    }
+    const PackedGrid first = pack(grid, field_of(a)).value(), second = first.with_field(field_of(b)).value();
+    const TemporaryFolder folder;
+    PackedWriter writer = PackedWriter::create(first, folder.file("a.isotet")).value();
+    writer.add_step(second, std::nullopt).value();
+    writer.commit().value();
+    const PackedGrid blended = PackedFile::open(folder.file("a.isotet")).value().interpolated("", 0, 0.5).value();
+    const Surface expected = extract(first.with_field(field_of(mean)).value(), 1.5e6).value().surface;
+    const Surface surface = extract(blended, 1.5e6).value().surface;
+    ASSERT_EQ(surface.triangle_count(), expected.triangle_count());
+    for (std::size_t i = 0; i < surface.vertex_count(); ++i)
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            EXPECT_NEAR(surface.positions.at(i, axis), expected.positions.at(i, axis), 1e-4);
+}
+
+TEST(GridsBetweenSteps, AreRefusedWhereThereIsNone) {
+    const Grid grid = made_grid("kuhn", 3, {"gyroid"});
+    const TemporaryFolder folder;
+    const std::string path = saved(pack(grid, point_field(grid)).value(), folder);
+    const PackedFile file = PackedFile::open(path).value();
+    EXPECT_EQ(file.interpolated("gyroid", 0, 0.5).error().message,
+              "step 1 is not there, but the file has 1 step, counted from 0");
+    EXPECT_EQ(file.interpolated("gyroid", 0, -0.5).error().code, ErrorCode::invalid_argument);
+    EXPECT_EQ(file.interpolated("gyroid", 0, std::nan("")).error().code, ErrorCode::invalid_argument);
+    EXPECT_TRUE(file.interpolated("gyroid", 0, 0));
 }
 
 } // namespace

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/guard.hpp"
+#include "base/parallel.hpp"
 
 namespace isotet::io {
 
@@ -116,12 +117,15 @@ std::vector<PieceWanted> ChunkCache::begin_loading(std::span<const PieceWanted> 
 }
 
 Result<void> ChunkCache::pin(std::span<const PieceWanted> wanted, const Progress& progress) {
+    const auto is_read = [](const PieceWanted& one) { return !one.pieces->kind().fill; };
     std::unique_lock lock(mutex_);
     const std::vector<PieceWanted> mine = begin_loading(wanted);
     lock.unlock();
     const Result<void> read = core::guarded("reading", [&]() -> Result<void> { // else others would wait for ever
-        std::vector<PieceWish> wishes;
-        for (const PieceWanted& one : mine) wishes.push_back({&one.pieces->kind(), one.chunk});
+        std::vector<PieceWish> wishes, made;
+        for (const PieceWanted& one : mine)
+            (one.pieces->kind().fill ? made : wishes).push_back({&one.pieces->kind(), one.chunk});
+        core::parallel_each(made.size(), 1, [&](std::size_t i) { made[i].kind->fill(made[i].chunk); });
         return wishes.empty() ? Result<void>() : read_pieces(*source_, places_, std::move(wishes), progress);
     });
     lock.lock();
@@ -129,7 +133,7 @@ Result<void> ChunkCache::pin(std::span<const PieceWanted> wanted, const Progress
         one.pieces->states_[one.chunk].is = CachedPieces::Is::present;
         if (!read) drop(*one.pieces, one.chunk);
     }
-    if (read) report_.pieces_read += mine.size();
+    if (read) report_.pieces_read += static_cast<std::uint64_t>(std::ranges::count_if(mine, is_read));
     if (!mine.empty()) loaded_.notify_all();
     if (!read) {
         unpin_locked(wanted);

@@ -58,7 +58,8 @@ public:
     /// Its memory is not counted any more.
     void remove(CachedPieces& pieces);
 
-    /// Brings pieces and pins each once; nothing is pinned after an error.
+    /// Brings pieces and pins each once; nothing is pinned after an error. What pieces are made of (PieceKind::fill) must have been
+    /// pinned before.
     /// Errors   as read_pieces()
     Result<void> pin(std::span<const PieceWanted> wanted, const Progress& progress);
     void unpin(std::span<const PieceWanted> wanted);

@@ -65,6 +65,13 @@ private:
 Result<std::shared_ptr<const core::Packed>> grid_of_file(const std::shared_ptr<PackedStore>& store,
                                                          const FieldEntry& field, const Progress& progress);
 
+/// The grid of a field between its step and the next: values (1 - fraction) x those of `from` + fraction x those of `to`, of
+/// points likewise where they move.
+/// `fraction`   between 0 and 1
+Result<std::shared_ptr<const core::Packed>> blended_grid_of_file(const std::shared_ptr<PackedStore>& store,
+                                                                 const FieldEntry& from, const FieldEntry& to,
+                                                                 double fraction, const Progress& progress);
+
 /// Of the arrays of a field's grid, all in memory.
 std::uint64_t bytes_of_whole(const PackedDirectory& directory, const FieldEntry& field);
 

@@ -162,6 +162,26 @@ Result<PackedGrid> PackedFile::grid(std::string_view field, std::size_t step, co
     });
 }
 
+Result<PackedGrid> PackedFile::interpolated(std::string_view field, std::size_t step, double fraction,
+                                            const Run& run) const {
+    if (!(fraction >= 0 && fraction <= 1))
+        return invalid_argument(
+            fmt::format("a fraction of {} between steps was asked for, but it must be 0 to 1", fraction));
+    if (fraction == 0) return grid(field, step, run);
+    if (fraction == 1) return grid(field, step + 1, run);
+    return core::carry_out("reading a packed file", run, [&](const Progress& progress) -> Result<PackedGrid> {
+        const auto from = data_->find(field, step);
+        if (!from) return from.error();
+        const auto to = data_->find((*from)->name, step + 1);
+        if (!to) return to.error();
+        const auto store = data_->opened_store(progress);
+        if (!store) return store.error();
+        auto packed = io::blended_grid_of_file(*store, **from, **to, fraction, progress);
+        if (!packed) return packed.error();
+        return PackedGrid(*std::move(packed));
+    });
+}
+
 Result<PackedGrid> PackedFile::load(std::string_view field, std::size_t step, const Run& run) const {
     return core::carry_out("reading a packed file", run, [&](const Progress& progress) -> Result<PackedGrid> {
         const auto entry = data_->find(field, step);

@@ -53,7 +53,9 @@ struct PieceKind {
     std::vector<ChunkedArray> arrays;
     std::vector<std::uint64_t> offsets;                     ///< in the file, a chunk
     std::function<std::uint32_t(std::size_t chunk)> checksum;
-    std::function<Result<void>(std::size_t chunk)> check;   ///< of the numbers, once they are there
+    std::function<Result<void>(std::size_t chunk)> check = {}; ///< of the numbers, once they are there
+    std::function<void(std::size_t chunk)> fill =
+        {}; ///< instead of all these where pieces are not read, but made of others
 
     std::uint64_t bytes(const PackedDirectory& directory, std::size_t chunk) const;
     std::span<std::byte> part(const PackedDirectory& directory, const ChunkPlaces& places, std::size_t array,
