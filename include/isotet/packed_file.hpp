@@ -16,6 +16,7 @@
 #include <isotet/pack.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
+#include <isotet/slice.hpp>
 
 namespace isotet {
 
@@ -171,6 +172,14 @@ public:
     /// Errors       as grid(); invalid_argument: the fraction is outside, or the next step lacks the field
     Result<PackedGrid> interpolated(std::string_view field, std::size_t step, double fraction,
                                     const Run& run = {}) const;
+
+    /// The grid with slice_field() of its points as the field: extract() at slice_isovalue() is the cut.
+    ///
+    /// Guarantees   surfaces are the same bytes as those of the grid in memory with_field(slice_field()), for any limit
+    /// Cost         all of the file but values is read once, and points once or twice before: within the limit of memory; two
+    ///              bytes for each 32 tets stay beside it. Then surfaces need what they meet
+    /// Errors       as slice_field() and grid()
+    Result<PackedGrid> sliced(const SliceShape& shape, std::size_t step = 0, const Run& run = {}) const;
 
     /// The same as grid() with all of its arrays in memory, everything checked.
     Result<PackedGrid> load(std::string_view field = {}, std::size_t step = 0, const Run& run = {}) const;

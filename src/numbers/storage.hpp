@@ -9,6 +9,7 @@
 #include <limits>
 
 #include <isotet/array.hpp>
+#include <isotet/export.hpp>
 #include <isotet/pack.hpp>
 
 namespace isotet::core {
@@ -108,10 +109,10 @@ struct ValueStatistics {
 };
 
 /// Chooses offset and `unchanged` for a field (scale stays 1: the smallest non-zero magnitude decides on it later).
-Storage choose_offset(ScalarType type, const ValueStatistics& statistics, Precision precision);
+ISOTET_API Storage choose_offset(ScalarType type, const ValueStatistics& statistics, Precision precision);
 
 /// Chooses the scale once the extreme non-zero magnitudes of (value - offset) are known (both 0 when all are 0).
-void choose_scale(Storage& storage, double smallest_magnitude, double largest_magnitude);
+ISOTET_API void choose_scale(Storage& storage, double smallest_magnitude, double largest_magnitude);
 
 /// Compares a scalar of the user's own type with a double, exactly.
 template <class T>

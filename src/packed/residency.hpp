@@ -65,7 +65,7 @@ public:
 ISOTET_API Result<std::shared_ptr<const Packed>> whole_of(const std::shared_ptr<const Packed>& packed,
                                                           const Progress& progress);
 
-std::vector<std::uint32_t> all_clusters(const Packed& packed);
+ISOTET_API std::vector<std::uint32_t> all_clusters(const Packed& packed);
 
 /// Calls work(first, last), which returns a Result<void>, for ranges of `clusters`, one after another, that are in memory
 /// meanwhile: one range of all where the grid is, and where all fit.

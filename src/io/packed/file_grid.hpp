@@ -8,6 +8,8 @@
 #include <memory>
 #include <mutex>
 
+#include <isotet/slice.hpp>
+
 #include "io/packed/chunk_cache.hpp"
 #include "packed/packed.hpp"
 
@@ -71,6 +73,11 @@ Result<std::shared_ptr<const core::Packed>> grid_of_file(const std::shared_ptr<P
 Result<std::shared_ptr<const core::Packed>> blended_grid_of_file(const std::shared_ptr<PackedStore>& store,
                                                                  const FieldEntry& from, const FieldEntry& to,
                                                                  double fraction, const Progress& progress);
+
+/// The grid at the step of `field` with slice_field() of its points in place of the field.
+Result<std::shared_ptr<const core::Packed>> sliced_grid_of_file(const std::shared_ptr<PackedStore>& store,
+                                                                const FieldEntry& field, const SliceShape& shape,
+                                                                const Progress& progress);
 
 /// Of the arrays of a field's grid, all in memory.
 std::uint64_t bytes_of_whole(const PackedDirectory& directory, const FieldEntry& field);

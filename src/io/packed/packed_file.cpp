@@ -182,6 +182,20 @@ Result<PackedGrid> PackedFile::interpolated(std::string_view field, std::size_t 
     });
 }
 
+Result<PackedGrid> PackedFile::sliced(const SliceShape& shape, std::size_t step, const Run& run) const {
+    return core::carry_out("slicing", run, [&](const Progress& progress) -> Result<PackedGrid> {
+        const auto& fields = data_->source->directory.fields;
+        const auto any = std::ranges::find_if(fields, [&](const io::FieldEntry& entry) { return entry.step == step; });
+        const auto entry = any == fields.end() ? data_->find({}, step) : Result<const io::FieldEntry*>(&*any);
+        if (!entry) return entry.error();
+        const auto store = data_->opened_store(progress);
+        if (!store) return store.error();
+        auto packed = io::sliced_grid_of_file(*store, **entry, shape, progress);
+        if (!packed) return packed.error();
+        return PackedGrid(*std::move(packed));
+    });
+}
+
 Result<PackedGrid> PackedFile::load(std::string_view field, std::size_t step, const Run& run) const {
     return core::carry_out("reading a packed file", run, [&](const Progress& progress) -> Result<PackedGrid> {
         const auto entry = data_->find(field, step);
