@@ -8,7 +8,6 @@
 #include <vector>
 
 #include <isotet/extract.hpp>
-#include <isotet/extract_direct.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/pack.hpp>
 

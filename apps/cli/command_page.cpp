@@ -5,7 +5,7 @@
 #include <isotet/jobs/output_names.hpp>
 #include <isotet/text.hpp>
 #include <isotet/version.hpp>
-#include <isotet/write_file.hpp>
+#include <isotet/write.hpp>
 
 #include "commands.hpp"
 #include "console.hpp"

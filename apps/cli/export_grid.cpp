@@ -19,7 +19,7 @@
 #include <isotet/jobs/output_names.hpp>
 #include <isotet/packed_file.hpp>
 #include <isotet/version.hpp>
-#include <isotet/write_file.hpp>
+#include <isotet/write.hpp>
 
 #include "commands.hpp"
 #include "console.hpp"

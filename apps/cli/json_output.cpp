@@ -1,7 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "json_output.hpp"
 
-#include <isotet/write_file.hpp>
+#include <isotet/write.hpp>
 
 #include "standard_streams.hpp"
 #include "text.hpp"

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include <isotet/isovalue_shares.hpp>
+#include <isotet/isovalues.hpp>
 #include <isotet/slice.hpp>
 
 namespace isotet::cli {

@@ -6,7 +6,7 @@
 #include <sys/time.h>
 #include <unistd.h>
 
-#include <isotet/write_file.hpp>
+#include <isotet/write.hpp>
 
 #include "exit_code.hpp"
 #include "standard_streams.hpp"

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <isotet/field_statistics.hpp>
+#include <isotet/fields.hpp>
 #include <isotet/jobs/first_choice.hpp>
 #include <isotet/jobs/number_text.hpp>
 

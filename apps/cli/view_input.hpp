@@ -9,7 +9,7 @@
 
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
-#include <isotet/isovalue_shares.hpp>
+#include <isotet/isovalues.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
 

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include <isotet/device_grid.hpp>
+#include <isotet/device.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/make.hpp>
 

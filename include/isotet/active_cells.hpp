@@ -9,7 +9,7 @@
 
 #include <isotet/array.hpp>
 #include <isotet/export.hpp>
-#include <isotet/extract_direct.hpp>
+#include <isotet/extract.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/result.hpp>
 

@@ -6,12 +6,18 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include <isotet/contour.hpp>
+#include <isotet/engine.hpp>
 #include <isotet/export.hpp>
+#include <isotet/extract.hpp>
+#include <isotet/pack.hpp>
+#include <isotet/progress.hpp>
 #include <isotet/result.hpp>
 
 namespace isotet {
@@ -103,5 +109,160 @@ public:
 private:
     std::shared_ptr<vulkan::Context> context_;
 };
+
+namespace vulkan {
+class GridOnDevice;
+class SurfaceBuffers;
+}
+
+struct DeviceGridOptions {
+    std::uint64_t page_bytes = std::uint64_t{32} << 20; ///< of a page, 1 GiB at most: what is moved at once where not
+                                                        ///< all of the grid fits
+    /// Device memory that uploading leaves free for surfaces where not all of the grid fits; nothing: an eighth of what
+    /// is free.
+    std::optional<std::uint64_t> surface_bytes;
+};
+
+/// Device memory that a packed grid takes.
+struct DeviceGridNeeds {
+    std::uint64_t resident_bytes = 0;     ///< always there: ranges, counts and masks of all clusters
+    std::uint64_t page_bytes = 0;         ///< all pages; fewer will do
+    std::uint64_t largest_page_bytes = 0; ///< one page is the least
+    std::size_t pages = 0;
+
+    std::uint64_t all() const noexcept { return resident_bytes + page_bytes; }
+    std::uint64_t least() const noexcept { return resident_bytes + largest_page_bytes; }
+};
+
+/// A surface in a device's memory, ready to be drawn. Moving is cheap; it keeps the device open.
+///
+/// `vertices`, `triangle_count`   fewer than 2^32
+class ISOTET_API DeviceSurface {
+public:
+    DeviceSurface();
+    DeviceSurface(DeviceSurface&&) noexcept;
+    DeviceSurface& operator=(DeviceSurface&&) noexcept;
+    ~DeviceSurface();
+
+    double isovalue() const noexcept;
+    std::array<double, 3> origin() const noexcept; ///< positions are relative to it
+    std::uint64_t vertex_count() const noexcept;
+    std::uint64_t triangle_count() const noexcept;
+    std::uint64_t device_bytes() const noexcept; ///< taken, with the room that is kept for the next surface
+
+    /// The buffers, for drawing; src/vulkan/engine/surface_buffers.hpp says what stands where. Null before any
+    /// extraction.
+    const vulkan::SurfaceBuffers* buffers() const noexcept;
+
+private:
+    friend class DeviceGrid;
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
+
+/// A packed grid on a device: uploaded once, then each new isovalue is answered there, and only what is asked for comes
+/// back.
+///
+/// The grid lies on the device in pages. Where not all of them fit, those that an isovalue needs are loaded, and the
+/// least recently used ones go: slower, the same surfaces.
+///
+/// Guarantees   surfaces are the same bytes as those of extract() on the same packed grid, unless the device has a
+///              notice
+/// Threads      one call at a time on one device
+/// Method       marching tetrahedra over clusters in compute shaders; docs/inside/gpu.md
+class ISOTET_API DeviceGrid {
+public:
+    /// What upload() will need, told before anything is taken; nothing of a grid that lies in a file.
+    /// Cost   a pass over the links of the packed grid
+    static DeviceGridNeeds needs(const PackedGrid& packed, const DeviceGridOptions& options = {});
+
+    /// Uploads a packed grid, and keeps a handle on it.
+    ///
+    /// `packed`   single precision
+    /// Cost       about 11 bytes a tet over the bus
+    /// Errors     invalid_argument when the grid was packed in double precision, or has 2^32 points or more;
+    ///            out_of_memory, before anything is uploaded, when needs().least() is more than is free; device_failed;
+    ///            cancelled
+    static Result<DeviceGrid> upload(const Device& device, const PackedGrid& packed,
+                                     const DeviceGridOptions& options = {}, const Run& run = {});
+
+    DeviceGrid(DeviceGrid&&) noexcept;
+    DeviceGrid& operator=(DeviceGrid&&) noexcept;
+    ~DeviceGrid();
+
+    /// The grid that is on the device: the one that was uploaded, or what set_field() and set_points() made of it.
+    const PackedGrid& packed() const noexcept;
+
+    /// Replaces the contoured field (another field, or the next time step): values go up, ranges are worked out on the
+    /// device and come back.
+    ///
+    /// Guarantees   packed() is then byte for byte what PackedGrid::with_field() gives
+    /// Cost         a pass over the values and 4 bytes a point over the bus, 0.1 bytes a tet back; gradients, and
+    ///              ranges of pages that are not on the device, are worked out on the processor
+    /// Errors       as PackedGrid::with_field(): nothing has changed then; of the device: out_of_memory,
+    ///              device_failed. The grid must be uploaded again then; packed() is what it was
+    Result<void> set_field(const PointField& field, const Run& run = {});
+
+    /// Replaces the coordinates (a mesh that moves).
+    ///
+    /// Guarantees   packed() is then byte for byte what PackedGrid::with_points() gives
+    /// Cost         PackedGrid::with_points(), and 12 bytes a point over the bus
+    /// Errors       as PackedGrid::with_points(): nothing has changed then; the others as set_field()
+    Result<void> set_points(const Array& points, const Run& run = {});
+
+    std::uint64_t device_bytes() const noexcept; ///< resident arrays and the pages that are there
+    bool complete() const noexcept;              ///< all pages are there
+
+    /// Extracts the surface of an isovalue; it stays on the device. `options` as for extract().
+    ///
+    /// Point fields are uploaded once, 4 bytes a point and component, and stay while their arrays live (borrowed ones
+    /// are uploaded each time); where there is no room for them, download() interpolates instead.
+    ///
+    /// Cost     on the device O(C + V + F) in four dependent steps; over the bus 200 bytes, and new fields. Where pages
+    ///          must be loaded: these, up to twice
+    /// Errors   as extract(); invalid_argument when the surface has 2^32 vertices or triangles or more; out_of_memory
+    ///          of the device; device_failed
+    Result<DeviceSurface> extract(double isovalue, const ExtractOptions& options = {}, const Run& run = {});
+
+    /// The same, into a surface that was extracted before: its memory is used again where it is large enough.
+    Result<void> extract(double isovalue, DeviceSurface& surface, const ExtractOptions& options = {},
+                         const Run& run = {});
+
+    /// The surfaces of several isovalues, in their order, in one submission where everything fits.
+    Result<std::vector<DeviceSurface>> extract(std::span<const double> isovalues, const ExtractOptions& options = {},
+                                               const Run& run = {});
+
+    /// A surface of this grid, on the processor, with all that was asked for when it was extracted.
+    ///
+    /// Cost     the arrays over the bus; cell fields are copied here
+    Result<Extraction> download(const DeviceSurface& surface, const Run& run = {});
+
+    /// What the last call of a function above cost.
+    const DeviceWork& work() const noexcept;
+
+private:
+    struct Data;
+    explicit DeviceGrid(std::unique_ptr<Data> data);
+    Result<void> extract_into(std::span<const double> isovalues, std::span<DeviceSurface> surfaces,
+                              const ExtractOptions& options, const Run& run);
+    std::unique_ptr<Data> data_;
+};
+
+/// The engine that extracts on a device, for a session: ContourOptions::engine. Grids are uploaded in pages of at most a
+/// sixteenth of the memory that is free.
+ISOTET_API std::shared_ptr<const Engine> vulkan_engine(const Device& device, const DeviceGridOptions& options = {});
+
+/// Surfaces on a device, and what they cost.
+struct SurfacesOnDevice {
+    std::vector<DeviceSurface> surfaces; ///< in the order of the isovalues
+    DeviceWork work;
+};
+
+/// Surfaces of a session whose engine is vulkan_engine(). They stay on the device, to be drawn there.
+///
+/// Errors   as Contour::extract() and DeviceGrid::extract(); invalid_argument when the session has another engine, or
+///          has given the device up
+ISOTET_API Result<SurfacesOnDevice> extract_on_device(Contour& contour, std::span<const double> isovalues,
+                                                      const Run& run = {});
 
 } // namespace isotet

@@ -1,22 +1,41 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// What every engine does: the contract between a session and whatever extracts for it.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include <isotet/device_work.hpp>
 #include <isotet/export.hpp>
 #include <isotet/extract.hpp>
-#include <isotet/extract_direct.hpp>
+#include <isotet/isovalues.hpp>
 #include <isotet/pack.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
 
 namespace isotet {
+
+/// How long a pass took on the device: "select", "count", "scan", "emit" and so on.
+struct DevicePass {
+    std::string name;
+    double seconds = 0;
+};
+
+/// What a call cost on a device.
+struct DeviceWork {
+    std::vector<DevicePass> passes;   ///< in order; empty where the device has no timestamps
+    double device_seconds = 0;        ///< from the beginning of the first pass to the end of the last, waits between
+                                      ///< aside
+    double waited_seconds = 0;        ///< for the device, as seen from here
+    std::uint64_t uploaded_bytes = 0; ///< over the bus
+    std::uint64_t downloaded_bytes = 0;
+    std::uint64_t page_loads = 0;  ///< pages that had to be uploaded
+    std::uint32_t submissions = 0; ///< one, unless arrays had to grow or pages to come
+};
+
+// What every engine does: the contract between a session and whatever extracts for it.
 
 /// A packed grid where an engine wants it: in memory for the CPU, uploaded for a device.
 class ISOTET_API EngineGrid {
@@ -69,7 +88,29 @@ public:
 /// The CPU engine: oneTBB and the processor's widest instructions.
 ISOTET_API std::shared_ptr<const Engine> cpu_engine();
 
-/// The slow reference (reference.hpp).
+/// The slow reference (engine.hpp).
 ISOTET_API std::shared_ptr<const Engine> reference_engine();
+
+// The slow, short versions of extraction, which every engine is held against: for tests, and for those who doubt.
+
+/// What extract() gives, byte for byte, worked out on one thread without any cleverness.
+///
+/// Cost     10 to 100 times the time of extract(); memory for a map of all edges of the surface
+/// Errors   as extract()
+ISOTET_API Result<std::vector<Extraction>> extract_by_reference(const PackedGrid& packed,
+                                                                std::span<const double> isovalues,
+                                                                const ExtractOptions& options = {},
+                                                                const Run& run = {});
+
+/// What extract_direct() gives, byte for byte. Cost and errors as above.
+ISOTET_API Result<DirectExtraction> extract_direct_by_reference(const Grid& grid, const PointField& field,
+                                                                std::span<const double> isovalues,
+                                                                const DirectOptions& options = {}, const Run& run = {});
+
+/// What contour_spectrum() gives within 1e-12 of its largest area and volume, by cutting every tet at every isovalue.
+/// Errors   as contour_spectrum()
+ISOTET_API Result<ContourSpectrum> contour_spectrum_by_reference(const Grid& grid, const PointField& field,
+                                                                 std::span<const double> isovalues,
+                                                                 const Run& run = {});
 
 } // namespace isotet

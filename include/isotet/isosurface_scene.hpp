@@ -12,19 +12,16 @@
 #include <string_view>
 #include <vector>
 
-#include <isotet/camera.hpp>
-#include <isotet/color_field.hpp>
 #include <isotet/contour.hpp>
 #include <isotet/draw_tets.hpp>
 #include <isotet/export.hpp>
-#include <isotet/field_statistics.hpp>
+#include <isotet/fields.hpp>
 #include <isotet/grid.hpp>
-#include <isotet/opacity.hpp>
-#include <isotet/parts.hpp>
+#include <isotet/linear_cells.hpp>
 #include <isotet/progress.hpp>
-#include <isotet/refine.hpp>
 #include <isotet/render.hpp>
 #include <isotet/result.hpp>
+#include <isotet/scene.hpp>
 #include <isotet/search.hpp>
 #include <isotet/slice.hpp>
 #include <isotet/solid.hpp>

@@ -1,9 +1,9 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Cells that are not linear as cells that are: polyhedra as pyramids and tets around a derived point, quadratic cells as
-// tets between their nodes. refine.hpp makes as many tets of quadratic cells as a tolerance needs.
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,6 +14,9 @@
 #include <isotet/result.hpp>
 
 namespace isotet {
+
+// Cells that are not linear as cells that are: polyhedra as pyramids and tets around a derived point, quadratic cells as
+// tets between their nodes. refine_curved() makes as many tets of quadratic cells as a tolerance needs.
 
 /// Points made of the user's, D of them. Derived point d is the sum of weights[i] times point points[i] for
 /// first[d] <= i < first[d + 1]; its weights have the sum 1.
@@ -175,5 +178,147 @@ ISOTET_API Result<std::vector<double>> relative_volumes(const Grid& grid, const 
 /// Threads      safe from many threads on one grid
 /// Method       docs/cells.md
 ISOTET_API Result<LinearGrid> linearize(const Grid& grid, const LinearizeOptions& options = {}, const Run& run = {});
+
+// Quadratic cells as linear tets, as many as a tolerance needs, with a proven bound.
+
+struct RefineOptions {
+    /// Largest error of the field, in its unit; 0: `relative_tolerance` times its range, if that is above 0.
+    double tolerance = 0;
+    double relative_tolerance = 1e-3;
+    /// Largest distance of the tets from the curved cells, in the points' unit; 0: edges leave the curve by at most a
+    /// hundredth of their length.
+    double geometry_tolerance = 0;
+    /// Only what these can meet is kept: the grid is good for them alone. Where they meet nothing, some tets stay, so that the
+    /// grid can be contoured. Empty: all is kept.
+    std::vector<double> isovalues = {};
+    /// More tets than this are an error; 0: as many as free memory holds.
+    std::uint64_t max_tets = 0;
+    /// Largest distance of the surface from that of the quadratic field, in the points' unit, by estimate: an edge may
+    /// deviate by this times the least gradient of the field at its ends, but always by 10^-5 of the range. 0: not looked
+    /// at. What of tolerance, relative_tolerance and distance is above 0 holds together.
+    double distance = 0;
+    /// Other fields of the points, any components: cells are bisected for them, too, where a component is off by more than
+    /// `carried_tolerance` of its range, but for them no edge to less than a quarter of a cell's. For cuts, whose own field is
+    /// made of the places: fields that they carry follow the cells' functions, too. Of floating numbers: others are passed
+    /// over, and so are cells at whose nodes a component is not finite. Where memory does not suffice for them, none is
+    /// followed (RefinementReport::carried_left_out).
+    std::vector<Field> carried = {};
+    double carried_tolerance = 0.01; ///< 0: they are not followed
+};
+
+/// Makes linear tets of all cells that linearize() handles, so fine that the field, linear in each tet, differs from the
+/// cell's own by the tolerance at most, as far as cells may be bisected for it.
+///
+/// A cell is split into quadratic tets, by the rule of split(), and these are bisected until they are near the cell's own
+/// functions, with the cell's values at new points. Then they are bisected into linear tets at the edge that deviates
+/// most, in
+/// steps of 4 times, of several at the longest, ties by point numbers: this depends on edges alone, so neighbours agree.
+///
+/// `grid`       its fields are not looked at
+/// `field`      one scalar a point; quadratic tets with a node that is not finite are dropped
+/// Guarantees   conforming; the field's error is at most LinearGrid::refinement.field_bound, for the tets that are kept; the
+///              same bytes for any thread count; with isovalues the same surfaces of these as without, to the triangle
+/// Cost         in proportion to the tets that it makes; 24 bytes a tet and 12 a point, and twice that for a while
+/// Errors       as linearize(); invalid_argument for a tolerance that is negative or not finite, or fields that do not fit;
+///              out_of_memory, before memory runs out, where the tolerance asks for too many tets; cancelled
+/// Threads      safe from many threads on one grid
+/// Method       docs/cells.md
+ISOTET_API Result<LinearGrid> refine(const Grid& grid, const PointField& field, const RefineOptions& options = {},
+                                     const Run& run = {});
+
+/// How far another field, linear in each tet of a grid of linearize() or refine(), is at most from the quadratic interpolants.
+///
+/// `values`     one scalar a user's point
+/// Cost         a pass over the tets
+/// Errors       invalid_argument when the values do not fit; out_of_memory; cancelled
+ISOTET_API Result<double> field_bound(const LinearGrid& linear, const Array& values, const Run& run = {});
+
+// Hanging points: points on faces and edges of larger cells, which do not have them, as where adaptive solvers refine
+// some cells and not their neighbours. The surface is open there, unless the larger cells list these points.
+
+/// What was found.
+struct HangingReport {
+    std::uint64_t points = 0;     ///< that hang on a face or an edge of a larger cell
+    std::uint64_t faces = 0;      ///< of larger cells, which smaller faces of other cells cover
+    std::uint64_t near_faces = 0; ///< of these: some points are beside the face, as on curved shapes
+    double largest_distance = 0;  ///< of these from the face, in the unit of the points
+    std::uint64_t levels = 0;     ///< n: an edge meets up to 2^n smaller ones
+    std::uint64_t cells = 0;      ///< that list hanging points now
+    std::uint64_t open_faces = 0; ///< on smaller ones that do not cover them: the surface stays open there
+    /// That hang in a grid with cells above degree 1, which cannot list them: the surface stays open there.
+    std::uint64_t curved_points = 0;
+
+    /// Sentences for the user.
+    ISOTET_API std::vector<std::string> notes() const;
+};
+
+/// A grid whose cells list the points on their faces.
+struct ISOTET_API ClosedGrid {
+    Grid grid; ///< the same points, cells in the same order, and fields
+    HangingReport report;
+    Array points;          ///< uint64, H: those that hang; of one that hangs between others, these come before
+    DerivedPoints parents; ///< H rows: the larger cell's own value there, as weights of the corners of its face or edge
+
+    /// A point field that has the larger cells' values at hanging points. float32 and float64 keep their type; integers
+    /// become float64.
+    ///
+    /// Cost     a copy, and the hanging points
+    /// Errors   invalid_argument when it has not one tuple a point; out_of_memory; cancelled
+    Result<Array> interpolated(const Array& values, const Run& run = {}) const;
+
+    /// The largest difference between these and the field's own values, of all components; NaN aside.
+    /// Errors   as interpolated()
+    Result<double> largest_difference(const Array& values, const Run& run = {}) const;
+};
+
+/// Finds hanging points by their places, and gives the cells that have them on a face or an edge as polyhedra that list
+/// them: a face that smaller ones cover becomes these, and an edge becomes as many. linearize() splits them as any
+/// others, by rules that depend on each face alone, so the surface is closed. All other cells stay as they are; so does
+/// a grid without hanging points, whose arrays are shared.
+///
+/// A face is covered by faces of other cells that share points with it, face the other way, lie on it, and together
+/// have its outline, whatever their number and sizes; faces of one size that only differ in their diagonals do not
+/// count. Faces may be warped, cells of any kinds, and several levels meet in one face. Points that coincide must be
+/// one (merge_points()).
+///
+/// Grids with curved cells are returned as they are; only curved_points of the report is set.
+///
+/// Guarantees   the same bytes for any thread count; a face that has a neighbour of its own is never looked at, but for
+///              hashes that are equal by chance: 2^-64 a face
+/// Cost         two passes over the cells, 8 bytes a point; sorting of the faces without a neighbour, about 200 bytes
+///              each; where points hang, another pass and new cells
+/// Errors       invalid_data as survey(); out_of_memory; cancelled
+/// Threads      safe from many threads on one grid
+/// Method       docs/inside/hanging.md
+ISOTET_API Result<ClosedGrid> close_hanging_points(const Grid& grid, const Run& run = {});
+
+/// Closes grids, and gives the last cells again for a grid with the same cells and points, as time steps mostly have.
+///
+/// Threads   safe from many: one call waits for another
+class ISOTET_API KnownClosing {
+public:
+    KnownClosing();
+    ~KnownClosing();
+
+    /// close_hanging_points(grid). Where cells and points are those of the last call, in the same memory or by a fingerprint of
+    /// 128 bits, the cells, if some list points, are in the memory that that call gave.
+    ///
+    /// Cost   a pass over cells and points, and close_hanging_points() where they are others
+    Result<ClosedGrid> of(const Grid& grid, const Run& run = {});
+
+private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
+
+/// Whether the surfaces of isovalues may end at hanging points, by places: a face that they cut, and that no other cell
+/// has, lies on a larger one. For grids of which only the cells that the isovalues cut are there (active_cells.hpp):
+/// their other faces have lost their neighbours. True of thin grids, too; false where only the smaller cells are cut.
+///
+/// `field`  one scalar a point
+/// Cost     two passes over the cells, and the places of faces at which the surfaces end
+/// Errors   invalid_argument when the field does not fit; else as close_hanging_points()
+ISOTET_API Result<bool> may_have_hanging_points(const Grid& active, const PointField& field,
+                                                std::span<const double> isovalues, const Run& run = {});
 
 } // namespace isotet

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <isotet/export.hpp>
-#include <isotet/extract_direct.hpp>
+#include <isotet/extract.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>

@@ -1,12 +1,14 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Drawing on a Vulkan device. draw.hpp draws without one.
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include <isotet/device.hpp>
-#include <isotet/device_grid.hpp>
 #include <isotet/export.hpp>
 #include <isotet/picture.hpp>
 #include <isotet/progress.hpp>
@@ -15,6 +17,94 @@
 #include <isotet/surface.hpp>
 
 namespace isotet {
+
+/// A colour and what it means.
+struct LegendEntry {
+    Color color;
+    std::string text;
+};
+
+/// The axes of the world as small arrows, and how long a round number is in the picture.
+///
+/// `camera`   of the scene's picture
+/// `bar`      a scale bar: lengths are right in a parallel picture, and in a perspective one at the camera's target
+/// `unit`     of coordinates, written behind the bar's number
+struct Orientation {
+    Camera camera;
+    bool bar = false;
+    std::string unit;
+};
+
+/// What is written beside a picture: at the right a colour scale with ticks at round numbers, or a legend, or both,
+/// under a title, and the axes; below a caption and a scale bar. Without scale and legend the axes stand in the lower left
+/// corner of the scene. Text is UTF-8; a font is part of isotet, with Latin and Greek letters, and what it
+/// lacks is a box.
+struct Annotation {
+    std::string title;
+    std::optional<ColorScale> scale;
+    OpacityCurve opacity = {}; ///< of a volume, a line over the scale: transparent at its left edge, the most opaque at
+                               ///< its right; without points: none
+    std::string no_data; ///< what the scale's colour for no data means; empty: it is not shown
+    std::vector<LegendEntry> legend;
+    std::string caption; ///< cut off with an ellipsis where it is too long
+    std::optional<Orientation> orientation;
+
+    bool empty() const noexcept { return !scale && legend.empty() && caption.empty() && !orientation; }
+};
+
+/// How many letters of a text the font lacks, each of which is drawn as a box. Bytes that are not UTF-8 count, too.
+/// Errors   internal when the font cannot be opened
+ISOTET_API Result<std::size_t> count_missing_letters(std::string_view text);
+
+struct PictureSize {
+    std::uint32_t width = 0, height = 0;
+};
+
+/// What an annotation leaves, in a picture of `whole`, for what is drawn; nothing when that would be less than half of
+/// its width or height: then the picture is too small for text.
+/// Errors   internal when the font cannot be opened
+ISOTET_API Result<std::optional<PictureSize>> room_beside(const Annotation& annotation, PictureSize whole);
+
+/// A picture of `whole`, with a scene of the size that room_beside() says in its upper left corner, and the annotation
+/// beside it: dark on light backgrounds, light on dark ones. An empty background stays empty.
+///
+/// Guarantees   the same bytes for the same version of FreeType
+/// Errors       invalid_argument when the scene has another size; internal when the font cannot be opened
+ISOTET_API Result<Picture> annotate(const Picture& scene, const Annotation& annotation, PictureSize whole,
+                                    const Color& background);
+
+// Drawing on the processor: needs no driver.
+
+/// What drawing the volumes of a scene took.
+struct VolumeWork {
+    std::uint64_t clusters = 0; ///< that are neither transparent nor out of view
+    std::uint64_t tets = 0;     ///< placed in a tile of the picture, each in each tile
+    std::uint64_t segments = 0; ///< of rays in tets
+    std::uint64_t bytes = 0;    ///< of memory beyond scene and picture
+};
+
+/// Draws a scene of surfaces in memory, of lines and of volumes. Light, blending and samples are those of Renderer,
+/// which this function is the reference of. Through volumes one ray a pixel is followed, in its middle: what is opaque
+/// ends it sample by sample, what is translucent stands where it is in the pixel's middle.
+///
+/// `work`       becomes what volumes took
+/// Guarantees   the same bytes for any thread count and on every machine, and however points of a volume are numbered
+///              and its tets ordered; without volumes, beside the picture of Renderer at most 1/255 in a channel, except
+///              in 0.1 % of the pixels. What a homogeneous medium lets through is right to 2 x 10^-5
+/// Cost         O(triangles + fragments); transient memory about 60 bytes a vertex, 20 a triangle. Of volumes
+///              O(clusters + tets that are not transparent, in each tile + segments); 8 bytes a group of 32 tets, 3 MB a
+///              thread
+/// Errors       invalid_argument when a size, a camera, an opacity or a width is out of range, colours do not fit their
+///              surface, a surface is in a device's memory, or a volume has no grid, or a wrong scale, opacity, length
+///              or isovalue; invalid_data when a triangle has a vertex that is not there, or a vertex is not finite;
+///              out_of_memory; cancelled
+/// Threads      safe from many threads
+/// Method       tiles of pixels; a depth buffer of samples for what is opaque, sorted lists of fragments for what is
+///              not, and of segments of rays in tets; docs/inside/render.md
+ISOTET_API Result<Picture> draw(const Scene& scene, const PictureOptions& options, const Run& run = {});
+ISOTET_API Result<Picture> draw(const Scene& scene, const PictureOptions& options, const Run& run, VolumeWork& work);
+
+// Drawing on a Vulkan device.
 
 namespace render {
 class MeshBuffers;

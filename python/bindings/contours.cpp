@@ -17,7 +17,6 @@
 #include <isotet/contour.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/pack.hpp>
-#include <isotet/clip.hpp>
 #include <isotet/solid.hpp>
 #include <isotet/surface.hpp>
 

@@ -12,12 +12,10 @@
 #include <vector>
 
 #include <isotet/contour.hpp>
-#include <isotet/contour_spectrum.hpp>
-#include <isotet/expression.hpp>
+#include <isotet/fields.hpp>
 #include <isotet/first_view.hpp>
 #include <isotet/grid.hpp>
-#include <isotet/hanging_points.hpp>
-#include <isotet/isovalue_shares.hpp>
+#include <isotet/isovalues.hpp>
 #include <isotet/linear_cells.hpp>
 #include <isotet/make.hpp>
 #include <isotet/read.hpp>

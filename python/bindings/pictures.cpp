@@ -10,10 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include <isotet/annotation.hpp>
-#include <isotet/draw.hpp>
-#include <isotet/color_field.hpp>
 #include <isotet/pack.hpp>
+#include <isotet/render.hpp>
+#include <isotet/scene.hpp>
 
 #include "arrays.hpp"
 #include "call.hpp"

@@ -11,9 +11,7 @@
 #include <vector>
 
 #include <isotet/check.hpp>
-#include <isotet/parts.hpp>
 #include <isotet/read.hpp>
-#include <isotet/reduce.hpp>
 #include <isotet/surface.hpp>
 #include <isotet/write.hpp>
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <span>
 
-#include <isotet/extract_direct.hpp>
+#include <isotet/extract.hpp>
 
 namespace isotet::api {
 

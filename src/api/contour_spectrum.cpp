@@ -1,14 +1,13 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include <isotet/contour_spectrum.hpp>
+#include <isotet/isovalues.hpp>
 
 #include <array>
 #include <cmath>
 
 #include <fmt/core.h>
 
-#include <isotet/field_statistics.hpp>
-#include <isotet/levels.hpp>
-#include <isotet/reference.hpp>
+#include <isotet/engine.hpp>
+#include <isotet/fields.hpp>
 
 #include "api/spectrum_source.hpp"
 #include "base/carry_out.hpp"

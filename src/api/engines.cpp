@@ -1,6 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <isotet/engine.hpp>
-#include <isotet/reference.hpp>
 
 #include "base/errors.hpp"
 

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/engine.hpp>
 #include <isotet/extract.hpp>
-#include <isotet/reference.hpp>
 
 #include "api/carried.hpp"
 #include "api/finish.hpp"

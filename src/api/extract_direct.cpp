@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include <isotet/extract_direct.hpp>
-#include <isotet/reference.hpp>
+#include <isotet/engine.hpp>
+#include <isotet/extract.hpp>
 
 #include <fmt/core.h>
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <span>
 
-#include <isotet/contour_spectrum.hpp>
-#include <isotet/field_statistics.hpp>
+#include <isotet/fields.hpp>
+#include <isotet/isovalues.hpp>
 
 #include "base/buffer.hpp"
 #include "grid/cells.hpp"

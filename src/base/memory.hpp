@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include <isotet/export.hpp>
-#include <isotet/process_memory.hpp>
+#include <isotet/memory.hpp>
 #include <isotet/result.hpp>
 #include <isotet/text.hpp>
 

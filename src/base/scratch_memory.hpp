@@ -5,8 +5,8 @@
 #include <optional>
 #include <string_view>
 
+#include <isotet/memory.hpp>
 #include <isotet/result.hpp>
-#include <isotet/scratch_memory.hpp>
 
 namespace isotet::core {
 

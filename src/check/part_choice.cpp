@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Which parts of a surface are kept, as text and as numbers.
-#include <isotet/parts.hpp>
+#include <isotet/surface.hpp>
 
 #include <algorithm>
 #include <charconv>

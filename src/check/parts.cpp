@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include <isotet/parts.hpp>
+#include <isotet/surface.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include <isotet/device_grid.hpp>
+#include <isotet/device.hpp>
 
 #include <array>
 #include <cstdint>

@@ -8,7 +8,7 @@
 
 #include <fmt/core.h>
 
-#include <isotet/device_grid.hpp>
+#include <isotet/device.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/make.hpp>
 #include <isotet/pack.hpp>

@@ -1,7 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // What stands for device_grid.cpp in a build without Vulkan: there is no device to upload to, so nothing else can be
 // called.
-#include <isotet/device_grid.hpp>
+#include <isotet/device.hpp>
 
 namespace isotet {
 

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <isotet/device_grid.hpp>
+#include <isotet/device.hpp>
 
 #include "base/errors.hpp"
 #include "base/memory.hpp"

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include <isotet/grid_counts.hpp>
+#include <isotet/grid.hpp>
 #include <isotet/linear_cells.hpp>
 
 #include "base/carry_out.hpp"

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include <isotet/grid_counts.hpp>
+#include <isotet/grid.hpp>
 
 #include <algorithm>
 #include <array>

@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include <isotet/grid_counts.hpp>
+#include <isotet/grid.hpp>
 
 #include "base/errors.hpp"
 #include "grid/boundary_faces.hpp"

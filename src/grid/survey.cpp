@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include <isotet/grid_counts.hpp>
+#include <isotet/grid.hpp>
 #include <isotet/linear_cells.hpp>
 
 #include "base/carry_out.hpp"

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <isotet/component_groups.hpp>
+#include <isotet/fields.hpp>
 
 #include "base/parallel.hpp"
 #include "base/rising_progress.hpp"

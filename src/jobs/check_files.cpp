@@ -5,9 +5,8 @@
 #include <iterator>
 #include <utility>
 
-#include <isotet/hanging_points.hpp>
-#include <isotet/jobs/output_names.hpp>
 #include <isotet/linear_cells.hpp>
+#include <isotet/jobs/output_names.hpp>
 #include <isotet/read.hpp>
 
 #include "jobs/refinement_record.hpp"

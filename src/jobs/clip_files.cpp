@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include <isotet/jobs/number_text.hpp>
-#include <isotet/write_file.hpp>
+#include <isotet/write.hpp>
 
 #include "base/stopwatch.hpp"
 #include "jobs/extract_plan.hpp"

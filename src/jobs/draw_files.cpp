@@ -8,11 +8,10 @@
 
 #include <fmt/format.h>
 
-#include <isotet/compare_pictures.hpp>
+#include <isotet/picture.hpp>
 #include <isotet/jobs/number_text.hpp>
 #include <isotet/jobs/output_names.hpp>
-#include <isotet/picture_file.hpp>
-#include <isotet/process_memory.hpp>
+#include <isotet/memory.hpp>
 
 #include "base/stopwatch.hpp"
 #include "jobs/extract_notes.hpp"

@@ -1,7 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "jobs/drawer.hpp"
 
-#include <isotet/draw.hpp>
+#include <isotet/render.hpp>
 #include <isotet/jobs/device_choice.hpp>
 
 namespace isotet::jobs {

@@ -10,12 +10,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <isotet/component_groups.hpp>
-#include <isotet/contour_spectrum.hpp>
-#include <isotet/device_grid.hpp>
+#include <isotet/device.hpp>
+#include <isotet/fields.hpp>
+#include <isotet/isovalues.hpp>
 #include <isotet/jobs/number_text.hpp>
-#include <isotet/process_memory.hpp>
-#include <isotet/write_file.hpp>
+#include <isotet/memory.hpp>
+#include <isotet/write.hpp>
 
 #include "base/stopwatch.hpp"
 #include "jobs/extract_notes.hpp"

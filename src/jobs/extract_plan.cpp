@@ -9,12 +9,12 @@
 
 #include <fmt/format.h>
 
-#include <isotet/component_groups.hpp>
+#include <isotet/fields.hpp>
 #include <isotet/jobs/first_choice.hpp>
 #include <isotet/jobs/number_text.hpp>
-#include <isotet/levels.hpp>
+#include <isotet/isovalues.hpp>
 #include <isotet/linear_cells.hpp>
-#include <isotet/write_file.hpp>
+#include <isotet/write.hpp>
 
 #include "jobs/refuse.hpp"
 #include "jobs/touched_region.hpp"

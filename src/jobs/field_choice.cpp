@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <isotet/expression.hpp>
+#include <isotet/fields.hpp>
 #include <isotet/first_view.hpp>
 #include <isotet/linear_cells.hpp>
 

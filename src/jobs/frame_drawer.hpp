@@ -1,7 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <isotet/annotation.hpp>
+#include <isotet/render.hpp>
 #include <isotet/jobs/draw_files.hpp>
 
 #include "jobs/drawer.hpp"

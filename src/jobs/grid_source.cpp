@@ -14,15 +14,13 @@
 #include <fmt/format.h>
 
 #include <isotet/contour.hpp>
-#include <isotet/expression.hpp>
+#include <isotet/fields.hpp>
 #include <isotet/first_view.hpp>
 #include <isotet/grid.hpp>
-#include <isotet/grid_counts.hpp>
-#include <isotet/hanging_points.hpp>
+#include <isotet/linear_cells.hpp>
 #include <isotet/jobs/many_files.hpp>
 #include <isotet/jobs/number_text.hpp>
 #include <isotet/jobs/output_names.hpp>
-#include <isotet/linear_cells.hpp>
 #include <isotet/slice.hpp>
 
 #include "grid/orientation.hpp"

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include <isotet/grid_counts.hpp>
+#include <isotet/grid.hpp>
 #include <isotet/jobs/first_choice.hpp>
 #include <isotet/jobs/output_names.hpp>
-#include <isotet/refine.hpp>
+#include <isotet/linear_cells.hpp>
 
 #include "grid/patches.hpp"
 

@@ -7,10 +7,10 @@
 
 #include <fmt/format.h>
 
-#include <isotet/field_statistics.hpp>
+#include <isotet/fields.hpp>
 #include <isotet/jobs/draw_files.hpp>
 #include <isotet/jobs/output_names.hpp>
-#include <isotet/levels.hpp>
+#include <isotet/isovalues.hpp>
 #include <isotet/make.hpp>
 
 #include "jobs/refuse.hpp"

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include <isotet/jobs/number_text.hpp>
-#include <isotet/write_file.hpp>
+#include <isotet/write.hpp>
 
 #include "jobs/refuse.hpp"
 

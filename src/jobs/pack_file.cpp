@@ -9,12 +9,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <isotet/component_groups.hpp>
 #include <isotet/contour.hpp>
+#include <isotet/fields.hpp>
 #include <isotet/jobs/first_choice.hpp>
 #include <isotet/jobs/output_names.hpp>
+#include <isotet/memory.hpp>
 #include <isotet/packed_file.hpp>
-#include <isotet/scratch_memory.hpp>
 #include <isotet/text.hpp>
 
 #include "base/memory.hpp"

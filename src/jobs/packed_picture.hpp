@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string_view>
 
-#include <isotet/color_field.hpp>
+#include <isotet/scene.hpp>
 #include <isotet/jobs/draw_files.hpp>
 #include <isotet/packed_file.hpp>
 

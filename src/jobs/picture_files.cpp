@@ -8,7 +8,7 @@
 
 #include <isotet/jobs/number_text.hpp>
 #include <isotet/jobs/output_names.hpp>
-#include <isotet/picture_file.hpp>
+#include <isotet/picture.hpp>
 
 #include "jobs/refuse.hpp"
 

@@ -8,9 +8,8 @@
 #include <string>
 #include <vector>
 
-#include <isotet/animation.hpp>
-#include <isotet/jobs/draw_files.hpp>
 #include <isotet/picture.hpp>
+#include <isotet/jobs/draw_files.hpp>
 
 namespace isotet::jobs {
 

@@ -9,13 +9,13 @@
 #include <fmt/format.h>
 
 #include <isotet/boundary.hpp>
-#include <isotet/color_field.hpp>
-#include <isotet/field_statistics.hpp>
+#include <isotet/fields.hpp>
+#include <isotet/scene.hpp>
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/first_choice.hpp>
 #include <isotet/jobs/number_text.hpp>
 #include <isotet/jobs/output_names.hpp>
-#include <isotet/levels.hpp>
+#include <isotet/isovalues.hpp>
 
 #include "base/stopwatch.hpp"
 #include "jobs/packed_picture.hpp"

@@ -2,7 +2,7 @@
 // What is written in a picture, and said of it.
 #pragma once
 
-#include <isotet/annotation.hpp>
+#include <isotet/render.hpp>
 #include <isotet/jobs/draw_files.hpp>
 
 namespace isotet::jobs {

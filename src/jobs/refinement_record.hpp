@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <isotet/array.hpp>
-#include <isotet/refine.hpp>
+#include <isotet/linear_cells.hpp>
 
 namespace isotet::jobs {
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include <isotet/color_field.hpp>
+#include <isotet/scene.hpp>
 #include <isotet/jobs/extract_files.hpp>
 #include <isotet/jobs/job.hpp>
 #include <isotet/result.hpp>

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include <isotet/annotation.hpp>
+#include <isotet/render.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <mutex>
 
-#include <isotet/camera.hpp>
+#include <isotet/scene.hpp>
 
 #include "base/parallel.hpp"
 #include "packed/packed.hpp"

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include <isotet/camera.hpp>
+#include <isotet/scene.hpp>
 
 #include <algorithm>
 #include <array>

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include <isotet/camera.hpp>
+#include <isotet/scene.hpp>
 
 #include "render/vector_math.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-#include <isotet/compare_pictures.hpp>
+#include <isotet/picture.hpp>
 
 namespace isotet {
 

@@ -8,7 +8,7 @@
 
 #include <fmt/core.h>
 
-#include <isotet/camera.hpp>
+#include <isotet/scene.hpp>
 
 #include "base/errors.hpp"
 #include "base/parallel.hpp"

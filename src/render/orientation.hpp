@@ -2,7 +2,7 @@
 // Axes and scale bars beside pictures.
 #pragma once
 
-#include <isotet/annotation.hpp>
+#include <isotet/render.hpp>
 
 #include "render/text.hpp"
 

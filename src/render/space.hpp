@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include <isotet/camera.hpp>
+#include <isotet/scene.hpp>
 
 #include "render/vector_math.hpp"
 

@@ -11,8 +11,8 @@
 
 #include <fmt/core.h>
 
-#include <isotet/color_field.hpp>
 #include <isotet/contour.hpp>
+#include <isotet/scene.hpp>
 
 #include "base/errors.hpp"
 

@@ -4,10 +4,9 @@
 #include <span>
 #include <utility>
 
-#include <isotet/device_grid.hpp>
+#include <isotet/device.hpp>
 #include <isotet/draw_tets.hpp>
 #include <isotet/extract.hpp>
-#include <isotet/extract_direct.hpp>
 #include <isotet/search.hpp>
 
 namespace isotet::measure {

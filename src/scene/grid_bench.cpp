@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include <isotet/plan.hpp>
+#include <isotet/contour.hpp>
 
 #include "base/guard.hpp"
 #include "scene/contestant.hpp"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <isotet/boundary.hpp>
-#include <isotet/device_grid.hpp>
+#include <isotet/device.hpp>
 #include <isotet/isosurface_scene.hpp>
 
 namespace isotet {

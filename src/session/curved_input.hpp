@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <isotet/contour.hpp>
-#include <isotet/refine.hpp>
+#include <isotet/linear_cells.hpp>
 
 namespace isotet::session {
 

@@ -1,7 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
-#include <isotet/plan.hpp>
+#include <isotet/contour.hpp>
 
 namespace isotet {
 

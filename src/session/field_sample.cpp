@@ -9,7 +9,7 @@
 
 #include <fmt/core.h>
 
-#include <isotet/plan.hpp>
+#include <isotet/contour.hpp>
 
 #include "base/guard.hpp"
 #include "base/prefetch.hpp"

@@ -3,7 +3,7 @@
 #include <optional>
 #include <utility>
 
-#include <isotet/hanging_points.hpp>
+#include <isotet/linear_cells.hpp>
 
 #include "base/guard.hpp"
 #include "base/parallel.hpp"

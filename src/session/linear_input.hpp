@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <isotet/contour.hpp>
-#include <isotet/field_statistics.hpp>
+#include <isotet/fields.hpp>
 #include <isotet/linear_cells.hpp>
 
 #include "base/array_identity.hpp"

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include <isotet/clip.hpp>
+#include <isotet/solid.hpp>
 
 #include <algorithm>
 #include <cmath>

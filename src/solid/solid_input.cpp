@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include <isotet/refine.hpp>
+#include <isotet/linear_cells.hpp>
 
 #include "base/errors.hpp"
 #include "grid/cell/linear_names.hpp"

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numeric>
 
-#include <isotet/field_statistics.hpp>
-#include <isotet/levels.hpp>
+#include <isotet/fields.hpp>
+#include <isotet/isovalues.hpp>
 
 namespace isotet::view {
 

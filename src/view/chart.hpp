@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include <isotet/plan.hpp>
+#include <isotet/contour.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
 

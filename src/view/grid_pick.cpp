@@ -10,7 +10,7 @@
 #include <utility>
 
 #include <isotet/boundary.hpp>
-#include <isotet/color_field.hpp>
+#include <isotet/scene.hpp>
 
 #include "view/grid_view.hpp"
 

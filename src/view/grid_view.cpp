@@ -12,12 +12,11 @@
 #endif
 
 #include <isotet/boundary.hpp>
-#include <isotet/color_field.hpp>
-#include <isotet/component_groups.hpp>
-#include <isotet/field_statistics.hpp>
-#include <isotet/grid_counts.hpp>
+#include <isotet/fields.hpp>
+#include <isotet/grid.hpp>
 #include <isotet/linear_cells.hpp>
 #include <isotet/memory.hpp>
+#include <isotet/scene.hpp>
 
 namespace isotet::view {
 

@@ -11,12 +11,12 @@
 #include <string>
 #include <vector>
 
-#include <isotet/camera.hpp>
 #include <isotet/contour.hpp>
-#include <isotet/contour_spectrum.hpp>
 #include <isotet/isosurface_scene.hpp>
+#include <isotet/isovalues.hpp>
+#include <isotet/linear_cells.hpp>
 #include <isotet/read.hpp>
-#include <isotet/refine.hpp>
+#include <isotet/scene.hpp>
 #include <isotet/solid.hpp>
 
 #include "view/messages.hpp"

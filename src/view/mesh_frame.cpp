@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include <isotet/boundary.hpp>
-#include <isotet/color_field.hpp>
+#include <isotet/scene.hpp>
 
 #include "view/grid_view.hpp"
 

@@ -10,11 +10,10 @@
 #include <variant>
 #include <vector>
 
-#include <isotet/contour_spectrum.hpp>
-#include <isotet/isovalue_shares.hpp>
-#include <isotet/opacity.hpp>
-#include <isotet/parts.hpp>
+#include <isotet/isovalues.hpp>
 #include <isotet/result.hpp>
+#include <isotet/scene.hpp>
+#include <isotet/surface.hpp>
 
 #include "view/chart.hpp"
 #include "view/command_line.hpp"

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include <isotet/boundary.hpp>
-#include <isotet/plan.hpp>
+#include <isotet/contour.hpp>
 
 namespace isotet::view {
 

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include <isotet/opacity.hpp>
+#include <isotet/scene.hpp>
 
 #include "view/command_line.hpp"
 

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <isotet/draw.hpp>
-#include <isotet/opacity.hpp>
+#include <isotet/render.hpp>
+#include <isotet/scene.hpp>
 
 #include "view/grid_view.hpp"
 

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include <isotet/isosurface_scene.hpp>
-#include <isotet/levels.hpp>
+#include <isotet/isovalues.hpp>
 #include <isotet/text.hpp>
 
 #include "view/messages.hpp"

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <isotet/opacity.hpp>
+#include <isotet/scene.hpp>
 
 namespace isotet::view {
 

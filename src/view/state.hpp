@@ -9,12 +9,11 @@
 #include <string_view>
 #include <vector>
 
-#include <isotet/camera.hpp>
-#include <isotet/field_statistics.hpp>
+#include <isotet/fields.hpp>
 #include <isotet/isosurface_scene.hpp>
-#include <isotet/parts.hpp>
 #include <isotet/result.hpp>
 #include <isotet/scene.hpp>
+#include <isotet/surface.hpp>
 
 #include "view/json.hpp"
 

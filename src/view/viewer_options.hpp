@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include <isotet/linear_cells.hpp>
 #include <isotet/progress.hpp>
-#include <isotet/refine.hpp>
 #include <isotet/result.hpp>
 
 #include "view/greeting.hpp"

@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <isotet/contour.hpp>
-#include <isotet/extract_direct.hpp>
+#include <isotet/extract.hpp>
 #include <isotet/make.hpp>
 
 #include "support/small_grid.hpp"

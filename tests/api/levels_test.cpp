@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include <isotet/levels.hpp>
+#include <isotet/isovalues.hpp>
 
 namespace isotet::test {
 namespace {

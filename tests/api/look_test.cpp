@@ -8,8 +8,8 @@
 
 #include <isotet/boundary.hpp>
 #include <isotet/check.hpp>
-#include <isotet/field_statistics.hpp>
-#include <isotet/grid_counts.hpp>
+#include <isotet/fields.hpp>
+#include <isotet/grid.hpp>
 #include <isotet/make.hpp>
 #include <isotet/pack.hpp>
 #include <isotet/text.hpp>

@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <isotet/extract.hpp>
-#include <isotet/extract_direct.hpp>
 #include <isotet/pack.hpp>
 
 #include "support/small_grid.hpp"

@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include <isotet/extract_direct.hpp>
+#include <isotet/contour.hpp>
+#include <isotet/extract.hpp>
 #include <isotet/make.hpp>
-#include <isotet/plan.hpp>
 
 namespace isotet::test {
 namespace {

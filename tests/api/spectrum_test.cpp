@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <isotet/contour_spectrum.hpp>
+#include <isotet/isovalues.hpp>
 
 #include "support/small_grid.hpp"
 

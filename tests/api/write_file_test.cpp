@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include <isotet/write_file.hpp>
+#include <isotet/write.hpp>
 
 #include "files/sample_files.hpp"
 

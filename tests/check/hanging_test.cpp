@@ -11,7 +11,7 @@
 
 #include <isotet/check.hpp>
 #include <isotet/contour.hpp>
-#include <isotet/grid_counts.hpp>
+#include <isotet/grid.hpp>
 
 #include "support/small_grid.hpp"
 

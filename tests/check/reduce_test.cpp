@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include <isotet/reduce.hpp>
+#include <isotet/surface.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,6 @@
 
 #include <isotet/check.hpp>
 #include <isotet/contour.hpp>
-#include <isotet/parts.hpp>
 #include <isotet/solid.hpp>
 
 #include "support/small_grid.hpp"

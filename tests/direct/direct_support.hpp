@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include <isotet/extract_direct.hpp>
+#include <isotet/extract.hpp>
 
 #include "support/brute_weld.hpp"
 #include "support/engines.hpp"

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Which values colour a grid or a surface, and the scale they get.
-#include <isotet/color_field.hpp>
+#include <isotet/scene.hpp>
 
 #include <cmath>
 #include <limits>

@@ -6,11 +6,11 @@
 
 #include <gtest/gtest.h>
 
-#include <isotet/compare_pictures.hpp>
-#include <isotet/draw.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/make.hpp>
 #include <isotet/pack.hpp>
+#include <isotet/picture.hpp>
+#include <isotet/render.hpp>
 
 namespace isotet::test {
 namespace {

@@ -5,10 +5,10 @@
 
 #include <gtest/gtest.h>
 
-#include <isotet/draw.hpp>
-#include <isotet/extract_direct.hpp>
+#include <isotet/extract.hpp>
 #include <isotet/isosurface_scene.hpp>
 #include <isotet/make.hpp>
+#include <isotet/render.hpp>
 
 namespace isotet::test {
 namespace {

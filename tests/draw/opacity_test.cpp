@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <isotet/opacity.hpp>
+#include <isotet/scene.hpp>
 
 namespace isotet::test {
 namespace {

@@ -4,8 +4,7 @@
 #include <fstream>
 #include <iterator>
 
-#include <isotet/compare_pictures.hpp>
-#include <isotet/picture_file.hpp>
+#include <isotet/picture.hpp>
 
 #include "cli/program.hpp"
 #include "cli/small_grid.hpp"

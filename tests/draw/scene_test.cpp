@@ -6,10 +6,10 @@
 
 #include <isotet/boundary.hpp>
 #include <isotet/check.hpp>
-#include <isotet/draw.hpp>
-#include <isotet/extract_direct.hpp>
+#include <isotet/extract.hpp>
 #include <isotet/isosurface_scene.hpp>
 #include <isotet/make.hpp>
+#include <isotet/render.hpp>
 
 #include "scene/clip_surface.hpp"
 

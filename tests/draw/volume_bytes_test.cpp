@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include <isotet/draw.hpp>
+#include <isotet/render.hpp>
 
 #include "draw/volumes.hpp"
 #include "render/cpu/encode.hpp"

@@ -2,8 +2,8 @@
 // Volumes on the CPU against closed forms: homogeneous media, linear fields, steps, and isosurfaces met by rays.
 #include <gtest/gtest.h>
 
-#include <isotet/draw.hpp>
 #include <isotet/extract.hpp>
+#include <isotet/render.hpp>
 
 #include "draw/volumes.hpp"
 #include "support/small_grid.hpp"

@@ -9,9 +9,9 @@
 #include <numbers>
 #include <vector>
 
-#include <isotet/camera.hpp>
 #include <isotet/make.hpp>
 #include <isotet/pack.hpp>
+#include <isotet/scene.hpp>
 
 #include "render/cpu/draw_tuned.hpp"
 #include "render/volume/volume_tile.hpp"

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <isotet/component_groups.hpp>
+#include <isotet/fields.hpp>
 #include <isotet/grid.hpp>
 
 namespace {

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include <isotet/expression.hpp>
+#include <isotet/fields.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/make.hpp>
 

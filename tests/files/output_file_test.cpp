@@ -8,7 +8,7 @@
 
 #include <csignal>
 
-#include <isotet/write_file.hpp>
+#include <isotet/write.hpp>
 
 #include "files/sample_files.hpp"
 #include "io/files/output_file.hpp"

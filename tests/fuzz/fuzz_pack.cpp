@@ -9,7 +9,6 @@
 
 #include <isotet/check.hpp>
 #include <isotet/extract.hpp>
-#include <isotet/extract_direct.hpp>
 #include <isotet/pack.hpp>
 
 #include "support/engines.hpp"

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <isotet/extract_direct.hpp>
+#include <isotet/extract.hpp>
 #include <isotet/slice.hpp>
 
 #include "golden/golden_files.hpp"

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include <isotet/device_grid.hpp>
+#include <isotet/device.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/pack.hpp>
 

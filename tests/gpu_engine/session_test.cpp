@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <isotet/contour.hpp>
-#include <isotet/device_grid.hpp>
+#include <isotet/device.hpp>
 
 #include "gpu_engine/engines.hpp"
 #include "support/small_grid.hpp"

@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <isotet/boundary.hpp>
-#include <isotet/color_field.hpp>
-#include <isotet/grid_counts.hpp>
+#include <isotet/grid.hpp>
+#include <isotet/scene.hpp>
 #include <isotet/jobs/clip_files.hpp>
 #include <isotet/jobs/draw_files.hpp>
 #include <isotet/jobs/extract_files.hpp>

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <isotet/make.hpp>
-#include <isotet/picture_file.hpp>
+#include <isotet/picture.hpp>
 #include <isotet/write.hpp>
 
 #include "jobs/listener.hpp"

@@ -12,9 +12,9 @@
 #include <isotet/jobs/draw_files.hpp>
 #include <isotet/jobs/extract_files.hpp>
 #include <isotet/make.hpp>
+#include <isotet/memory.hpp>
 #include <isotet/packed_file.hpp>
 #include <isotet/read.hpp>
-#include <isotet/scratch_memory.hpp>
 #include <isotet/write.hpp>
 
 #include "jobs/listener.hpp"

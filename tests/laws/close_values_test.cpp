@@ -8,7 +8,6 @@
 
 #include <isotet/check.hpp>
 #include <isotet/extract.hpp>
-#include <isotet/extract_direct.hpp>
 #include <isotet/pack.hpp>
 
 #include "support/close_values.hpp"

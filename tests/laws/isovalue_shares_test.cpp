@@ -6,8 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <isotet/contour_spectrum.hpp>
-#include <isotet/isovalue_shares.hpp>
+#include <isotet/isovalues.hpp>
 
 #include "support/random_grid.hpp"
 #include "support/small_grid.hpp"

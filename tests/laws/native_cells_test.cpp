@@ -4,10 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <isotet/check.hpp>
+#include <isotet/engine.hpp>
 #include <isotet/extract.hpp>
-#include <isotet/extract_direct.hpp>
 #include <isotet/pack.hpp>
-#include <isotet/reference.hpp>
 
 #include "support/engines.hpp"
 #include "support/mixed_grid.hpp"

@@ -8,9 +8,9 @@
 #include <gtest/gtest.h>
 
 #include <isotet/check.hpp>
-#include <isotet/contour_spectrum.hpp>
-#include <isotet/extract_direct.hpp>
-#include <isotet/reference.hpp>
+#include <isotet/engine.hpp>
+#include <isotet/extract.hpp>
+#include <isotet/isovalues.hpp>
 
 #include "support/mixed_grid.hpp"
 #include "support/random_grid.hpp"

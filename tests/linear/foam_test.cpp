@@ -6,7 +6,7 @@
 
 #include <isotet/check.hpp>
 #include <isotet/contour.hpp>
-#include <isotet/contour_spectrum.hpp>
+#include <isotet/isovalues.hpp>
 #include <isotet/linear_cells.hpp>
 #include <isotet/make.hpp>
 

@@ -17,8 +17,8 @@
 #include <isotet/boundary.hpp>
 #include <isotet/check.hpp>
 #include <isotet/contour.hpp>
-#include <isotet/grid_counts.hpp>
-#include <isotet/hanging_points.hpp>
+#include <isotet/grid.hpp>
+#include <isotet/linear_cells.hpp>
 #include <isotet/make.hpp>
 #include <isotet/solid.hpp>
 

@@ -6,7 +6,7 @@
 
 #include <isotet/check.hpp>
 #include <isotet/contour.hpp>
-#include <isotet/refine.hpp>
+#include <isotet/linear_cells.hpp>
 
 #include "grid/cell/node_order.hpp"
 #include "linear/curved/pyramid_weights.hpp"

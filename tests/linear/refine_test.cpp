@@ -5,9 +5,9 @@
 #include <isotet/boundary.hpp>
 #include <isotet/check.hpp>
 #include <isotet/contour.hpp>
-#include <isotet/extract_direct.hpp>
+#include <isotet/extract.hpp>
+#include <isotet/linear_cells.hpp>
 #include <isotet/make.hpp>
-#include <isotet/refine.hpp>
 
 #include "linear/curved_grid.hpp"
 #include "support/seeds.hpp"

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Arrays in files: what is in them, what stays of them, and where there is no room.
-#include <isotet/scratch_memory.hpp>
+#include <isotet/memory.hpp>
 
 #include <sys/resource.h>
 #include <sys/wait.h>

@@ -2,7 +2,7 @@
 // Packing with its arrays in files gives the file of packing in memory.
 #include <gtest/gtest.h>
 
-#include <isotet/scratch_memory.hpp>
+#include <isotet/memory.hpp>
 
 #include "packed/packed_samples.hpp"
 

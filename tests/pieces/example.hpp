@@ -2,7 +2,7 @@
 #include <functional>
 #include <vector>
 
-#include <isotet/extract_direct.hpp>
+#include <isotet/extract.hpp>
 #include <isotet/pieces.hpp>
 
 /// What MPI_Allgather(&mine, sizeof mine, MPI_BYTE, all, sizeof mine, MPI_BYTE, comm) does.

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <isotet/extract.hpp>
-#include <isotet/extract_direct.hpp>
 #include <isotet/pack.hpp>
 #include <isotet/pieces.hpp>
 #include <isotet/read.hpp>

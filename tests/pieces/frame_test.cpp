@@ -6,7 +6,7 @@
 #include <type_traits>
 
 #include <isotet/contour.hpp>
-#include <isotet/extract_direct.hpp>
+#include <isotet/extract.hpp>
 #include <isotet/frame.hpp>
 #include <isotet/pack.hpp>
 #include <isotet/pieces.hpp>

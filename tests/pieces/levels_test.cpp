@@ -8,7 +8,7 @@
 
 #include <isotet/check.hpp>
 #include <isotet/contour.hpp>
-#include <isotet/hanging_points.hpp>
+#include <isotet/linear_cells.hpp>
 #include <isotet/pieces.hpp>
 #include <isotet/read.hpp>
 #include <isotet/write.hpp>

@@ -7,7 +7,6 @@
 #include <set>
 
 #include <isotet/extract.hpp>
-#include <isotet/extract_direct.hpp>
 #include <isotet/pack.hpp>
 #include <isotet/pieces.hpp>
 

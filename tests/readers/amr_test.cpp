@@ -13,7 +13,7 @@
 #include <isotet/boundary.hpp>
 #include <isotet/check.hpp>
 #include <isotet/contour.hpp>
-#include <isotet/hanging_points.hpp>
+#include <isotet/linear_cells.hpp>
 #include <isotet/read.hpp>
 
 #include "readers/amr_sample.hpp"

@@ -7,7 +7,7 @@
 #include <isotet/boundary.hpp>
 #include <isotet/check.hpp>
 #include <isotet/contour.hpp>
-#include <isotet/hanging_points.hpp>
+#include <isotet/linear_cells.hpp>
 #include <isotet/read.hpp>
 
 #include "support/places.hpp"

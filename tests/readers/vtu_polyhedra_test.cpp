@@ -9,7 +9,7 @@
 
 #include <isotet/linear_cells.hpp>
 #include <isotet/read.hpp>
-#include <isotet/write_file.hpp>
+#include <isotet/write.hpp>
 
 #include "support/places.hpp"
 #include "support/temporary_folder.hpp"

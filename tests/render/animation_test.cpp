@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <webp/demux.h>
 
-#include <isotet/animation.hpp>
+#include <isotet/picture.hpp>
 
 #include "support/temporary_folder.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include <isotet/annotation.hpp>
+#include <isotet/render.hpp>
 
 #include "render/text.hpp"
 #include "render/ticks.hpp"

@@ -13,9 +13,9 @@
 
 #include <isotet/boundary.hpp>
 #include <isotet/check.hpp>
-#include <isotet/color_field.hpp>
 #include <isotet/make.hpp>
 #include <isotet/pack.hpp>
+#include <isotet/scene.hpp>
 #include <isotet/surface.hpp>
 
 #include "linear/curved_grid.hpp"

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <isotet/camera.hpp>
+#include <isotet/scene.hpp>
 
 #include "render/vector_math.hpp"
 

@@ -10,10 +10,9 @@
 
 #include <gtest/gtest.h>
 
-#include <isotet/compare_pictures.hpp>
-#include <isotet/draw.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/make.hpp>
+#include <isotet/picture.hpp>
 #include <isotet/render.hpp>
 
 #include "vulkan/software_device.hpp"

@@ -2,8 +2,8 @@
 // Scenes of isosurfaces: the same surfaces wherever they are extracted, and nothing packed that need not be.
 #include <atomic>
 
-#include <isotet/compare_pictures.hpp>
 #include <isotet/isosurface_scene.hpp>
+#include <isotet/picture.hpp>
 
 #include "render/drawing.hpp"
 

@@ -7,8 +7,7 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
-#include <isotet/compare_pictures.hpp>
-#include <isotet/picture_file.hpp>
+#include <isotet/picture.hpp>
 
 #include "support/temporary_folder.hpp"
 

@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include <isotet/clip.hpp>
 #include <isotet/solid.hpp>
 
 #include "grid/cell/cell_kind.hpp"

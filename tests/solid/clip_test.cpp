@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include <isotet/clip.hpp>
+#include <isotet/solid.hpp>
 
 #include "solid/all_cases.hpp"
 #include "solid/cell_boundary.hpp"

@@ -14,10 +14,10 @@
 #include <vector>
 
 #include <isotet/check.hpp>
-#include <isotet/contour_spectrum.hpp>
-#include <isotet/hanging_points.hpp>
-#include <isotet/parts.hpp>
+#include <isotet/isovalues.hpp>
+#include <isotet/linear_cells.hpp>
 #include <isotet/solid.hpp>
+#include <isotet/surface.hpp>
 
 #include "solid/all_cases.hpp"
 #include "support/mixed_grid.hpp"

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <isotet/hanging_points.hpp>
+#include <isotet/linear_cells.hpp>
 #include <isotet/solid.hpp>
 
 #include "grid/patches.hpp"

@@ -8,8 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <isotet/clip.hpp>
-#include <isotet/contour_spectrum.hpp>
+#include <isotet/isovalues.hpp>
 #include <isotet/solid.hpp>
 
 #include "solid/all_cases.hpp"

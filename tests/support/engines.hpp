@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include <isotet/reference.hpp>
+#include <isotet/engine.hpp>
 
 namespace isotet::test {
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include <isotet/refine.hpp>
+#include <isotet/linear_cells.hpp>
 
 namespace isotet::test {
 

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <set>
 
-#include <isotet/extract_direct.hpp>
+#include <isotet/extract.hpp>
 #include <isotet/make.hpp>
 
 #include "view/mesh.hpp"

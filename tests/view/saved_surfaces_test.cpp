@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include <isotet/extract_direct.hpp>
+#include <isotet/extract.hpp>
 #include <isotet/make.hpp>
 
 #include "view/page_file.hpp"

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include <isotet/extract_direct.hpp>
+#include <isotet/extract.hpp>
 #include <isotet/read.hpp>
 
 namespace isotet::test {

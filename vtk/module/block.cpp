@@ -10,7 +10,7 @@
 #include <vtkPolyData.h>
 #include <vtkUnstructuredGrid.h>
 
-#include <isotet/clip.hpp>
+#include <isotet/solid.hpp>
 
 #include "polydata.hpp"
 #include "unstructured.hpp"

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include <isotet/check.hpp>
-#include <isotet/isovalue_shares.hpp>
+#include <isotet/isovalues.hpp>
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
-#include <isotet/refine.hpp>
+#include <isotet/linear_cells.hpp>
 
 namespace isotet::jobs {
 

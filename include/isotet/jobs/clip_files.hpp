@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include <isotet/clip.hpp>
+#include <isotet/solid.hpp>
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
-#include <isotet/refine.hpp>
+#include <isotet/linear_cells.hpp>
 #include <isotet/jobs/range_shares.hpp>
 #include <isotet/write.hpp>
 

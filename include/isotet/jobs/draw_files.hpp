@@ -7,15 +7,14 @@
 #include <string>
 #include <vector>
 
-#include <isotet/color_field.hpp>
-#include <isotet/draw.hpp>
 #include <isotet/isosurface_scene.hpp>
-#include <isotet/isovalue_shares.hpp>
+#include <isotet/isovalues.hpp>
+#include <isotet/render.hpp>
+#include <isotet/scene.hpp>
 #include <isotet/jobs/device_choice.hpp>
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
 #include <isotet/jobs/range_shares.hpp>
-#include <isotet/render.hpp>
 #include <isotet/search.hpp>
 
 namespace isotet::jobs {

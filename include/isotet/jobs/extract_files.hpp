@@ -10,17 +10,16 @@
 #include <vector>
 
 #include <isotet/contour.hpp>
-#include <isotet/isovalue_shares.hpp>
+#include <isotet/isovalues.hpp>
 #include <isotet/jobs/device_choice.hpp>
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
 #include <isotet/jobs/range_shares.hpp>
 #include <isotet/packed_file.hpp>
-#include <isotet/parts.hpp>
 #include <isotet/pieces.hpp>
-#include <isotet/reduce.hpp>
 #include <isotet/scene.hpp>
 #include <isotet/solid.hpp>
+#include <isotet/surface.hpp>
 #include <isotet/write.hpp>
 
 namespace isotet::jobs {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <isotet/hanging_points.hpp>
+#include <isotet/linear_cells.hpp>
 #include <isotet/jobs/job.hpp>
 #include <isotet/make.hpp>
 #include <isotet/pack.hpp>

@@ -9,11 +9,10 @@
 #include <string>
 #include <vector>
 
-#include <isotet/component_groups.hpp>
-#include <isotet/contour_spectrum.hpp>
-#include <isotet/field_statistics.hpp>
+#include <isotet/fields.hpp>
 #include <isotet/first_view.hpp>
-#include <isotet/hanging_points.hpp>
+#include <isotet/isovalues.hpp>
+#include <isotet/linear_cells.hpp>
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <isotet/grid_bench.hpp>
-#include <isotet/isovalue_shares.hpp>
+#include <isotet/isovalues.hpp>
 #include <isotet/jobs/device_choice.hpp>
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include <isotet/isovalue_shares.hpp>
+#include <isotet/isovalues.hpp>
 #include <isotet/solid.hpp>
 
 namespace isotet::jobs {

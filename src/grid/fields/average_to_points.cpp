@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include <isotet/grid_counts.hpp>
+#include <isotet/grid.hpp>
 
 #include "base/buffer.hpp"
 #include "base/parallel.hpp"

@@ -9,7 +9,7 @@
 
 #include <fmt/core.h>
 
-#include <isotet/component_groups.hpp>
+#include <isotet/fields.hpp>
 
 #include "base/buffer.hpp"
 #include "base/errors.hpp"

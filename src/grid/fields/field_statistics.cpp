@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include <isotet/field_statistics.hpp>
+#include <isotet/fields.hpp>
 
 #include <algorithm>
 #include <cmath>

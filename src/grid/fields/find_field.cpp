@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-#include <isotet/expression.hpp>
+#include <isotet/fields.hpp>
 #include <isotet/grid.hpp>
 
 #include "base/carry_out.hpp"

@@ -5,9 +5,8 @@
 #include <cmath>
 #include <optional>
 
-#include <isotet/component_groups.hpp>
-#include <isotet/field_statistics.hpp>
-#include <isotet/grid_counts.hpp>
+#include <isotet/fields.hpp>
+#include <isotet/grid.hpp>
 
 #include "grid/fields/cell_corners_sample.hpp"
 #include "grid/fields/name_kind.hpp"

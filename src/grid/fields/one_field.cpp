@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-#include <isotet/component_groups.hpp>
+#include <isotet/fields.hpp>
 #include <isotet/linear_cells.hpp>
 
 #include "base/errors.hpp"

@@ -11,7 +11,7 @@
 
 #include <tbb/parallel_sort.h>
 
-#include <isotet/grid_counts.hpp>
+#include <isotet/grid.hpp>
 #include <isotet/linear_cells.hpp>
 
 #include "base/carry_out.hpp"

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <unistd.h>
 
-#include <isotet/write_file.hpp>
+#include <isotet/write.hpp>
 
 namespace isotet {
 namespace {

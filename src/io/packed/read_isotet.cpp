@@ -9,7 +9,7 @@
 
 #include <fmt/core.h>
 
-#include <isotet/component_groups.hpp>
+#include <isotet/fields.hpp>
 #include <isotet/packed_file.hpp>
 
 #include "base/buffer.hpp"

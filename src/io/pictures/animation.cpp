@@ -7,7 +7,7 @@
 #include <webp/encode.h>
 #include <webp/mux.h>
 
-#include <isotet/animation.hpp>
+#include <isotet/picture.hpp>
 
 #include "base/errors.hpp"
 #include "io/files/output_file.hpp"

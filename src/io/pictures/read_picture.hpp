@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include <isotet/picture_file.hpp>
+#include <isotet/picture.hpp>
 
 namespace isotet::io {
 

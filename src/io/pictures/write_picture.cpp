@@ -13,7 +13,7 @@
 #include <fmt/core.h>
 #include <libdeflate.h>
 
-#include <isotet/picture_file.hpp>
+#include <isotet/picture.hpp>
 
 #include "io/files/output_file.hpp"
 

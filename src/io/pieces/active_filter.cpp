@@ -1,7 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "io/pieces/active_filter.hpp"
 
-#include <isotet/grid_counts.hpp>
+#include <isotet/grid.hpp>
 
 namespace isotet::io {
 

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include <isotet/write_file.hpp>
+#include <isotet/write.hpp>
 
 #include <algorithm>
 #include <filesystem>

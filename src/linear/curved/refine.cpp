@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include <isotet/refine.hpp>
+#include <isotet/linear_cells.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <isotet/linear_cells.hpp>
-#include <isotet/refine.hpp>
 
 namespace isotet::linear {
 

@@ -2,7 +2,7 @@
 // Hanging points by what larger cells have there.
 #pragma once
 
-#include <isotet/hanging_points.hpp>
+#include <isotet/linear_cells.hpp>
 
 #include "linear/hanging/covers.hpp"
 

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include <isotet/color_field.hpp>
+#include <isotet/scene.hpp>
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <isotet/grid_counts.hpp>
+#include <isotet/grid.hpp>
 
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include <isotet/draw.hpp>
+#include <isotet/render.hpp>
 
 #include <algorithm>
 #include <atomic>

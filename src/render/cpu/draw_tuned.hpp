@@ -2,7 +2,7 @@
 // draw() with lists of other sizes, or without leaving anything out: for tests, which find that no picture shows it.
 #pragma once
 
-#include <isotet/draw.hpp>
+#include <isotet/render.hpp>
 
 #include "render/volume/volume_tile.hpp"
 

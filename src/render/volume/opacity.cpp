@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include <isotet/opacity.hpp>
+#include <isotet/scene.hpp>
 
 #include <algorithm>
 #include <charconv>
@@ -7,7 +7,7 @@
 
 #include <fmt/core.h>
 
-#include <isotet/levels.hpp>
+#include <isotet/isovalues.hpp>
 
 #include "base/errors.hpp"
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include <isotet/draw.hpp>
+#include <isotet/render.hpp>
 
 #include "render/volume/segments.hpp"
 #include "render/volume/tet_planes.hpp"

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Letters beside a picture, for which no device is needed.
-#include <isotet/annotation.hpp>
+#include <isotet/render.hpp>
 
 int main() {
     isotet::Annotation annotation;

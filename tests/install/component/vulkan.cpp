@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // A machine without a device is one, too.
-#include <isotet/device_grid.hpp>
+#include <isotet/device.hpp>
 
 int main() {
     const auto list = isotet::list_devices();

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include <isotet/expression.hpp>
+#include <isotet/fields.hpp>
 
 #include "base/errors.hpp"
 #include "grid/fields/expression/functions.hpp"

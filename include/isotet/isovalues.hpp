@@ -1,5 +1,4 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Area and volume against the isovalue, without a surface of any.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +11,52 @@
 #include <isotet/result.hpp>
 
 namespace isotet {
+
+// Isovalues within a range, for whoever has a field but no isovalue in mind.
+
+/// Whether levels are computed exactly or moved to short decimals.
+enum class LevelRounding : std::uint8_t {
+    none,  ///< lower + k (upper - lower) / (count + 1)
+    short_decimals, ///< the same, rounded to a tenth of the distance between two levels or better: 0.3, not 0.29873
+};
+
+/// `count` isovalues that divide a range into equal parts; neither end is one of them, unless both are the same value.
+///
+/// `lower`, `upper`   in the unit of the field; finite. Nothing is returned where lower > upper or one is not finite
+/// Returns            the levels, ascending; with `short_decimals` without repetitions, so perhaps fewer
+/// Guarantees         finite, also where upper - lower is too large for a double
+ISOTET_API std::vector<double> evenly_spaced_levels(double lower, double upper, std::uint64_t count,
+                                         LevelRounding rounding = LevelRounding::none);
+
+// Isovalues by what lies below them: a part of the grid's volume, or of the point values.
+
+/// "90 % of the volume is below", or "the 95th percentile of the point values".
+struct IsovalueShare {
+    enum class Of : std::uint8_t {
+        volume, ///< ContourSpectrum::volume_below over ContourSpectrum::volume
+        points  ///< finite values of all points of the grid, each counted once
+    };
+    Of of = Of::volume;
+    double percent = 50; ///< 0 to 100
+};
+
+/// The isovalue of each share, in their order.
+///
+/// Of volume: the least isovalue with at least the share of the volume below it, where the field is linear in each tet
+/// (contour_spectrum() says which tets those are); 0 % is the smallest, 100 % the largest value. Where tets of one value
+/// make the volume jump over the share: that value.
+/// Of points: the least of the n values so that at least percent * n / 100 of them are not above it (nearest rank;
+/// NumPy's method "inverted_cdf").
+///
+/// Guarantees   the volume below the isovalue is the share up to 1e-12 of the volume, jumps aside; the same for any thread
+///              count
+/// Cost         of volume: four to seven contour_spectrum(); of points: a copy of the values, partly sorted
+/// Errors       invalid_argument: a percent that is not from 0 to 100, a field that does not fit; invalid_data: no finite
+///              value, no volume, and as contour_spectrum(); out_of_memory; cancelled
+ISOTET_API Result<std::vector<double>> isovalues_at(const Grid& grid, const PointField& field,
+                                                    std::span<const IsovalueShare> shares, const Run& run = {});
+
+// Area and volume against the isovalue, without a surface of any.
 
 /// Areas in the square of the unit of the points, volumes in its cube.
 ///
