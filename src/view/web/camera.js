@@ -17,7 +17,7 @@ const views = {
   oblique: [unit([0.5, 0.75, 0.43]), [0, 0, 1]], // 33.69 degrees to the right, 25.5 upwards
 };
 
-/** The side that a view from the front shows, by the axis that points upwards: as camera_of() of include/isotet/camera.hpp. */
+/** The side that a view from the front shows, by the axis that points upwards: as camera_of() of include/isotet/scene.hpp. */
 const fronts = {x: [0, -1, 0], y: [0, 0, 1], z: [0, -1, 0]};
 
 export class Camera {
@@ -63,7 +63,7 @@ export class Camera {
   }
 
   /**
-   * Sees all of some points as large as possible, as Camera::fit() of include/isotet/camera.hpp.
+   * Sees all of some points as large as possible, as Camera::fit() of include/isotet/scene.hpp.
    *
    * @param points  x, y and z one after another
    */
