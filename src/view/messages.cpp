@@ -338,10 +338,11 @@ std::string pasted_text(const PastedCommand& pasted, bool of_other_file) {
     return text_of(json);
 }
 
-std::string chart_text(const std::string& field, std::size_t step, const Chart& chart) {
+std::string chart_text(const ChartMessage& asked, std::size_t step, const Chart& chart) {
     return text_of({{"say", "chart"},
-                    {"field", field},
+                    {"field", asked.field},
                     {"step", step},
+                    {"cells", asked.cells},
                     {"lower", chart.lower},
                     {"upper", chart.upper},
                     {"points", chart.points},
@@ -379,10 +380,11 @@ std::string share_text(const ShareMessage& message, std::size_t step, double iso
                     {"isovalue", isovalue}});
 }
 
-std::string spectrum_text(const std::string& field, std::size_t step, const ContourSpectrum& spectrum) {
+std::string spectrum_text(const SpectrumMessage& asked, std::size_t step, const ContourSpectrum& spectrum) {
     return text_of({{"say", "spectrum"},
-                    {"field", field},
+                    {"field", asked.field},
                     {"step", step},
+                    {"cells", asked.cells},
                     {"isovalues", spectrum.isovalues},
                     {"area", spectrum.area},
                     {"volume_below", spectrum.volume_below},

@@ -158,12 +158,13 @@ std::string error_text(std::string_view about, std::string_view sentence);
 std::string picked_text(const Picked& picked);
 /// `of_other_file`   the command line names another one than the page shows
 std::string pasted_text(const PastedCommand& pasted, bool of_other_file);
-std::string chart_text(const std::string& field, std::size_t step, const Chart& chart);
+/// With the cells that it was asked of: these may have changed meanwhile.
+std::string chart_text(const ChartMessage& asked, std::size_t step, const Chart& chart);
 /// The largest ones one by one, at most 500.
 std::string parts_text(const PartsMessage& message, std::size_t step, const std::vector<SurfacePart>& parts,
                        const std::vector<std::uint64_t>& kept);
 std::string share_text(const ShareMessage& message, std::size_t step, double isovalue);
-std::string spectrum_text(const std::string& field, std::size_t step, const ContourSpectrum& spectrum);
+std::string spectrum_text(const SpectrumMessage& asked, std::size_t step, const ContourSpectrum& spectrum);
 
 /// The scale of a frame's colours, as pages take it.
 Json scale_json(const ColorScale& scale, const std::vector<std::string>& classes);

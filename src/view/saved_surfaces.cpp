@@ -85,7 +85,7 @@ Result<void> SurfaceSaver::look_at_steps() {
     for (std::size_t step = 0; step < options_.steps.size(); ++step) {
         const Result<Chart> chart = view_->chart(field, options_.steps[step], run_);
         if (!chart) return chart.error();
-        charts_.push_back(*parse_json(chart_text(field, step, *chart)));
+        charts_.push_back(*parse_json(chart_text({field}, step, *chart)));
         if (!(chart->lower <= chart->upper)) continue;
         if (range_.lower > range_.upper) {
             range_ = {chart->lower, chart->upper};
@@ -95,7 +95,7 @@ Result<void> SurfaceSaver::look_at_steps() {
     if (options_.steps.size() > 1) return {};
     const Result<ContourSpectrum> spectrum = view_->spectrum(field, options_.steps.front(), run_);
     if (!spectrum && spectrum.error().code == ErrorCode::cancelled) return spectrum.error();
-    if (spectrum) spectra_.push_back(*parse_json(spectrum_text(field, 0, *spectrum)));
+    if (spectrum) spectra_.push_back(*parse_json(spectrum_text({field}, 0, *spectrum)));
     return {};
 }
 

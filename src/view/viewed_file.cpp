@@ -24,14 +24,14 @@ public:
     Result<std::string> chart(const ChartMessage& message, const Run& run) override {
         const Result<Chart> chart = view_.chart(message.field, message.step, {threads_, run.progress}, message.cells);
         if (!chart) return chart.error();
-        return chart_text(message.field, view_.step(), *chart);
+        return chart_text(message, view_.step(), *chart);
     }
 
     Result<std::string> spectrum(const SpectrumMessage& message, const Run& run) override {
         const Result<ContourSpectrum> spectrum =
             view_.spectrum(message.field, message.step, {threads_, run.progress}, message.cells);
         if (!spectrum) return spectrum.error();
-        return spectrum_text(message.field, view_.step(), *spectrum);
+        return spectrum_text(message, view_.step(), *spectrum);
     }
 
     void rest() override { view_.rest(); }

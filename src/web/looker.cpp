@@ -65,12 +65,11 @@ void Looker::answer(PageMessage message) {
     if (const auto* wish = std::get_if<ShowMessage>(&message)) return show(*wish);
     if (const auto* chart = std::get_if<ChartMessage>(&message)) {
         const Result<Chart> made = view_->chart(chart->field, chart->step, run);
-        return say_text(made ? chart_text(chart->field, view_->step(), *made)
-                             : error_text("chart", made.error().message));
+        return say_text(made ? chart_text(*chart, view_->step(), *made) : error_text("chart", made.error().message));
     }
     if (const auto* wanted = std::get_if<SpectrumMessage>(&message)) {
         const Result<ContourSpectrum> made = view_->spectrum(wanted->field, wanted->step, run);
-        return say_text(made ? spectrum_text(wanted->field, view_->step(), *made)
+        return say_text(made ? spectrum_text(*wanted, view_->step(), *made)
                              : error_text("spectrum", made.error().message));
     }
     if (const auto* pick = std::get_if<PickMessage>(&message)) {

@@ -106,6 +106,12 @@ TEST(Texts, ReplaceBytesThatAreNotUtf8) {
     EXPECT_TRUE(parse_json(refusal_text(1, std::string("\0\x01\"\\", 4))));
 }
 
+TEST(Texts, TellTheCellsThatAChartIsOf) {
+    for (const std::string& text : {chart_text({"p", {}, {"a=1"}}, 0, {}), spectrum_text({"p", {}, {"a=1"}}, 0, {})})
+        EXPECT_EQ((*parse_json(text))["cells"], Json::array({"a=1"}));
+    EXPECT_EQ((*parse_json(chart_text({"p"}, 0, {})))["cells"], Json::array());
+}
+
 TEST(ParsePageMessage, RefusesPicksPicturesAndFilesThatMakeNoSense) {
     for (
         const char* text : {

@@ -161,7 +161,7 @@ export function followStep() {
   if (frame?.range) see(frame.field, frame.step, ...frame.range);
   const step = frame?.field === state.field ? frame.step : state.step;
   for (const kind of ['chart', 'spectrum'])
-    if (slider[kind] && (slider[kind].field !== state.field || (state.step !== null && slider[kind].step !== step) || slider[kind].cells !== cellsKey())) slider[kind] = null;
+    if (slider[kind] && (slider[kind].field !== state.field || (state.step !== null && slider[kind].step !== step) || !isOfCells(slider[kind]))) slider[kind] = null;
   if ((!slider.chart || state.value === null) && !time.playing && level.empty !== question()) askChart();
   showValue();
   askSpectrum();
@@ -169,7 +169,10 @@ export function followStep() {
 
 const question = () => JSON.stringify([app.state.step, app.state.field, cellsOf(app.state)]);
 
-const cellsKey = () => cellsOf(app.state).join('|');
+const isOfCells = ({cells = []}) => JSON.stringify(cells) === JSON.stringify(cellsOf(app.state));
+
+/** What comes may be of another field, step or cells than are shown by now. */
+const isOfState = (answer) => answer.field === app.state.field && (app.state.step === null || answer.step === app.state.step) && isOfCells(answer);
 
 /** What it is about. */
 function questionOf(kind) {
@@ -187,8 +190,8 @@ export function takeChart(chart) {
   const {slider, state} = app;
   level.chart = '';
   if (chart.lower <= chart.upper) see(chart.field, chart.step, chart.lower, chart.upper);
-  if (chart.field !== state.field || (state.step !== null && chart.step !== state.step)) return;
-  slider.chart = chart.lower <= chart.upper ? {...chart, cells: cellsKey()} : null;
+  if (!isOfState(chart)) return;
+  slider.chart = chart.lower <= chart.upper ? chart : null;
   level.empty = slider.chart ? '' : question();
   const varies = chart.lower < chart.upper;
   if (state.value === null && slider.chart) {
@@ -223,8 +226,8 @@ export function forgetQuestions() {
 
 export function takeSpectrum(spectrum) {
   level.spectrum = '';
-  if (spectrum.field !== app.state.field || (app.state.step !== null && spectrum.step !== app.state.step)) return;
-  app.slider.spectrum = spectrum.isovalues.length > 0 ? {...spectrum, cells: cellsKey()} : null;
+  if (!isOfState(spectrum)) return;
+  app.slider.spectrum = spectrum.isovalues.length > 0 ? spectrum : null;
   showValue();
 }
 

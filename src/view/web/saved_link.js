@@ -33,8 +33,8 @@ export class Link {
   send(message) {
     const {saved} = this, step = message.step ?? 0;
     if (message.do === 'show') this.show(message);
-    if (message.do === 'chart') this.say(saved.charts.find((chart) => chart.field === message.field && chart.step === step));
-    if (message.do === 'spectrum') this.say(saved.spectra.find((one) => one.field === message.field && one.step === step));
+    if (message.do === 'chart') this.answer(message, saved.charts, step);
+    if (message.do === 'spectrum') this.answer(message, saved.spectra, step);
     if (message.do === 'pick') this.say({say: 'picked', point: message.point, values: []});
     if (message.do === 'save') this.save(message);
     if (message.do === 'part') this.on.part(this.file);
@@ -44,6 +44,11 @@ export class Link {
   /** As a server: later, and nothing where there is no answer. */
   say(message) {
     if (message) setTimeout(() => this.on.text(message));
+  }
+
+  answer({field, cells = []}, answers, step) {
+    const found = answers.find((one) => one.field === field && one.step === step);
+    if (found) this.say({...found, cells});
   }
 
   /** The newest wish only. */
