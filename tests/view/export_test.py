@@ -176,6 +176,30 @@ def test_files(browser, folder):
     check(checked['triangles'] == report['triangles'], 'isotet reads the STL')
 
 
+def test_files_of_the_boundary(browser, folder):
+    """What is shown is written: the boundary where it is shown alone."""
+    model = os.path.join(os.path.dirname(__file__), '../../data/gocad/geomodel3d_tsolid.so')
+    path, _ = export(folder, 'model.html', model, '--surfaces', '3')
+    browser.call('Page.navigate', url='about:blank')
+    browser.open('file://' + urllib.parse.quote(path))
+    browser.wait('document.body.dataset.kinds === "boundary"')
+    saved = os.path.join(folder, 'boundaries')
+    os.mkdir(saved)
+    browser.call('Page.setDownloadBehavior', behavior='allow', downloadPath=saved)
+    browser.click('#save-open')
+    browser.value('(() => { const s = document.getElementById("save-kind"); s.value = "surface.stl"; s.dispatchEvent(new Event("change")); })()')
+    browser.value('document.getElementById("save-name").value = "a.stl"')
+    browser.click('#save-go')
+    browser.wait('document.getElementById("save-told").textContent.startsWith("Downloaded")')
+    told = browser.value('document.getElementById("facts").textContent')
+    for _ in range(200):
+        if os.path.exists(os.path.join(saved, 'a.stl')):
+            break
+        browser.value('new Promise((done) => setTimeout(done, 50))')
+    written = isotet('check', os.path.join(saved, 'a.stl'))['triangles']
+    check(f'{written:,} triangles' in told, f'{written} triangles were written: {told}')
+
+
 def test_steps(browser, folder):
     path, report = export(folder, 'steps.html', STEPS, '-f', 'nodal_Cauchy_Stress_1', '--all-steps', '--surfaces', '3')
     check(report['steps'] == 3, 'all steps are there')

@@ -1,7 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // In place of the socket (link.js) where the page is a file: isotet as WebAssembly answers, in a thread (engine_worker.js).
 import {readFrame} from './frame.js';
-import {surfaceFile} from './mesh_files.js';
+import {nothingShown, surfaceFile} from './mesh_files.js';
 import {partBytes} from './unpack.js';
 
 export class EngineLink {
@@ -75,9 +75,11 @@ export class EngineLink {
     return true;
   }
 
-  /** The isosurfaces that are shown, as a file. */
-  save({name, kind}) {
-    const shown = this.frame.surfaces.filter((one) => one.kind === 'surface'), answer = (message) => setTimeout(() => this.on.text(message));
+  /** The isosurfaces that are shown, as a file, or the boundary where there are none. */
+  save({name, kind, state}) {
+    const answer = (message) => setTimeout(() => this.on.text(message));
+    const shown = this.frame.surfaces.filter((one) => one.kind === (state.isosurfaces ? 'surface' : 'boundary'));
+    if (shown.length === 0) return answer({say: 'error', about: 'save', sentence: nothingShown});
     this.file = kind === 'surface' ? surfaceFile(name, [...new Set(shown.map(({key}) => key))].map((key) => this.meshes.get(key)), shown) : null;
     if (this.file) answer({say: 'download', name, bytes: this.file.length});
     else answer({say: 'error', about: 'save', sentence: 'This page writes pictures (.png) and surfaces (.stl, .glb).'});

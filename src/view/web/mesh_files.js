@@ -1,6 +1,8 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Surfaces as files, of what the page has: places are rounded to 65535ths of each surface's box.
 
+export const nothingShown = 'Nothing is shown that could be written.';
+
 /** Positions of the vertices, three numbers each. */
 function positionsOf({vertexBytes, vertices, lower, upper}) {
   const places = new Uint16Array(vertexBytes.buffer, vertexBytes.byteOffset, 4 * vertices), positions = new Float32Array(3 * vertices);

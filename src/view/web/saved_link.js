@@ -1,7 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // In place of the socket (link.js) where the page is a file of `isotet export`: what the server would say stands in the file.
 import {looksOf} from './looks.js';
-import {surfaceFile} from './mesh_files.js';
+import {nothingShown, surfaceFile} from './mesh_files.js';
 import {decodeMesh, unpack} from './unpack.js';
 
 const maxKept = 256e6; // bytes of meshes that were unpacked
@@ -67,6 +67,9 @@ export class Link {
     }
   }
 
+  /** It goes on until there is another one. */
+  boundaryAt(step) { return this.saved.boundaries.filter((one) => one.step <= step).pop(); }
+
   /** The surface of the nearest value at a step. */
   nearest(step, value) {
     return this.saved.surfaces.filter((one) => one.step === step).reduce((best, one) => (Math.abs(one.isovalue - value) < Math.abs(best.isovalue - value) ? one : best));
@@ -91,7 +94,7 @@ export class Link {
     const step = state.step ?? 0, start = performance.now(), shown = state.isosurfaces ? state.isovalues.map((value) => this.nearest(step, value)) : [];
     const once = [...new Set(shown)], looks = looksOf(once, this.saved.welcome.maps[state.map], state.opacity ?? null);
     const surfaces = shown.map((one) => ({key: one.part, kind: 'surface', isovalue: one.isovalue, triangles: one.triangles, ...looks[once.indexOf(one)], told: one.mesh}));
-    const boundary = this.saved.boundaries.filter((one) => one.step <= step).pop(); // it goes on until there is another one
+    const boundary = this.boundaryAt(step);
     if (boundary && state.boundary > 0) surfaces.push({key: boundary.part, kind: 'boundary', color: boundary.color, opacity: state.boundary, triangles: boundary.triangles, told: boundary.mesh});
     const keys = new Set();
     let bytes = 0;
@@ -108,13 +111,16 @@ export class Link {
     return {number, preview: false, method: 'saved', extract_ms: 0, mesh_ms: performance.now() - start, wait_ms: 0, step, field: state.field, notes, range, field_bound, scale, surfaces, bytes};
   }
 
-  /** Isosurfaces of a state as a file, by the ending of its name. */
+  /** Isosurfaces of a state as a file, or its boundary where that is shown alone, by the ending of its name. */
   async save({kind, name, state}) {
     const refuse = (sentence) => this.say({say: 'error', about: 'save', sentence});
     try {
-      const once = [...new Set(state.isovalues.map((value) => this.nearest(state.step ?? 0, value)))], meshes = [];
+      const step = state.step ?? 0, surfaces = state.isosurfaces ? state.isovalues.map((value) => this.nearest(step, value)) : [];
+      const boundary = state.isosurfaces || state.boundary === 0 ? null : this.boundaryAt(step);
+      const once = boundary ? [{...boundary, opacity: 1}] : [...new Set(surfaces)], meshes = [];
+      if (once.length === 0) return refuse(nothingShown);
       for (const one of once) meshes.push(await this.mesh(one.part, one.mesh));
-      this.file = kind === 'surface' ? surfaceFile(name, meshes, looksOf(once, this.saved.welcome.maps[state.map], state.opacity ?? null)) : null;
+      this.file = kind === 'surface' ? surfaceFile(name, meshes, boundary ? once : looksOf(once, this.saved.welcome.maps[state.map], state.opacity ?? null)) : null;
       if (this.file) this.on.text({say: 'download', name, bytes: this.file.length});
       else refuse('This page writes pictures (.png) and surfaces (.stl, .glb).');
     } catch (error) {
