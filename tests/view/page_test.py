@@ -1196,6 +1196,14 @@ def test_heights_of_flat_reservoirs(browser, viewer):
         browser.call('Page.navigate', url='about:blank')
 
 
+def test_long_names_of_hidden_classes(browser, viewer):
+    """A message takes 4096 bytes a choice: names are shared out."""
+    start(browser, viewer)
+    sizes = browser.value("import('./state.js').then(({cellsOf}) => cellsOf({cells: ['a=1'], colorBy: 'region', hidden: "
+                          "['x'.repeat(3000), 'y'.repeat(3000), 'z', 'é'.repeat(2100)]}).map((one) => one.length))")
+    check(sizes == [3, 3008, 3010], f'{sizes}')
+
+
 def test_hiding_leaves_places_without_data(browser, viewer):
     """Three cells of the regions 1, 2 and none: those of a hidden region go, of all that is shown; grey ones stay."""
     def count():

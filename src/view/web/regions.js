@@ -70,10 +70,10 @@ function namesIn(list) {
 
 /** Of choices that a command line has, classes of the colours that are left out are hidden ones. */
 export function takeHidden(state) {
-  const head = `!${state.colorBy}=`, own = state.colorBy ? state.cells.findIndex((one) => one.startsWith(head)) : -1;
-  if (own < 0) return;
-  state.hidden = namesIn(state.cells[own].slice(head.length));
-  state.cells = state.cells.filter((_, i) => i !== own);
+  const head = `!${state.colorBy}=`, own = state.colorBy ? state.cells.filter((one) => one.startsWith(head)) : [];
+  if (own.length === 0) return;
+  state.hidden = own.flatMap((one) => namesIn(one.slice(head.length)));
+  state.cells = state.cells.filter((one) => !own.includes(one));
 }
 
 id('regions-all').addEventListener('click', () => hide([]));

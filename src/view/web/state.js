@@ -118,8 +118,20 @@ export function fromAddress(text) {
 /** The field that colours: a volume has its own colours. */
 export const coloredBy = ({volume, field, colorBy}) => (volume ? field : colorBy);
 
+const maxChoiceBytes = 4096, maxChoices = 9; // of messages (src/view/state.hpp)
+const bytesOf = (text) => new TextEncoder().encode(text).length;
+
 /** Of --cells: without the classes that are hidden. */
-export const cellsOf = ({cells, hidden, colorBy}) => (hidden.length > 0 && colorBy ? [...cells, `!${colorBy}=${hidden.join(',')}`] : cells);
+export function cellsOf({cells, hidden, colorBy}) {
+  if (hidden.length === 0 || !colorBy) return cells;
+  const choices = [];
+  for (const name of hidden) {
+    const more = choices.length > 0 ? `${choices.at(-1)},${name}` : '', alone = `!${colorBy}=${name}`;
+    if (more && bytesOf(more) <= maxChoiceBytes) choices[choices.length - 1] = more;
+    else if (bytesOf(alone) <= maxChoiceBytes) choices.push(alone);
+  }
+  return [...cells, ...choices].slice(0, maxChoices);
+}
 
 /** As messages have it (src/view/state.hpp). */
 export function toMessage(state) {
