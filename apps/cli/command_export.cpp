@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// `isotet export`: isosurfaces in a page of one file.
+// `isotet export`: a grid or isosurfaces in a page of one file.
 #include <filesystem>
 #include <numeric>
 #include <utility>
@@ -21,6 +21,7 @@
 #include "report.hpp"
 #include "stopwatch.hpp"
 #include "text.hpp"
+#include "view/saved_grid.hpp"
 #include "view/saved_surfaces.hpp"
 #include "view_input.hpp"
 
@@ -76,7 +77,7 @@ view::SavedSurfacesOptions options_of(const ExportCommand& command, const view::
     options.file = name_without_folder(command.grid.file);
     options.version = ISOTET_VERSION;
     options.isovalues = input.state.isovalues; // those that were named
-    options.count = command.count;
+    if (command.count) options.count = *command.count;
     options.range = range;
     options.refine = command.refine;
     if (command.max_size) options.max_bytes = *command.max_size;
@@ -119,11 +120,21 @@ Json export_report(const ExportCommand& command, const view::SavedSurfaces& save
     return report;
 }
 
+/// Without being asked for it.
+bool may_have_grid(const ExportCommand& command) {
+    return command.isovalues.empty() && command.shares.empty() && command.range.empty() && !command.count &&
+           view::check_grid_pages();
+}
+
 } // namespace
 
 Result<ExitCode> run_export(const ExportCommand& command) {
-    if (command.grid_inside) return run_export_grid(command);
     Console console(command.common);
+    if (command.content == PageContent::grid || (command.content == PageContent::fitting && may_have_grid(command))) {
+        const Result<std::optional<ExitCode>> done = run_export_grid(command, console);
+        if (!done) return done.error();
+        if (*done) return **done;
+    }
     GridOptions grid = command.grid;
     if (command.all_steps) grid.step = 0;
     Result<GridSource> source = GridSource::open(grid, console);

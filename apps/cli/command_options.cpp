@@ -184,10 +184,11 @@ Examples:
 )";
 
 constexpr const char* export_details = R"(
-OUT is a page that shows isosurfaces with a slider, as isotet view does, and loads nothing. It holds N surfaces
-between two isovalues, or those of -i, at one time step or all; where it would be larger than --max-size, every
-second, third and so on of the N surfaces, with a note. With --as grid it holds the packed grid, with the fields of -f
-and --color-by, or without -f all point fields, of which those that do not fit are left out, with a note.
+OUT is a page that shows isosurfaces with a slider, as isotet view does, and loads nothing. It holds the packed grid,
+with the fields of -f and --color-by, or without -f all point fields; where it would be larger than --max-size, those
+fields that do not fit are left out, and then values are rounded to 16 bits. Or it holds N surfaces between two
+isovalues, or those of -i, at one time step or all; of the N surfaces every second, third and so on, where all would be
+too large. Notes tell what was done.
 
 Examples:
   isotet export grid.vtu grid.html -f pressure
@@ -409,10 +410,11 @@ void add_export(const Command& program, ExportCommand& exported) {
     add_field(command, exported.field,
               "The field to contour, or an expression such as mag(U); default: the one that info says is shown first");
     const Option isovalues = add_isovalues(command, exported.isovalues, exported.shares);
-    command.add_choice<bool>(
-        "--as", exported.grid_inside, {{"surfaces", false}, {"grid", true}},
-        "What is in the page: surfaces (the default), or the grid, with isotet as WebAssembly: any "
-        "isovalue, slices, colours by all its fields");
+    command.add_choice<PageContent>(
+        "--as", exported.content, {{"surfaces", PageContent::surfaces}, {"grid", PageContent::grid}},
+        "What is in the page: isosurfaces, or the grid, with isotet as WebAssembly: any isovalue, slices, colours by "
+        "all "
+        "its fields; default: the grid where it fits, but surfaces with -i, --surfaces and --between");
     command
         .add_count(
             "--surfaces", {1, 10'000}, [&](std::uint64_t n) { exported.count = n; }, "N",

@@ -12,8 +12,11 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <isotet/first_view.hpp>
 #include <isotet/isosurface_scene.hpp>
+#include <isotet/jobs/first_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
 #include <isotet/jobs/number_text.hpp>
 #include <isotet/jobs/output_names.hpp>
@@ -26,6 +29,7 @@
 #include "json_output.hpp"
 #include "report.hpp"
 #include "text.hpp"
+#include "view/greeting.hpp"
 #include "view/saved_grid.hpp"
 
 namespace isotet::cli {
@@ -52,9 +56,13 @@ private:
     std::string path_;
 };
 
-PackJob pack_job_of(const ExportCommand& command, const std::string& out) {
+PackJob pack_job_of(const ExportCommand& command, const FirstChoice& choice, const std::string& out) {
     PackJob job;
     job.grid = command.grid;
+    if (!command.all_steps && !choice.steps.empty()) {
+        job.grid.time.reset();
+        job.grid.step = choice.steps.front();
+    }
     job.all_steps = command.all_steps;
     job.out = out;
     job.cell_field = command.field.cell_field;
@@ -66,12 +74,13 @@ PackJob pack_job_of(const ExportCommand& command, const std::string& out) {
 }
 
 /// Those by share are of the first step.
-Result<std::vector<double>> isovalues_of(const ExportCommand& command, const std::string& field, Console& console) {
+Result<std::vector<double>> isovalues_of(const ExportCommand& command, const GridOptions& grid_options,
+                                         const std::string& field, Console& console) {
     std::vector<double> isovalues = command.isovalues;
     if (command.shares.empty()) return isovalues;
-    const auto source = GridSource::open(command.grid, console);
+    const auto source = GridSource::open(grid_options, console);
     if (!source) return source.error();
-    const auto steps = choose_steps(source->info(), command.grid, Steps::one, console);
+    const auto steps = choose_steps(source->info(), grid_options, Steps::one, console);
     if (!steps) return steps.error();
     Grid grid;
     const auto values = read_field(*source, steps->front(), {field, command.field.cell_field}, {}, console, grid);
@@ -105,6 +114,7 @@ struct GridPage {
     PackNumbers packed;
     std::string html;
     std::size_t left_out = 0; ///< of the fields
+    bool rounded = false;
 };
 
 std::vector<std::string> names_of(const std::vector<FieldReport>& fields) {
@@ -115,15 +125,19 @@ std::vector<std::string> names_of(const std::vector<FieldReport>& fields) {
 
 class GridPageMaker {
 public:
-    GridPageMaker(const ExportCommand& command, std::string folder, Console& console)
-        : command_(command), console_(console), job_(pack_job_of(command, folder + "/grid.isotet")) {}
+    GridPageMaker(const ExportCommand& command, const std::string& folder, const FirstChoice& choice, Console& console)
+        : command_(command), console_(console), job_(pack_job_of(command, choice, folder + "/grid.isotet")) {
+        if (command.field.name.empty()) first_ = choice.view;
+    }
 
-    /// With as many of the fields as fit, if none was named.
-    /// Errors   invalid_argument: too large
+    /// With as many of the fields as fit, if none was named; then with values of 16 bits. It may still be too large.
     Result<GridPage> make(std::uint64_t max_bytes);
 
 private:
     Result<GridPage> page_with(std::vector<std::string> fields);
+    Result<GridPage> page_with_all();
+    view::ViewState state_of(const std::vector<std::string>& fields) const;
+    void tell(const GridPage& page, std::uint64_t max_bytes);
     Result<GridPage> page_with_first(std::span<const std::string> names, std::size_t count) {
         return page_with({names.begin(), names.begin() + static_cast<std::ptrdiff_t>(count)});
     }
@@ -132,8 +146,25 @@ private:
     const ExportCommand& command_;
     Console& console_;
     PackJob job_;
-    std::optional<std::vector<double>> isovalues_; ///< of the first field
+    std::optional<FirstView> first_;               ///< where no field was named
+    std::optional<std::vector<double>> isovalues_; ///< of the field that is shown first
 };
+
+/// A page has no cell fields: regions are not coloured.
+view::ViewState GridPageMaker::state_of(const std::vector<std::string>& fields) const {
+    view::ViewState state;
+    const bool isovalues_are_given = !command_.isovalues.empty() || !command_.shares.empty();
+    if (first_ && !isovalues_are_given) {
+        view::take_first_view(*first_, state);
+        if (first_->association == Association::cell) {
+            state.color_by.clear();
+            state.colored_boundary = false;
+        }
+    }
+    if (std::ranges::find(fields, state.field) == fields.end()) state.field = fields.front();
+    if (!command_.color_by.empty()) state.color_by = command_.color_by;
+    return state;
+}
 
 Result<GridPage> GridPageMaker::page_with(std::vector<std::string> fields) {
     PackJob job = job_;
@@ -143,26 +174,38 @@ Result<GridPage> GridPageMaker::page_with(std::vector<std::string> fields) {
     view::SavedGridOptions options;
     options.file = valid_utf8(std::filesystem::path(command_.grid.file).filename().string());
     options.version = ISOTET_VERSION;
-    options.state.field = packed->fields.front().name;
+    options.state = state_of(names_of(packed->fields));
     if (!isovalues_) {
-        auto isovalues = isovalues_of(command_, options.state.field, console_);
+        auto isovalues = isovalues_of(command_, job.grid, options.state.field, console_);
         if (!isovalues) return isovalues.error();
         isovalues_ = *std::move(isovalues);
     }
     options.state.isovalues = *isovalues_;
-    options.state.color_by = command_.color_by;
     const auto stretch = stretch_of(*packed, job.out, console_.run());
     if (!stretch) return stretch.error();
     options.state.stretch = *stretch;
     options.notes = console_.noted_as_told();
     Result<std::string> html = view::grid_page(bytes_of(job.out), options);
     if (!html) return html.error();
-    return GridPage{*std::move(packed), *std::move(html)};
+    return GridPage{*std::move(packed), *std::move(html), 0, job.value_bits.has_value()};
+}
+
+/// The field that is shown first before others, though it may be a component or of cells.
+Result<GridPage> GridPageMaker::page_with_all() {
+    Result<GridPage> page = page_with(job_.fields);
+    if (!page || !job_.fields.empty() || !first_ || first_->field.empty()) return page;
+    std::vector<std::string> names = names_of(page->packed.fields);
+    const auto first = std::ranges::find(names, first_->field);
+    if (first != names.end()) return page;
+    names.insert(names.begin(), first_->field);
+    return page_with(std::move(names));
 }
 
 /// Sizes are nearly linear in the number of fields: a few pages are made until one more field would be too much.
 Result<GridPage> GridPageMaker::with_fewer_fields(GridPage all, std::uint64_t max_bytes) {
     std::vector<std::string> names = names_of(all.packed.fields);
+    if (const auto first = std::ranges::find(names, first_ ? first_->field : std::string()); first != names.end())
+        std::rotate(names.begin(), first, first + 1);
     std::size_t count = 1; ///< of the first ones, which fit
     if (const auto color = std::find(names.begin() + 1, names.end(), command_.color_by); color != names.end()) {
         std::rotate(names.begin() + 1, color, color + 1);
@@ -190,21 +233,33 @@ Result<GridPage> GridPageMaker::with_fewer_fields(GridPage all, std::uint64_t ma
     return page;
 }
 
+void GridPageMaker::tell(const GridPage& page, std::uint64_t max_bytes) {
+    const std::string reason = fmt::format("larger than {} (--max-size)", format_bytes(max_bytes));
+    if (page.left_out > 0)
+        console_.note(fmt::format("{} of {} fields are in the page, {}: all of them would make it {}",
+                                  page.packed.fields.size(), page.packed.fields.size() + page.left_out,
+                                  quoted_list(names_of(page.packed.fields)), reason));
+    if (!page.rounded) return;
+    std::vector<std::string> changes;
+    for (std::size_t i = 0; i < page.packed.fields.size(); ++i)
+        changes.push_back(
+            fmt::format("'{}' by at most {}", page.packed.fields[i].name, rounded(page.packed.rounded_by[i])));
+    console_.note(fmt::format("values are rounded to 16 bits of their range, {}: else the page would be {}",
+                              fmt::join(changes, ", "), reason));
+}
+
 Result<GridPage> GridPageMaker::make(std::uint64_t max_bytes) {
-    Result<GridPage> page = page_with(job_.fields);
+    Result<GridPage> page = page_with_all();
     if (page && page->html.size() > max_bytes && job_.fields.empty())
         page = with_fewer_fields(*std::move(page), max_bytes);
-    if (!page) return page;
-    const std::string largest = format_bytes(max_bytes);
-    if (page->html.size() > max_bytes)
-        return usage_error(
-            "the page would have {} with {}, but may have {} (--max-size): --as surfaces makes smaller ones",
-            format_bytes(page->html.size()), quoted_list(names_of(page->packed.fields)), largest);
-    if (page->left_out > 0)
-        console_.note(
-            fmt::format("{} of {} fields are in the page, {}: all of them would make it larger than {} (--max-size)",
-                        page->packed.fields.size(), page->packed.fields.size() + page->left_out,
-                        quoted_list(names_of(page->packed.fields)), largest));
+    // Values are less than two thirds of a page.
+    if (page && page->html.size() > max_bytes && page->html.size() / 3 < max_bytes) {
+        job_.value_bits = 16;
+        const std::size_t left_out = page->left_out;
+        page = page_with(names_of(page->packed.fields));
+        if (page) page->left_out = left_out;
+    }
+    if (page && page->html.size() <= max_bytes) tell(*page, max_bytes);
     return page;
 }
 
@@ -227,6 +282,7 @@ Json grid_report(const ExportCommand& command, const GridPage& page) {
     report["cells"] = page.packed.cells;
     report["fields"] = json_texts(names_of(page.packed.fields));
     report["left_out"] = page.left_out;
+    if (page.rounded) report["rounded_by"] = page.packed.rounded_by;
     report["steps"] = page.packed.steps;
     report["packed_bytes"] = page.packed.bytes;
     report["file"] = json_text(command.out);
@@ -236,20 +292,52 @@ Json grid_report(const ExportCommand& command, const GridPage& page) {
 
 } // namespace
 
-Result<ExitCode> run_export_grid(const ExportCommand& command) {
-    Console console(command.common);
+Result<std::optional<ExitCode>> run_export_grid(const ExportCommand& command, Console& console) {
+    const bool must_be = command.content == PageContent::grid;
+    const std::optional<ExitCode> surfaces_instead;
     if (ending_of(command.out) != ".html") return usage_error("OUT is '{}', but a page ends in .html", command.out);
     if (Result<void> checked = view::check_grid_pages(); !checked) return checked.error();
-    if (Result<void> paths = check_output_paths({command.grid.file}, {command.out, command.common.json}); !paths)
+    Result<GridSource> source = GridSource::open(command.grid, console);
+    if (!source) return source.error();
+    if (Result<void> paths = check_output_paths(source->info().files, {command.out, command.common.json}); !paths)
         return paths.error();
+    const std::uint64_t max_bytes = command.max_size.value_or(20'000'000);
+    const auto instead = [&](const std::string& why) {
+        console.note(fmt::format("{}: the page has isosurfaces in place of the grid", why));
+        return surfaces_instead;
+    };
+    constexpr std::uint64_t least_bytes_a_cell = 3;
+    if (!must_be && source->info().cells > max_bytes / least_bytes_a_cell)
+        return instead(
+            fmt::format("the grid would make the page larger than {} (--max-size)", format_bytes(max_bytes)));
+    const ChoiceWish wish{command.all_steps ? Steps::all : Steps::one, command.field, {}, command.field.name.empty()};
+    const Result<FirstChoice> choice = choose_first(*source, command.grid, wish, console, console.run());
+    if (!choice) return choice.error();
+    if (const FirstView& view = choice->view; command.field.name.empty() && !must_be) {
+        if (view.field.empty()) return surfaces_instead;
+        if (view.draw != FirstDraw::isosurfaces && view.association == Association::cell)
+            return instead(fmt::format("'{}', of cells, colours the boundary", view.field));
+    }
     const PackFolder folder;
     if (folder.path().empty()) return Error{ErrorCode::cannot_write, "no folder could be made for the packed grid"};
-    const Result<GridPage> page =
-        GridPageMaker(command, folder.path(), console).make(command.max_size.value_or(20'000'000));
+    const Result<GridPage> page = GridPageMaker(command, folder.path(), *choice, console).make(max_bytes);
     if (!page) return page.error();
+    if (page->html.size() > max_bytes) {
+        const std::string size = format_bytes(page->html.size()), largest = format_bytes(max_bytes);
+        if (!must_be)
+            return instead(
+                fmt::format("with the grid the page would have {}, but may have {} (--max-size)", size, largest));
+        return usage_error(
+            "the page would have {} with {}, but may have {} (--max-size): --as surfaces makes smaller ones", size,
+            quoted_list(names_of(page->packed.fields)), largest);
+    }
+    if (!must_be) console.note("the page has the grid: --as surfaces makes one of isosurfaces alone");
     console.note(fmt::format("{} will have {}", command.out, format_bytes(page->html.size())));
     if (Result<void> written = write_text(page->html, command.out, console.run()); !written) return written.error();
-    return finish(console, command.common, grid_table(command, *page), grid_report(command, *page));
+    const Result<ExitCode> done =
+        finish(console, command.common, grid_table(command, *page), grid_report(command, *page));
+    if (!done) return done.error();
+    return std::optional(*done);
 }
 
 } // namespace isotet::cli

@@ -2,6 +2,7 @@
 #include <isotet/jobs/pack_file.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <utility>
@@ -256,6 +257,29 @@ Result<PackedGrid> PackRun::packed_with(const Grid& grid, PointField field, std:
     return *packed;
 }
 
+/// To whole multiples of a power of two.
+/// Returns   the largest change
+Result<double> round_values(PointField& field, int bits, const Run& run) {
+    const auto statistics = statistics_of(field.values, run);
+    if (!statistics) return statistics.error();
+    if (statistics->empty() || !(statistics->front().lower < statistics->front().upper)) return 0.0;
+    const double range = statistics->front().upper - statistics->front().lower;
+    const double unit = std::exp2(std::ceil(std::log2(range)) - bits);
+    if (!(unit > 0 && std::isfinite(unit))) return 0.0;
+    std::vector<float> rounded(field.values.size());
+    double change = 0;
+    field.values.visit([&](auto values) {
+        for (std::size_t i = 0; i < rounded.size(); ++i) {
+            const auto value = static_cast<double>(values[i]);
+            const double nearest = std::nearbyint(value / unit) * unit;
+            rounded[i] = static_cast<float>(std::isfinite(nearest) ? nearest : value);
+            if (std::isfinite(nearest)) change = std::max(change, std::abs(static_cast<double>(rounded[i]) - value));
+        }
+    });
+    field.values = Array::own(std::move(rounded));
+    return change;
+}
+
 Result<void> PackRun::write(const PackedGrid& packed, std::size_t step, bool first_field) {
     const core::Stopwatch writing;
     const std::optional<double> time = time_of(source_->info(), step);
@@ -310,6 +334,13 @@ Result<void> PackRun::pack_step(std::size_t step) {
             return Error{field.error().code, fmt::format("step {} lacks '{}', `fields` names those to pack: {}", step,
                                                          name, field.error().message)};
         if (!field) return field.error();
+        if (job_.value_bits) {
+            const Result<double> change = round_values(*field, *job_.value_bits, caller_.run());
+            if (!change) return change.error();
+            numbers_.rounded_by.resize(names_.size(), 0);
+            double& largest = numbers_.rounded_by[static_cast<std::size_t>(&name - names_.data())];
+            largest = std::max(largest, *change);
+        }
         const Result<PackedGrid> packed = packed_with(*grid, *std::move(field), step);
         if (!packed) return packed.error();
         numbers_.pack_seconds += packing.seconds();

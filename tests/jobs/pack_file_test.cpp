@@ -98,6 +98,29 @@ TEST(PackFile, SurfacesCarryVectorsAsThoseOfTheGrid) {
     }
 }
 
+TEST(PackFile, ValuesAreRoundedToBitsOfTheirRange) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    PackJob job;
+    job.grid.file = grid_with_all_kinds(folder);
+    job.fields = {"gyroid"};
+    job.out = folder.file("rounded.isotet");
+    job.value_bits = 16;
+    const PackNumbers numbers = pack_file(job, listener).value();
+    const Grid original = isotet::read(job.grid.file).value().grid, grid = isotet::read(job.out).value().grid;
+    const Array& values = original.point_fields[0].values;
+    double lower = values.at(0), upper = lower, change = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        lower = std::min(lower, values.at(i));
+        upper = std::max(upper, values.at(i));
+        change = std::max(change, std::abs(values.at(i) - grid.point_fields[0].values.at(i)));
+    }
+    ASSERT_EQ(numbers.rounded_by.size(), 1U);
+    EXPECT_GT(change, 0);
+    EXPECT_EQ(numbers.rounded_by[0], change);
+    EXPECT_LE(change, (upper - lower) / (1 << 16));
+}
+
 /// Of which the step is what a file says it is, and not the first file's.
 TEST(PackFile, SeveralFilesAreTimeSteps) {
     const test::TemporaryFolder folder;

@@ -64,7 +64,7 @@ def test_opens_from_the_disk(browser, folder):
 
 def test_drag(browser, folder):
     """The slider goes from one surface to the next, and back by the browser's history."""
-    path, report = export(folder, 'drag.html', GRID, '-f', 'sphere')
+    path, report = export(folder, 'drag.html', GRID, '-f', 'sphere', '--as', 'surfaces')
     start(browser, path)
     first = shown(browser)
     browser.value('window.seen = []; new MutationObserver(() => seen.push(Number(document.body.dataset.shown)))'

@@ -11,6 +11,7 @@ import traceback
 from chromium import Browser
 
 GRID = 'make:kuhn:16:sphere,gyroid'
+DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), '../../data')
 
 
 def check(condition, what):
@@ -100,14 +101,78 @@ def test_fields_that_fit(browser, path):
     small, fields = path.replace('grid.html', 'small.html'), 'make:kuhn:16:sphere,gyroid,integer,torus'
     sizes = [isotet('export', fields, small, '--as', 'grid', '-f', 'sphere', *more)['bytes'] for more in ([], ['--color-by', 'torus'])]
     room = ['--max-size', str(sizes[1] + 1000)]
-    report = isotet('export', fields, small, '--as', 'grid', '--color-by', 'torus', *room)
-    check(report['fields'] == ['sphere', 'torus'] and report['left_out'] == 2, f'the first field and that of the colours: {report}')
+    report = isotet('export', fields, small, '--as', 'grid', '--color-by', 'sphere', *room)
+    check(report['fields'] == ['torus', 'sphere'] and report['left_out'] == 2, f'the first field and that of the colours: {report}')
     check(report['bytes'] <= sizes[1] + 1000 and any('2 of 4 fields' in note for note in report['notes']), f'it says so: {report}')
     start(browser, small)
-    check(browser.value('document.body.dataset.field') == 'sphere', 'the page shows them')
-    for words in (['--max-size', str(sizes[0] - 1000)], ['-f', 'sphere', '--color-by', 'torus', '--max-size', str(sizes[0] + 100)]):
+    check(browser.value('document.body.dataset.field') == 'torus', 'the page begins with that of isotet view')
+    artery = os.path.join(DATA, 'vtu/artery_flow_tet_wedge.vtu')
+    words = ['export', artery, small, '--as', 'grid', '-f', 'Umag', '--color-by', 'p', '--max-size']
+    room = isotet(*words, '20MB')['bytes'] - 40000
+    report = isotet(*words, str(room))
+    check(report['bytes'] <= room and any('16 bits' in note for note in report['notes']), f'values are rounded, and it is told: {report}')
+    ranges = [field['range'][0][1] - field['range'][0][0] for name in ('Umag', 'p') for field in isotet('info', artery)['fields'] if field['name'] == name]
+    check(all(0 < change <= size / 2 ** 16 for change, size in zip(report['rounded_by'], ranges)), f'{report}')
+    for words in (['--max-size', str(sizes[0] // 2)], ['-f', 'sphere', '--color-by', 'torus', '--max-size', str(sizes[0] // 2)]):
         refused = subprocess.run([os.environ['ISOTET_PROGRAM'], 'export', fields, small, '--as', 'grid', *words], capture_output=True, text=True)
         check(refused.returncode == 2 and '--max-size' in refused.stderr, f'{words}: {refused.stderr}')
+
+
+def test_chooses_what_fits(browser, path):
+    """The grid, unless it is too large, or certain isosurfaces are asked for, or regions are seen first."""
+    page, model = path.replace('grid.html', 'chosen.html'), os.path.join(DATA, 'gocad/geomodel3d_tsolid.so')
+    for words, kind, told in [([GRID], 'grid', 'has the grid'), ([GRID, '--max-size', '500kB'], 'surfaces', 'in place of the grid'),
+                              ([GRID, '--surfaces', '2'], 'surfaces', ''), ([GRID, '-i', '0.5'], 'surfaces', ''),
+                              ([GRID, '--between', '0.3,0.5'], 'surfaces', ''), ([model], 'surfaces', 'colours the boundary')]:
+        report = isotet('export', words[0], page, *words[1:])
+        check(report['kind'] == kind and any(told in note for note in report['notes'] + ['']), f'{words}: {report["kind"]}, {report["notes"]}')
+
+
+def test_begins_as_the_viewer_does(browser, path):
+    """Where regions are all that is known, with the boundary; with isosurfaces where a value is named."""
+    page, model = path.replace('grid.html', 'model.html'), os.path.join(DATA, 'gocad/geomodel3d_tsolid.so')
+    isotet('export', model, page, '--as', 'grid')
+    browser.call('Page.navigate', url='about:blank')
+    browser.open('file://' + page)
+    browser.wait('document.body.dataset.kinds === "boundary" && document.getElementById("shown").textContent === "Boundary shown"')
+    browser.click('#isosurfaces')
+    browser.wait('document.body.dataset.kinds === "surface boundary"')
+    isotet('export', model, page, '--as', 'grid', '-i', '1.5')
+    start(browser, page)
+    check(browser.value('document.body.dataset.kinds') == 'surface boundary', 'the value that was named is shown')
+
+
+def test_files_of_what_is_shown(browser, path):
+    """Surfaces; the boundary where it is shown alone; a sentence where nothing is."""
+    with tempfile.TemporaryDirectory(prefix='isotet-saved-') as folder:
+        browser.call('Page.setDownloadBehavior', behavior='allow', downloadPath=folder)
+
+        def save(name):
+            browser.click('#save-open')
+            browser.value('(() => { const s = document.getElementById("save-kind"); s.value = "surface.stl"; s.dispatchEvent(new Event("change")); })()')
+            browser.value(f'document.getElementById("save-name").value = "{name}"')
+            browser.click('#save-go')
+            browser.wait('document.getElementById("save-told").textContent !== "" && !document.getElementById("save-told").textContent.startsWith("Writing")')
+            told = browser.value('document.getElementById("save-told").textContent')
+            browser.click('#save-close')
+            if not told.startswith('Downloaded'):
+                return told
+            file = os.path.join(folder, name)
+            for _ in range(200):
+                if os.path.exists(file):
+                    break
+                browser.value('new Promise((done) => setTimeout(done, 50))')
+            return isotet('check', file)['triangles']
+
+        start(browser, path)
+        browser.wait('document.body.dataset.kinds === "surface boundary"')
+        check(save('surface.stl') == triangles(browser), 'the isosurface')
+        browser.value('document.getElementById("isosurfaces").click()')
+        browser.wait('document.body.dataset.kinds === "boundary"')
+        check(save('boundary.stl') == 6 * 2 * 16 ** 2, 'the boundary')
+        browser.value('(() => { const b = document.getElementById("boundary"); b.value = "0"; b.dispatchEvent(new Event("input")); b.dispatchEvent(new Event("change")); })()')
+        browser.wait('document.body.dataset.kinds === ""')
+        check('Nothing is shown' in save('nothing.stl'), 'nothing is a sentence')
 
 
 def test_heights_of_flat_reservoirs(browser, path):

@@ -31,6 +31,9 @@ struct PackJob {
     bool source_cells = false;
     bool gradients = false;
     bool split_cells = false;
+    std::optional<int>
+        value_bits; ///< 1 to 24: values are rounded to a power of two, of which the range of a step's field
+                    ///< has at most so many bits; files compress better then
     std::optional<std::uint64_t> memory; ///< of the program while packing: what needs more lies in files
                                          ///< (scratch_memory.hpp). Nothing: half of what is free where a scratch
                                          ///< folder is named, else no limit
@@ -43,6 +46,7 @@ struct PackNumbers {
     std::size_t cells = 0;
     PackReport pack;
     std::vector<FieldReport> fields; ///< of the last step
+    std::vector<double> rounded_by;  ///< with `value_bits`, of each field: the largest change of a value
     std::size_t steps = 1;
     std::uint64_t bytes = 0; ///< of the file
     std::uint64_t scratch_bytes = 0; ///< at most in scratch files
