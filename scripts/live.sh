@@ -5,11 +5,11 @@
 source "$(dirname "${BASH_SOURCE[0]}")/lib/common.sh"
 
 if (($# > 1)) || [[ ${1:-} == -* ]]; then
-    echo "usage: $0 [FOLDER]    (build/live); ISOTET_PROGRAM names another program than that of scripts/test.sh" >&2
+    echo "usage: $0 [FOLDER]    (docs/live); ISOTET_PROGRAM names another program than that of scripts/test.sh" >&2
     [[ ${1:-} == -h || ${1:-} == --help ]] && exit 0
     exit 2
 fi
-folder=$(realpath -m "${1:-$root/build/live}")
+folder=$(realpath -m "${1:-$root/docs/live}")
 readonly folder program=${ISOTET_PROGRAM:-$root/build/test/release/apps/cli/isotet}
 
 # NAME | TITLE | GRID, and options of isotet export

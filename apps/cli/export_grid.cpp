@@ -56,6 +56,14 @@ private:
     std::string path_;
 };
 
+/// Looks without telling.
+class Silent : public Caller {
+public:
+    explicit Silent(const Run& run) { run_ = run; }
+    void note(const std::string&) override {}
+    void detail(const std::string&) override {}
+};
+
 PackJob pack_job_of(const ExportCommand& command, const FirstChoice& choice, const std::string& out) {
     PackJob job;
     job.grid = command.grid;
@@ -128,6 +136,7 @@ public:
     GridPageMaker(const ExportCommand& command, const std::string& folder, const FirstChoice& choice, Console& console)
         : command_(command), console_(console), job_(pack_job_of(command, choice, folder + "/grid.isotet")) {
         if (command.field.name.empty()) first_ = choice.view;
+        if (command.all_steps && !choice.steps.empty()) first_step_ = choice.steps.front();
     }
 
     /// With as many of the fields as fit, if none was named; then with values of 16 bits. It may still be too large.
@@ -147,6 +156,7 @@ private:
     Console& console_;
     PackJob job_;
     std::optional<FirstView> first_;               ///< where no field was named
+    std::optional<std::size_t> first_step_;        ///< of all steps: one in which the field varies
     std::optional<std::vector<double>> isovalues_; ///< of the field that is shown first
 };
 
@@ -175,6 +185,7 @@ Result<GridPage> GridPageMaker::page_with(std::vector<std::string> fields) {
     options.file = valid_utf8(std::filesystem::path(command_.grid.file).filename().string());
     options.version = ISOTET_VERSION;
     options.state = state_of(names_of(packed->fields));
+    if (first_step_ && packed->steps > 1) options.state.step = std::min(*first_step_, packed->steps - 1);
     if (!isovalues_) {
         auto isovalues = isovalues_of(command_, job.grid, options.state.field, console_);
         if (!isovalues) return isovalues.error();
@@ -310,8 +321,10 @@ Result<std::optional<ExitCode>> run_export_grid(const ExportCommand& command, Co
     if (!must_be && source->info().cells > max_bytes / least_bytes_a_cell)
         return instead(
             fmt::format("the grid would make the page larger than {} (--max-size)", format_bytes(max_bytes)));
-    const ChoiceWish wish{command.all_steps ? Steps::all : Steps::one, command.field, {}, command.field.name.empty()};
-    const Result<FirstChoice> choice = choose_first(*source, command.grid, wish, console, console.run());
+    const ChoiceWish wish{Steps::one, command.field, {}, command.field.name.empty()};
+    Silent silent(console.run());
+    Caller& told = command.all_steps ? static_cast<Caller&>(silent) : console;
+    const Result<FirstChoice> choice = choose_first(*source, command.grid, wish, told, console.run());
     if (!choice) return choice.error();
     if (const FirstView& view = choice->view; command.field.name.empty() && !must_be) {
         if (view.field.empty()) return surfaces_instead;
