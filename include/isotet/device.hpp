@@ -75,6 +75,21 @@ struct DeviceOptions {
     std::string choice;
     std::uint64_t memory_limit = 0; ///< bytes of device memory that buffers may take in all; 0: what the driver says is
                                     ///< free
+    bool share_memory = false;      ///< for DeviceSurface::share(); needs VK_KHR_external_memory_fd
+};
+
+/// A Vulkan device of a program that draws, as Vulkan gives its handles.
+///
+/// The instance is made for Vulkan 1.2 or newer; the device has the features bufferDeviceAddress and scalarBlockLayout.
+struct VulkanHandles {
+    void* instance = nullptr;               ///< VkInstance
+    void* physical_device = nullptr;        ///< VkPhysicalDevice
+    void* device = nullptr;                 ///< VkDevice
+    void* queue = nullptr;                  ///< VkQueue of the device, that computes; and draws, for a Renderer
+    std::uint32_t queue_family = 0;         ///< of the queue
+    void* get_instance_proc_addr = nullptr; ///< PFN_vkGetInstanceProcAddr; null: that of libvulkan.so.1
+    bool fragment_stores = false;           ///< the feature fragmentStoresAndAtomics is on: a Renderer needs it
+    bool external_memory = false;           ///< VK_KHR_external_memory_fd is on: DeviceOptions::share_memory needs it
 };
 
 /// A device that is ready to work. Copies share it.
@@ -89,6 +104,17 @@ public:
     /// Errors    invalid_argument when no device, or more than one, fits the choice; no_device when there is no Vulkan,
     ///           no GPU, or when the device cannot be used, with the reason; also when its driver builds wrong kernels
     static Result<Device> open(const DeviceOptions& options = {});
+
+    /// Works on a device that the caller has opened: surfaces are then in its own memory, to be drawn without a copy
+    /// (DeviceSurface::arrays()).
+    ///
+    /// The handles stay the caller's, and must live until the last copy of the Device and all that was made with it is
+    /// gone. While a function of isotet works on the device nothing else may be submitted to its queue; what was
+    /// submitted has ended when the function returns.
+    ///
+    /// `options`   without a choice
+    /// Cost, errors   as open(); invalid_argument when a handle is missing or the queue does not compute
+    static Result<Device> adopt(const VulkanHandles& handles, const DeviceOptions& options = {});
 
     /// A device that was opened with settings of its own, by tests.
     explicit Device(std::shared_ptr<vulkan::Context> context) : context_(std::move(context)) {}
@@ -134,6 +160,24 @@ struct DeviceGridNeeds {
     std::uint64_t least() const noexcept { return resident_bytes + largest_page_bytes; }
 };
 
+/// An array in a device's memory.
+struct DeviceArray {
+    std::uint64_t buffer = 0;  ///< VkBuffer whose first byte is the array's: for vertices, indices, storage and copies
+    std::uint64_t address = 0; ///< VkDeviceAddress of its first byte
+    std::uint64_t bytes = 0;   ///< of the array; the buffer may have more. 0: there is no such array
+    int memory = -1;           ///< of share(): a file descriptor of the memory that the array lies in, else -1
+    std::uint64_t memory_bytes = 0; ///< of that memory, for VkMemoryAllocateInfo::allocationSize
+    std::uint64_t offset = 0;       ///< of the array in it
+    std::uint32_t memory_type = 0;  ///< for VkMemoryAllocateInfo::memoryTypeIndex
+};
+
+/// The arrays of a surface in a device's memory, in the order in which a download has them.
+struct DeviceArrays {
+    DeviceArray positions; ///< float32, 3 a vertex, relative to DeviceSurface::origin()
+    DeviceArray triangles; ///< uint32, 3 a triangle
+    DeviceArray normals;   ///< float32, 3 a vertex of gradient normals, 3 a triangle of face normals
+};
+
 /// A surface in a device's memory, ready to be drawn. Moving is cheap; it keeps the device open.
 ///
 /// `vertices`, `triangle_count`   fewer than 2^32
@@ -149,6 +193,18 @@ public:
     std::uint64_t vertex_count() const noexcept;
     std::uint64_t triangle_count() const noexcept;
     std::uint64_t device_bytes() const noexcept; ///< taken, with the room that is kept for the next surface
+
+    /// The arrays where they are, for a program that has the same device (Device::adopt()). They are complete, and stay
+    /// until the surface is extracted into again or goes. Empty before any extraction.
+    DeviceArrays arrays() const;
+
+    /// The arrays with file descriptors of their memory (VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT), for a program
+    /// with another instance, or for CUDA and OpenGL. That memory has other arrays too: it may be read only. Each
+    /// descriptor is the caller's, to be imported or closed.
+    ///
+    /// Errors   invalid_argument when the device was not opened with DeviceOptions::share_memory, or before any
+    ///          extraction; device_failed
+    Result<DeviceArrays> share() const;
 
     /// The buffers, for drawing; src/vulkan/engine/surface_buffers.hpp says what stands where. Null before any
     /// extraction.

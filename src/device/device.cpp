@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "base/errors.hpp"
 #include "base/guard.hpp"
 #include "device/kernel_test.hpp"
 #include "vulkan/context.hpp"
@@ -28,6 +29,16 @@ Result<DeviceList> list_devices() {
 
 Result<Device> Device::open(const DeviceOptions& options) {
     Result<std::shared_ptr<vulkan::Context>> context = vulkan::Context::open(options);
+    if (!context) return context.error();
+    Device device(*std::move(context));
+    if (Result<void> tested = test_kernels_once(device); !tested) return tested.error();
+    return device;
+}
+
+Result<Device> Device::adopt(const VulkanHandles& handles, const DeviceOptions& options) {
+    if (!options.choice.empty())
+        return invalid_argument("a device that is adopted is not chosen: the choice must be empty");
+    Result<std::shared_ptr<vulkan::Context>> context = vulkan::Context::adopt(handles, options);
     if (!context) return context.error();
     Device device(*std::move(context));
     if (Result<void> tested = test_kernels_once(device); !tested) return tested.error();

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include <unistd.h>
+
 #include "api/finish.hpp"
 #include "api/fits.hpp"
 #include "api/ties.hpp"
@@ -60,6 +62,49 @@ std::uint64_t DeviceSurface::vertex_count() const noexcept { return data_ ? data
 std::uint64_t DeviceSurface::triangle_count() const noexcept { return data_ ? data_->buffers.triangle_count() : 0; }
 std::uint64_t DeviceSurface::device_bytes() const noexcept { return data_ ? data_->buffers.bytes() : 0; }
 const vulkan::SurfaceBuffers* DeviceSurface::buffers() const noexcept { return data_ ? &data_->buffers : nullptr; }
+
+DeviceArrays DeviceSurface::arrays() const {
+    if (!data_) return {};
+    const vulkan::SurfaceBuffers& buffers = data_->buffers;
+    const auto array = [](const vulkan::Buffer& buffer, std::uint64_t tuples) -> DeviceArray {
+        if (!buffer || tuples == 0) return {};
+        constexpr std::uint64_t tuple_bytes = 12;         // three words
+        return {.buffer = (std::uint64_t)buffer.handle(), // NOLINT: a pointer or a number, as Vulkan has it
+                .address = buffer.address(),
+                .bytes = tuples * tuple_bytes};
+    };
+    const bool by_face = buffers.parts().normals == Normals::face;
+    return {array(buffers.positions, vertex_count()), array(buffers.triangles, triangle_count()),
+            array(buffers.normals, by_face ? triangle_count() : vertex_count())};
+}
+
+Result<DeviceArrays> DeviceSurface::share() const {
+    return core::guarded("sharing the surface", [&]() -> Result<DeviceArrays> {
+        if (!data_) return Error{ErrorCode::invalid_argument, "the surface to share was never extracted"};
+        const vulkan::Memory& memory = data_->context->memory();
+        if (!memory.can_share())
+            return Error{ErrorCode::invalid_argument, "the device was not opened with `share_memory`"};
+        DeviceArrays arrays = this->arrays();
+        const std::array<std::pair<DeviceArray*, const vulkan::Buffer*>, 3> all{
+            {{&arrays.positions, &data_->buffers.positions},
+             {&arrays.triangles, &data_->buffers.triangles},
+             {&arrays.normals, &data_->buffers.normals}}};
+        for (const auto& [array, buffer] : all) {
+            if (array->bytes == 0) continue;
+            const Result<vulkan::Memory::Place> place = memory.share(*buffer);
+            if (!place) {
+                for (const auto& [other, unused] : all)
+                    if (other->memory >= 0) close(other->memory);
+                return place.error();
+            }
+            array->memory = place->descriptor;
+            array->memory_bytes = place->block_bytes;
+            array->offset = place->offset;
+            array->memory_type = place->type;
+        }
+        return arrays;
+    });
+}
 
 DeviceGrid::DeviceGrid(std::unique_ptr<Data> data) : data_(std::move(data)) {}
 DeviceGrid::DeviceGrid(DeviceGrid&&) noexcept = default;

@@ -14,6 +14,10 @@ Result<DeviceList> list_devices() { return DeviceList{{}, {}, built_without}; }
 
 Result<Device> Device::open(const DeviceOptions&) { return Error{ErrorCode::no_device, built_without}; }
 
+Result<Device> Device::adopt(const VulkanHandles&, const DeviceOptions&) {
+    return Error{ErrorCode::no_device, built_without};
+}
+
 const DeviceInfo& Device::info() const noexcept {
     static const DeviceInfo none;
     return none;

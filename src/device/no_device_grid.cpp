@@ -27,6 +27,8 @@ std::array<double, 3> DeviceSurface::origin() const noexcept { return {}; }
 std::uint64_t DeviceSurface::vertex_count() const noexcept { return 0; }
 std::uint64_t DeviceSurface::triangle_count() const noexcept { return 0; }
 std::uint64_t DeviceSurface::device_bytes() const noexcept { return 0; }
+DeviceArrays DeviceSurface::arrays() const { return {}; }
+Result<DeviceArrays> DeviceSurface::share() const { return built_without(); }
 const vulkan::SurfaceBuffers* DeviceSurface::buffers() const noexcept { return nullptr; }
 
 DeviceGrid::DeviceGrid(std::unique_ptr<Data> data) : data_(std::move(data)) {}

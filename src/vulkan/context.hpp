@@ -46,6 +46,9 @@ struct Settings {
 class ISOTET_API Context {
 public:
     static Result<std::shared_ptr<Context>> open(const DeviceOptions& options, const Settings& settings = {});
+    /// On a device of the caller's.
+    static Result<std::shared_ptr<Context>> adopt(const VulkanHandles& handles, const DeviceOptions& options,
+                                                  const Settings& settings = {});
     ~Context();
 
     const DeviceInfo& info() const noexcept { return info_; }
@@ -65,6 +68,9 @@ public:
 private:
     Context() = default;
     static Result<std::shared_ptr<Context>> open_unguarded(const DeviceOptions& options, const Settings& settings);
+    static Result<std::shared_ptr<Context>> adopt_unguarded(const VulkanHandles& handles, const DeviceOptions& options,
+                                                            const Settings& settings);
+    Result<void> set_up(const DeviceOptions& options);
 
     DeviceInfo info_;
     Capabilities capabilities_;

@@ -49,14 +49,15 @@ Memory::Memory(LogicalDevice& device, const Capabilities& capabilities, std::uin
 Result<std::unique_ptr<Memory>> Memory::open(LogicalDevice& device, const Capabilities& capabilities,
                                              const Options& options) {
     std::unique_ptr<Memory> memory(new Memory(device, capabilities, options.limit));
+    memory->share_ = options.share;
     if (Result<void> chosen = memory->choose_types(capabilities, options); !chosen) return chosen.error();
     return memory;
 }
 
-Result<MemoryTypes> Memory::allowed_types() {
-    Buffer probe; // all buffers have its usage, and so may lie in the same memory types
+Result<MemoryTypes> Memory::allowed_types(Where where) {
+    Buffer probe; // all buffers there have its usage, and so may lie in the same memory types
     probe.size_ = grain;
-    if (Result<void> made = make_buffer(probe, grain, "probe"); !made) return made.error();
+    if (Result<void> made = make_buffer(probe, grain, where, "probe"); !made) return made.error();
     VkMemoryRequirements needs{};
     device_.call().vkGetBufferMemoryRequirements(device_.handle(), probe.handle_, &needs);
     device_.call().vkDestroyBuffer(device_.handle(), probe.handle_, nullptr);
@@ -64,8 +65,9 @@ Result<MemoryTypes> Memory::allowed_types() {
 }
 
 Result<void> Memory::choose_types(const Capabilities& capabilities, const Options& options) {
-    const Result<MemoryTypes> allowed = allowed_types();
+    const Result<MemoryTypes> allowed = allowed_types(Where::upload), on_device = allowed_types(Where::device);
     if (!allowed) return allowed.error();
+    if (!on_device) return on_device.error();
     const VkPhysicalDeviceMemoryProperties& types = capabilities.memory;
     const auto set_up = [&](Where where, std::uint32_t type) {
         if (type == Capabilities::none) return false;
@@ -78,7 +80,7 @@ Result<void> Memory::choose_types(const Capabilities& capabilities, const Option
         pool.cached = flags & VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
         return true;
     };
-    if (!set_up(Where::device, device_memory_type(capabilities, *allowed)) ||
+    if (!set_up(Where::device, device_memory_type(capabilities, *on_device)) ||
         !set_up(Where::upload, upload_memory_type(capabilities, *allowed)) ||
         !set_up(Where::download, download_memory_type(capabilities, *allowed)))
         return Error{ErrorCode::no_device,
@@ -146,7 +148,8 @@ Result<Buffer> Memory::take(std::uint64_t bytes, Where where, std::string_view n
     Buffer buffer;
     buffer.size_ = bytes;
     // Not rounded up any further, so that the validation layer sees kernels that leave the buffer.
-    if (Result<void> made = make_buffer(buffer, round_up(std::max<std::uint64_t>(bytes, 1), 4) + slack, name); !made)
+    if (Result<void> made = make_buffer(buffer, round_up(std::max<std::uint64_t>(bytes, 1), 4) + slack, where, name);
+        !made)
         return made.error();
     Pool& pool = pool_of(where);
     if (Result<void> placed = place(buffer, pool); !placed) {
@@ -167,15 +170,16 @@ Result<Buffer> Memory::take(std::uint64_t bytes, Where where, std::string_view n
     return buffer;
 }
 
-Result<void> Memory::make_buffer(Buffer& buffer, std::uint64_t bytes, std::string_view name) {
+Result<void> Memory::make_buffer(Buffer& buffer, std::uint64_t bytes, Where where, std::string_view name) {
     const std::uint32_t families[] = {device_.compute().family, device_.transfer().family};
     VkBufferCreateInfo create{};
     create.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
     create.size = bytes;
-    create.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT |
-                   VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
-                   VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT |
-                   VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
+    create.usage = buffer_usage;
+    VkExternalMemoryBufferCreateInfo external{};
+    external.sType = VK_STRUCTURE_TYPE_EXTERNAL_MEMORY_BUFFER_CREATE_INFO;
+    external.handleTypes = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT;
+    if (share_ && where == Where::device) create.pNext = &external;
     if (device_.has_transfer_queue()) {
         create.sharingMode = VK_SHARING_MODE_CONCURRENT;
         create.queueFamilyIndexCount = 2;
@@ -237,6 +241,10 @@ Result<Block*> Memory::new_block(Pool& pool, std::uint64_t bytes) {
     VkMemoryAllocateFlagsInfo flags{};
     flags.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO;
     flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
+    VkExportMemoryAllocateInfo exported{};
+    exported.sType = VK_STRUCTURE_TYPE_EXPORT_MEMORY_ALLOCATE_INFO;
+    exported.handleTypes = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT;
+    if (share_ && &pool == &pool_of(Where::device)) flags.pNext = &exported;
     VkMemoryAllocateInfo allocate{};
     allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
     allocate.pNext = &flags;
@@ -257,6 +265,20 @@ Result<Block*> Memory::new_block(Pool& pool, std::uint64_t bytes) {
     if (&pool == &pool_of(Where::device)) reserved_ += bytes;
     pool.blocks.push_back(std::move(block));
     return &pool.blocks.back();
+}
+
+Result<Memory::Place> Memory::share(const Buffer& buffer) const {
+    VkMemoryGetFdInfoKHR asked{};
+    asked.sType = VK_STRUCTURE_TYPE_MEMORY_GET_FD_INFO_KHR;
+    asked.memory = buffer.block_->memory;
+    asked.handleType = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT;
+    Place place{-1, buffer.block_->free.size(), buffer.begin_, buffer.pool_->type};
+    if (const VkResult got = device_.call().vkGetMemoryFdKHR(device_.handle(), &asked, &place.descriptor);
+        got != VK_SUCCESS)
+        return failure("exporting memory of the device", got);
+    if (place.descriptor < 0)
+        return Error{ErrorCode::device_failed, "exporting memory of the device: the driver gives no descriptor"};
+    return place;
 }
 
 void Memory::give_back_range(const Buffer& buffer) noexcept {

@@ -94,6 +94,7 @@ public:
     struct Options {
         std::uint64_t limit = 0;   ///< bytes that buffers in Where::device may take in all; 0: what is free
         bool hide_unified = false; ///< never map Where::device, so that everything is staged
+        bool share = false;        ///< Where::device can be handed out
     };
 
     /// Asks the driver with a probe buffer which memory types buffers may have, and chooses among these.
@@ -117,6 +118,17 @@ public:
     /// What a buffer of `bytes` counts against the limit: a few bytes more (some drivers add more still).
     static std::uint64_t cost(std::uint64_t bytes) noexcept;
 
+    /// Where a buffer lies, with a file descriptor of the block if it can be handed out.
+    struct Place {
+        int descriptor = -1; ///< the caller's, to be imported or closed
+        std::uint64_t block_bytes = 0, offset = 0;
+        std::uint32_t type = 0;
+    };
+    /// A buffer of Where::device, of memory that was opened to be shared.
+    /// Errors   device_failed
+    Result<Place> share(const Buffer& buffer) const;
+    bool can_share() const noexcept { return share_; }
+
     std::uint64_t used() const; ///< bytes of buffers in Where::device
     std::uint64_t peak() const; ///< the most that used() has been
     std::uint64_t free() const; ///< bytes that take() can still give in Where::device, apart from fragmentation
@@ -128,11 +140,11 @@ private:
     static constexpr std::uint64_t slack = 4;
 
     Memory(LogicalDevice& device, const Capabilities& capabilities, std::uint64_t limit);
-    Result<MemoryTypes> allowed_types();
+    Result<MemoryTypes> allowed_types(Where where);
     Result<void> choose_types(const Capabilities& capabilities, const Options& options);
     Pool& pool_of(Where where) noexcept { return pools_[static_cast<std::size_t>(where)]; }
     std::uint64_t free_locked() const;
-    Result<void> make_buffer(Buffer& buffer, std::uint64_t bytes, std::string_view name);
+    Result<void> make_buffer(Buffer& buffer, std::uint64_t bytes, Where where, std::string_view name);
     Result<void> place(Buffer& buffer, Pool& pool);
     Result<Block*> new_block(Pool& pool, std::uint64_t bytes);
     void give_back_range(const Buffer& buffer) noexcept;
@@ -143,7 +155,7 @@ private:
     std::uint64_t largest_; ///< buffer that the driver allows
     std::uint32_t heap_ = 0;
     std::uint64_t heap_bytes_ = 0;
-    bool budget_ = false;
+    bool budget_ = false, share_ = false;
     std::uint64_t block_bytes_ = 0;
     mutable std::mutex mutex_;
     std::array<Pool, 3> pools_;

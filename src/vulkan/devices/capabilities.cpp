@@ -234,6 +234,7 @@ Capabilities ask(const InstanceFunctions& call, VkPhysicalDevice device, std::ui
     choose_queues(found);
     found.memory_budget = extensions.has(VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
     if (found.memory_budget) found.extensions.push_back(VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
+    found.external_memory = extensions.has(VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME);
     refresh_free_memory(found, call, device);
     return found;
 }

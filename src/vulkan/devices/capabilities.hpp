@@ -36,6 +36,7 @@ struct Capabilities {
     bool memory_budget = false; ///< VK_EXT_memory_budget: heap_free is known, and changes
 
     bool mesh_shaders = false;           ///< VK_EXT_mesh_shader with the feature
+    bool external_memory = false;        ///< VK_KHR_external_memory_fd; enabled where it is asked for
     std::vector<const char*> extensions; ///< to be enabled: what is used and is no part of its version of Vulkan
 
     static constexpr std::uint32_t none = UINT32_MAX;

@@ -24,6 +24,7 @@ namespace isotet::vulkan {
     X(vkEnumerateDeviceExtensionProperties)   \
     X(vkEnumeratePhysicalDevices)             \
     X(vkGetDeviceProcAddr)                    \
+    X(vkGetPhysicalDeviceExternalBufferProperties) \
     X(vkGetPhysicalDeviceFeatures2)           \
     X(vkGetPhysicalDeviceMemoryProperties2)   \
     X(vkGetPhysicalDeviceProperties)          \
@@ -107,6 +108,10 @@ namespace isotet::vulkan {
 #define ISOTET_VULKAN_MESH_FUNCTIONS(X) \
     X(vkCmdDrawMeshTasksEXT)
 
+// Of a device with VK_KHR_external_memory_fd; null without it.
+#define ISOTET_VULKAN_SHARING_FUNCTIONS(X) \
+    X(vkGetMemoryFdKHR)
+
 // Of a device with VK_EXT_debug_utils; null without it.
 #define ISOTET_VULKAN_NAMING_FUNCTIONS(X) \
     X(vkSetDebugUtilsObjectNameEXT)       \
@@ -128,6 +133,7 @@ struct InstanceFunctions {
 struct DeviceFunctions {
     ISOTET_VULKAN_DEVICE_FUNCTIONS(ISOTET_VULKAN_MEMBER)
     ISOTET_VULKAN_MESH_FUNCTIONS(ISOTET_VULKAN_MEMBER)
+    ISOTET_VULKAN_SHARING_FUNCTIONS(ISOTET_VULKAN_MEMBER)
     ISOTET_VULKAN_NAMING_FUNCTIONS(ISOTET_VULKAN_MEMBER)
 };
 

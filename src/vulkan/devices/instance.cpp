@@ -113,19 +113,8 @@ Result<std::unique_ptr<Instance>> Instance::open(const Watch& watch, std::uint32
         return no_instance(made);
     }
 
-    InstanceFunctions& call = instance->call_;
-#define ISOTET_LOAD(name)                                                                                              \
-    call.name = reinterpret_cast<PFN_##name>(load.vkGetInstanceProcAddr(instance->handle_, #name));
-    ISOTET_VULKAN_INSTANCE_FUNCTIONS(ISOTET_LOAD)
-    if (naming) {
-        ISOTET_VULKAN_DEBUG_FUNCTIONS(ISOTET_LOAD)
-    }
-#undef ISOTET_LOAD
-#define ISOTET_CHECK(name)                                                                                             \
-    if (!call.name) return Error{ErrorCode::no_device, "the Vulkan loader lacks " #name};
-    ISOTET_VULKAN_INSTANCE_FUNCTIONS(ISOTET_CHECK)
-#undef ISOTET_CHECK
-
+    if (Result<void> loaded = instance->load(load.vkGetInstanceProcAddr, naming); !loaded) return loaded.error();
+    const InstanceFunctions& call = instance->call_;
     if (validation != Validation::off && call.vkCreateDebugUtilsMessengerEXT) {
         const VkResult made =
             call.vkCreateDebugUtilsMessengerEXT(instance->handle_, &messages, nullptr, &instance->messenger_);
@@ -134,7 +123,36 @@ Result<std::unique_ptr<Instance>> Instance::open(const Watch& watch, std::uint32
     return instance;
 }
 
+Result<std::unique_ptr<Instance>> Instance::adopt(const VulkanHandles& handles) {
+    auto get = reinterpret_cast<PFN_vkGetInstanceProcAddr>(handles.get_instance_proc_addr);
+    if (!get) {
+        const Result<LoaderFunctions> found = loader();
+        if (!found) return found.error();
+        get = found->vkGetInstanceProcAddr;
+    }
+    std::unique_ptr<Instance> instance(new Instance);
+    instance->owned_ = false;
+    instance->handle_ = static_cast<VkInstance>(handles.instance);
+    if (Result<void> loaded = instance->load(get, false); !loaded) return loaded.error();
+    return instance;
+}
+
+Result<void> Instance::load(PFN_vkGetInstanceProcAddr get, bool naming) {
+#define ISOTET_LOAD(name) call_.name = reinterpret_cast<PFN_##name>(get(handle_, #name));
+    ISOTET_VULKAN_INSTANCE_FUNCTIONS(ISOTET_LOAD)
+    if (naming) {
+        ISOTET_VULKAN_DEBUG_FUNCTIONS(ISOTET_LOAD)
+    }
+#undef ISOTET_LOAD
+#define ISOTET_CHECK(name)                                                                                             \
+    if (!call_.name) return Error{ErrorCode::no_device, "the Vulkan loader lacks " #name};
+    ISOTET_VULKAN_INSTANCE_FUNCTIONS(ISOTET_CHECK)
+#undef ISOTET_CHECK
+    return {};
+}
+
 Instance::~Instance() {
+    if (!owned_) return;
     if (messenger_) call_.vkDestroyDebugUtilsMessengerEXT(handle_, messenger_, nullptr);
     if (handle_ && call_.vkDestroyInstance) call_.vkDestroyInstance(handle_, nullptr);
 }

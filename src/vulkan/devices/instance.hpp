@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include <isotet/device.hpp>
 #include <isotet/result.hpp>
 
 #include "vulkan/devices/functions.hpp"
@@ -51,6 +52,9 @@ public:
     /// `version`   the newest version of Vulkan that is used; devices may have less
     static Result<std::unique_ptr<Instance>> open(const Watch& watch, std::uint32_t version);
 
+    /// One that the caller made, which stays the caller's.
+    static Result<std::unique_ptr<Instance>> adopt(const VulkanHandles& handles);
+
     Instance(const Instance&) = delete;
     Instance& operator=(const Instance&) = delete;
     ~Instance();
@@ -63,8 +67,10 @@ public:
 
 private:
     Instance() = default;
+    Result<void> load(PFN_vkGetInstanceProcAddr get, bool naming);
 
     Watch watch_;
+    bool owned_ = true;
     VkInstance handle_ = VK_NULL_HANDLE;
     InstanceFunctions call_;
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;

@@ -10,16 +10,19 @@
 
 namespace isotet::vulkan {
 
+LogicalDevice::LogicalDevice(const Instance& instance, VkPhysicalDevice physical, const Capabilities& capabilities)
+    : instance_(instance),
+      physical_(physical),
+      capabilities_(capabilities),
+      device_name_(capabilities.properties.deviceName) {
+    compute_.family = capabilities.compute_family;
+    transfer_.family = capabilities.transfer_family;
+}
+
 Result<std::unique_ptr<LogicalDevice>> LogicalDevice::open(const Instance& instance, VkPhysicalDevice physical,
                                                            const Capabilities& capabilities,
                                                            const std::function<void(DeviceFunctions&)>& alter) {
-    std::unique_ptr<LogicalDevice> device(new LogicalDevice(instance));
-    device->physical_ = physical;
-    device->capabilities_ = capabilities;
-    device->device_name_ = capabilities.properties.deviceName;
-    device->compute_.family = capabilities.compute_family;
-    device->transfer_.family = capabilities.transfer_family;
-
+    std::unique_ptr<LogicalDevice> device(new LogicalDevice(instance, physical, capabilities));
     const float priority = 1;
     std::array<VkDeviceQueueCreateInfo, 2> queues{};
     for (VkDeviceQueueCreateInfo& queue : queues) {
@@ -60,14 +63,41 @@ Result<std::unique_ptr<LogicalDevice>> LogicalDevice::open(const Instance& insta
         return failure(fmt::format("opening the device {}", device->device_name_), made);
     }
 
+    if (Result<void> loaded = device->load_functions(); !loaded) return loaded.error();
     DeviceFunctions& call = device->call_;
-#define ISOTET_LOAD(name) call.name = reinterpret_cast<PFN_##name>(ask.vkGetDeviceProcAddr(device->handle_, #name));
+    call.vkGetDeviceQueue(device->handle_, device->compute_.family, 0, &device->compute_.handle);
+    call.vkGetDeviceQueue(device->handle_, device->transfer_.family, 0, &device->transfer_.handle);
+    device->name(VK_OBJECT_TYPE_QUEUE, device->compute_.handle, "compute");
+    if (device->has_transfer_queue()) device->name(VK_OBJECT_TYPE_QUEUE, device->transfer_.handle, "transfer");
+    if (alter) alter(call);
+    return device;
+}
+
+Result<std::unique_ptr<LogicalDevice>> LogicalDevice::adopt(const Instance& instance, const VulkanHandles& handles,
+                                                            const Capabilities& capabilities) {
+    std::unique_ptr<LogicalDevice> device(
+        new LogicalDevice(instance, static_cast<VkPhysicalDevice>(handles.physical_device), capabilities));
+    device->owned_ = false;
+    device->handle_ = static_cast<VkDevice>(handles.device);
+    device->compute_.handle = device->transfer_.handle = static_cast<VkQueue>(handles.queue);
+    if (Result<void> loaded = device->load_functions(); !loaded) return loaded.error();
+    return device;
+}
+
+Result<void> LogicalDevice::load_functions() {
+    const InstanceFunctions& ask = instance_.call();
+    DeviceFunctions& call = call_;
+    const Capabilities& capabilities = capabilities_;
+#define ISOTET_LOAD(name) call.name = reinterpret_cast<PFN_##name>(ask.vkGetDeviceProcAddr(handle_, #name));
     ISOTET_VULKAN_DEVICE_FUNCTIONS(ISOTET_LOAD)
     if (!call.vkGetBufferDeviceAddress) // in Vulkan 1.1 it has the extension's name
         call.vkGetBufferDeviceAddress = reinterpret_cast<PFN_vkGetBufferDeviceAddress>(
-            ask.vkGetDeviceProcAddr(device->handle_, "vkGetBufferDeviceAddressKHR"));
+            ask.vkGetDeviceProcAddr(handle_, "vkGetBufferDeviceAddressKHR"));
     if (capabilities.mesh_shaders) {
         ISOTET_VULKAN_MESH_FUNCTIONS(ISOTET_LOAD)
+    }
+    if (capabilities.external_memory) {
+        ISOTET_VULKAN_SHARING_FUNCTIONS(ISOTET_LOAD)
     }
     if (ask.vkCreateDebugUtilsMessengerEXT) {
         ISOTET_VULKAN_NAMING_FUNCTIONS(ISOTET_LOAD)
@@ -81,25 +111,35 @@ Result<std::unique_ptr<LogicalDevice>> LogicalDevice::open(const Instance& insta
         ISOTET_VULKAN_MESH_FUNCTIONS(ISOTET_CHECK)
     }
 #undef ISOTET_CHECK
-    if (missing)
-        return Error{ErrorCode::no_device, fmt::format("the driver of {} lacks {}", device->device_name_, missing)};
-
-    call.vkGetDeviceQueue(device->handle_, device->compute_.family, 0, &device->compute_.handle);
-    call.vkGetDeviceQueue(device->handle_, device->transfer_.family, 0, &device->transfer_.handle);
-    device->name(VK_OBJECT_TYPE_QUEUE, device->compute_.handle, "compute");
-    if (device->has_transfer_queue()) device->name(VK_OBJECT_TYPE_QUEUE, device->transfer_.handle, "transfer");
-    if (alter) alter(call);
-    return device;
+    if (missing) return Error{ErrorCode::no_device, fmt::format("the driver of {} lacks {}", device_name_, missing)};
+    return {};
 }
 
 LogicalDevice::~LogicalDevice() {
-    if (handle_ && call_.vkDestroyDevice && !hung()) call_.vkDestroyDevice(handle_, nullptr);
+    if (owned_ && handle_ && call_.vkDestroyDevice && !hung()) call_.vkDestroyDevice(handle_, nullptr);
 }
 
 std::uint64_t LogicalDevice::free_memory(std::uint32_t heap) const {
     Capabilities now = capabilities_;
     refresh_free_memory(now, instance_.call(), physical_);
     return now.heap_free[heap];
+}
+
+std::string LogicalDevice::why_unable_to_share() const {
+    if (!capabilities_.external_memory || !call_.vkGetMemoryFdKHR)
+        return "it lacks the extension VK_KHR_external_memory_fd";
+    VkPhysicalDeviceExternalBufferInfo asked{};
+    asked.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_EXTERNAL_BUFFER_INFO;
+    asked.usage = buffer_usage;
+    asked.handleType = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT;
+    VkExternalBufferProperties found{};
+    found.sType = VK_STRUCTURE_TYPE_EXTERNAL_BUFFER_PROPERTIES;
+    instance_.call().vkGetPhysicalDeviceExternalBufferProperties(physical_, &asked, &found);
+    const VkExternalMemoryFeatureFlags features = found.externalMemoryProperties.externalMemoryFeatures;
+    if (!(features & VK_EXTERNAL_MEMORY_FEATURE_EXPORTABLE_BIT)) return "its driver exports no buffers";
+    if (features & VK_EXTERNAL_MEMORY_FEATURE_DEDICATED_ONLY_BIT)
+        return "its driver exports buffers only that have memory of their own";
+    return {};
 }
 
 void LogicalDevice::name_object(VkObjectType type, std::uint64_t handle, std::string_view name) const {

@@ -17,6 +17,12 @@
 
 namespace isotet::vulkan {
 
+/// What all buffers may be used for.
+constexpr VkBufferUsageFlags buffer_usage =
+    VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
+    VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT |
+    VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
+
 struct Queue {
     VkQueue handle = VK_NULL_HANDLE;
     std::uint32_t family = 0;
@@ -31,6 +37,9 @@ public:
     static Result<std::unique_ptr<LogicalDevice>> open(const Instance& instance, VkPhysicalDevice physical,
                                                        const Capabilities& capabilities,
                                                        const std::function<void(DeviceFunctions&)>& alter);
+    /// One that the caller opened, which stays the caller's. Its queue is for everything.
+    static Result<std::unique_ptr<LogicalDevice>> adopt(const Instance& instance, const VulkanHandles& handles,
+                                                        const Capabilities& capabilities);
     LogicalDevice(const LogicalDevice&) = delete;
     LogicalDevice& operator=(const LogicalDevice&) = delete;
     ~LogicalDevice();
@@ -43,6 +52,9 @@ public:
 
     /// Bytes of a heap that this process can still take, as the driver says now.
     std::uint64_t free_memory(std::uint32_t heap) const;
+
+    /// Why memory of buffers cannot be handed out as file descriptors; empty: it can.
+    std::string why_unable_to_share() const;
 
     /// Names an object for debuggers and validation messages. Handles are pointers or numbers.
     template <class Handle>
@@ -68,13 +80,15 @@ public:
     bool hung() const;
 
 private:
-    explicit LogicalDevice(const Instance& instance) : instance_(instance) {}
+    LogicalDevice(const Instance& instance, VkPhysicalDevice physical, const Capabilities& capabilities);
+    Result<void> load_functions();
     void name_object(VkObjectType type, std::uint64_t handle, std::string_view name) const;
     Error lose(std::string why);
 
     const Instance& instance_;
     VkPhysicalDevice physical_ = VK_NULL_HANDLE;
     Capabilities capabilities_;
+    bool owned_ = true;
     VkDevice handle_ = VK_NULL_HANDLE;
     DeviceFunctions call_;
     Queue compute_, transfer_;

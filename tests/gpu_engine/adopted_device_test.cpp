@@ -1,0 +1,202 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Surfaces where a program that draws wants them: on its own device, or in memory that another instance imports.
+#include <array>
+#include <cstring>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <isotet/device.hpp>
+#include <isotet/extract.hpp>
+
+#include "gpu_engine/engines.hpp"
+#include "support/small_grid.hpp"
+#include "vulkan/devices/capabilities.hpp"
+#include "vulkan/devices/instance.hpp"
+
+namespace isotet::test {
+namespace {
+
+/// A program that opens the software device by itself.
+class CallersDevice {
+public:
+    explicit CallersDevice(std::vector<const char*> extensions = {}) {
+        physical = instance->devices().value().front();
+        const float priority = 1;
+        VkDeviceQueueCreateInfo queues{};
+        queues.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
+        queues.queueCount = 1;
+        queues.pQueuePriorities = &priority;
+        VkPhysicalDeviceVulkan12Features features{};
+        features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+        features.bufferDeviceAddress = features.scalarBlockLayout = VK_TRUE;
+        VkDeviceCreateInfo create{};
+        create.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
+        create.pNext = &features;
+        create.queueCreateInfoCount = 1;
+        create.pQueueCreateInfos = &queues;
+        create.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
+        create.ppEnabledExtensionNames = extensions.data();
+        EXPECT_EQ(instance->call().vkCreateDevice(physical, &create, nullptr, &device), VK_SUCCESS);
+        function<PFN_vkGetDeviceQueue>("vkGetDeviceQueue")(device, 0, 0, &queue);
+    }
+
+    ~CallersDevice() {
+        function<PFN_vkDestroyDevice>("vkDestroyDevice")(device, nullptr);
+        instance.reset();
+        for (const std::string& complaint : complaints->all()) ADD_FAILURE() << complaint;
+    }
+
+    template <class Function>
+    Function function(const char* name) const {
+        return reinterpret_cast<Function>(instance->call().vkGetDeviceProcAddr(device, name));
+    }
+
+    VulkanHandles handles() const {
+        return {.instance = instance->handle(), .physical_device = physical, .device = device, .queue = queue};
+    }
+
+private:
+    std::shared_ptr<vulkan::Complaints> complaints = std::make_shared<vulkan::Complaints>();
+    std::unique_ptr<vulkan::Instance> instance =
+        vulkan::Instance::open({vulkan::Validation::on, complaints}, vulkan::whole_version).value();
+
+public:
+    VkPhysicalDevice physical = VK_NULL_HANDLE;
+    VkDevice device = VK_NULL_HANDLE;
+    VkQueue queue = VK_NULL_HANDLE;
+};
+
+PackedGrid packed_grid() {
+    const Grid grid = made_grid("perturbed", 9, {"gyroid"});
+    PackOptions options;
+    options.gradients = true;
+    return pack(grid, point_field(grid, 0), options).value();
+}
+
+/// Memory that another program exported, as bytes.
+std::vector<std::byte> imported(const CallersDevice& program, const DeviceArray& array) {
+    VkMemoryAllocateFlagsInfo flags{};
+    flags.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO;
+    flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
+    VkImportMemoryFdInfoKHR import{};
+    import.sType = VK_STRUCTURE_TYPE_IMPORT_MEMORY_FD_INFO_KHR;
+    import.pNext = &flags;
+    import.handleType = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT;
+    import.fd = array.memory;
+    VkMemoryAllocateInfo allocate{};
+    allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+    allocate.pNext = &import;
+    allocate.allocationSize = array.memory_bytes;
+    allocate.memoryTypeIndex = array.memory_type;
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    EXPECT_EQ(program.function<PFN_vkAllocateMemory>("vkAllocateMemory")(program.device, &allocate, nullptr, &memory),
+              VK_SUCCESS);
+    void* mapped = nullptr; // the software device's memory is the machine's
+    EXPECT_EQ(program.function<PFN_vkMapMemory>("vkMapMemory")(program.device, memory, 0, VK_WHOLE_SIZE, 0, &mapped),
+              VK_SUCCESS);
+    const auto* from = static_cast<const std::byte*>(mapped) + array.offset;
+    std::vector<std::byte> bytes(from, from + array.bytes);
+    program.function<PFN_vkFreeMemory>("vkFreeMemory")(program.device, memory, nullptr);
+    return bytes;
+}
+
+std::vector<std::byte> bytes_in(const Array& array) {
+    const auto* from = static_cast<const std::byte*>(array.data());
+    return {from, from + array.bytes()};
+}
+
+TEST(AdoptedDevice, GivesTheBytesOfTheCpuInBuffersOfItsOwner) {
+    const CallersDevice program;
+    const Device device = Device::adopt(program.handles()).value();
+    const PackedGrid packed = packed_grid();
+    DeviceGrid grid = DeviceGrid::upload(device, packed).value();
+    ExtractOptions options;
+    options.normals = Normals::gradient;
+    const DeviceSurface surface = grid.extract(0.1, options).value();
+    const Surface expected = extract(packed, 0.1, options).value().surface;
+    EXPECT_TRUE(bytes_of(grid.download(surface).value().surface) == bytes_of(expected));
+
+    const DeviceArrays arrays = surface.arrays();
+    EXPECT_EQ(arrays.positions.bytes, expected.positions.bytes());
+    EXPECT_EQ(arrays.triangles.bytes, expected.triangles.bytes());
+    EXPECT_EQ(arrays.normals.bytes, expected.normals.bytes());
+    for (const DeviceArray* array : {&arrays.positions, &arrays.triangles, &arrays.normals}) {
+        EXPECT_EQ(array->memory, -1);
+        VkBufferDeviceAddressInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO;
+        info.buffer = (VkBuffer)array->buffer; // NOLINT
+        EXPECT_EQ(program.function<PFN_vkGetBufferDeviceAddress>("vkGetBufferDeviceAddress")(program.device, &info),
+                  array->address);
+    }
+    EXPECT_EQ(DeviceSurface().arrays().positions.bytes, 0u);
+}
+
+TEST(AdoptedDevice, IsRefusedWithWhatIsMissing) {
+    const CallersDevice program;
+    for (void* VulkanHandles::* member :
+         {&VulkanHandles::instance, &VulkanHandles::physical_device, &VulkanHandles::device, &VulkanHandles::queue}) {
+        VulkanHandles handles = program.handles();
+        handles.*member = nullptr;
+        EXPECT_EQ(Device::adopt(handles).error().code, ErrorCode::invalid_argument);
+    }
+    VulkanHandles handles = program.handles();
+    handles.queue_family = 99;
+    EXPECT_EQ(Device::adopt(handles).error().message.substr(0, 19), "the queue family 99");
+    EXPECT_EQ(Device::adopt(program.handles(), {.choice = "software"}).error().code, ErrorCode::invalid_argument);
+    const Error error = Device::adopt(program.handles(), {.choice = "", .share_memory = true}).error();
+    EXPECT_EQ(error.code, ErrorCode::no_device);
+    EXPECT_NE(error.message.find("VK_KHR_external_memory_fd"), std::string::npos) << error.message;
+}
+
+TEST(SharedSurface, IsReadByAnotherInstance) {
+    const PackedGrid packed = packed_grid();
+    const Device device = Device::open({.choice = "software", .share_memory = true}).value();
+    DeviceGrid grid = DeviceGrid::upload(device, packed).value();
+    const CallersDevice other({VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME});
+    for (const Normals normals : {Normals::none, Normals::gradient, Normals::face}) {
+        ExtractOptions options;
+        options.normals = normals;
+        const DeviceSurface surface = grid.extract(0.1, options).value();
+        const Surface expected = extract(packed, 0.1, options).value().surface;
+        const DeviceArrays arrays = surface.share().value();
+        EXPECT_TRUE(imported(other, arrays.positions) == bytes_in(grid.download(surface).value().surface.positions));
+        EXPECT_TRUE(imported(other, arrays.triangles) == bytes_in(expected.triangles));
+        if (normals == Normals::none) {
+            EXPECT_EQ(arrays.normals.bytes, 0u);
+        } else {
+            EXPECT_TRUE(imported(other, arrays.normals) == bytes_in(expected.normals));
+        }
+    }
+}
+
+TEST(SharedSurface, LeavesNoDescriptor) {
+    const auto descriptors = [] {
+        int count = 0;
+        for (int i = 0; i < 1024; ++i) count += fcntl(i, F_GETFD) != -1;
+        return count;
+    };
+    const Device device = Device::open({.choice = "software", .share_memory = true}).value();
+    DeviceGrid grid = DeviceGrid::upload(device, packed_grid()).value();
+    const DeviceSurface surface = grid.extract(0.1).value();
+    const int before = descriptors();
+    for (int i = 0; i < 3; ++i) {
+        const DeviceArrays arrays = surface.share().value();
+        close(arrays.positions.memory);
+        close(arrays.triangles.memory);
+    }
+    EXPECT_EQ(descriptors(), before);
+}
+
+TEST(SharedSurface, TakesADeviceThatWasOpenedForIt) {
+    const Device device = Device::open({.choice = "software"}).value();
+    DeviceGrid grid = DeviceGrid::upload(device, packed_grid()).value();
+    EXPECT_EQ(grid.extract(0.1).value().share().error().message, "the device was not opened with `share_memory`");
+    EXPECT_EQ(DeviceSurface().share().error().message, "the surface to share was never extracted");
+}
+
+} // namespace
+} // namespace isotet::test
