@@ -64,3 +64,16 @@ def same(one: isotet.Surface, other: isotet.Surface) -> bool:
 
     names = list(one.fields) == list(other.fields) and list(one.cell_fields) == list(other.cell_fields)
     return names and all(equal(a, b) for a, b in zip(arrays(one), arrays(other), strict=True))
+
+
+def errors_of(filter) -> list[str]:
+    """What a VTK filter says is wrong, when it runs."""
+    told = []
+
+    def hear(caller, event, text):
+        told.append(text)
+
+    hear.CallDataType = "string0"
+    filter.AddObserver("ErrorEvent", hear)
+    filter.Update()
+    return told

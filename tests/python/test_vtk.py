@@ -14,6 +14,7 @@ from vtkmodules.vtkFiltersCore import vtkAppendFilter, vtkContourFilter, vtkPoly
 import isotet
 import isotet.vtk
 from isotet.vtk import IsotetContour, grid_of
+from conftest import errors_of
 from test_pyvista import cubes
 
 
@@ -209,15 +210,7 @@ def test_surfaces_of_blocks_fit_bit_for_bit():
 
 def test_composite_data_without_the_array_are_an_error():
     contour = pipeline(pv.MultiBlock([cubes(), cubes(6)]), "pressure")
-    heard = []
-
-    def hear(caller, event, text):
-        heard.append(text)
-
-    hear.CallDataType = "string0"
-    contour.AddObserver("ErrorEvent", hear)
-    contour.Update()
-    assert heard[0] == "there is no point array 'pressure'"
+    assert errors_of(contour)[0] == "there is no point array 'pressure'"
 
 
 @pytest.mark.parametrize("storage", ["Use32BitStorage", "Use64BitStorage", "UseFixedSize32BitStorage", "UseFixedSize64BitStorage"])
@@ -239,20 +232,8 @@ def test_empty_grids_give_empty_surfaces():
 
 
 def test_errors_say_why():
-    contour = pipeline(cubes(), "pressure")
-    heard = []
-
-    def hear(caller, event, text):
-        heard.append(text)
-
-    hear.CallDataType = "string0"
-    contour.AddObserver("ErrorEvent", hear)
-    contour.Update()
-    assert heard[0] == "there is no point array 'pressure'"
-    contour = pipeline(cubes(), "number")
-    contour.AddObserver("ErrorEvent", hear)
-    contour.Update()
-    assert heard[-1].startswith("there is no point array 'number', but a cell array")
+    assert errors_of(pipeline(cubes(), "pressure"))[0] == "there is no point array 'pressure'"
+    assert errors_of(pipeline(cubes(), "number"))[0].startswith("there is no point array 'number', but a cell array")
 
 
 def test_polyhedra_come_with_their_faces(tree):

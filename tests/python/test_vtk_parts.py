@@ -9,24 +9,13 @@ from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
 import isotet
 from isotet.vtk import IsotetClip, IsotetReader, IsotetSlice, IsotetSolid
+from conftest import errors_of
 from test_pyvista import cubes
 
 
 def output(filter):
     filter.Update()
     return pv.wrap(filter.GetOutputDataObject(0))
-
-
-def errors_of(filter):
-    told = []
-
-    def hear(caller, event, text):
-        told.append(text)
-
-    hear.CallDataType = "string0"
-    filter.AddObserver("ErrorEvent", hear)
-    filter.Update()
-    return told
 
 
 def test_a_plane_that_moves_along_its_normal_keeps_the_field():
