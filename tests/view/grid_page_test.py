@@ -142,6 +142,18 @@ def test_begins_as_the_viewer_does(browser, path):
     check(browser.value('document.body.dataset.kinds') == 'surface boundary', 'the value that was named is shown')
 
 
+def test_solids(browser, path):
+    start(browser, path)
+    type_value(browser, '0.6')
+    for side in ('above', 'below'):
+        before = triangles(browser)
+        browser.value(f'(() => {{ const s = document.getElementById("solid"); s.value = "{side}"; s.dispatchEvent(new Event("change")); }})()')
+        browser.wait(f'Number(document.body.dataset.triangles) !== {before}')
+        counted = isotet('extract', GRID, '-f', 'sphere', '-i', '0.6', '--solid', side)['surfaces'][0]['triangles']
+        check(triangles(browser) == counted, f'{counted} triangles of the solid {side}, {triangles(browser)} shown')
+    check(browser.box('#solid')[2] > 0, 'they can be chosen')
+
+
 def test_files_of_what_is_shown(browser, path):
     """Surfaces; the boundary where it is shown alone; a sentence where nothing is."""
     with tempfile.TemporaryDirectory(prefix='isotet-saved-') as folder:
