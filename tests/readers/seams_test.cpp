@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <random>
 #include <set>
 #include <tuple>
 
@@ -168,6 +169,29 @@ std::vector<Piece> crack_on_one_side() {
     pieces[0].grid.point_fields = {{"v", Array::own(std::vector<double>{0, 0, 1, 1})}};
     pieces[1].grid.point_fields = {{"v", Array::own(std::vector<double>{0, 0, 1, 1, -5, -5, 1})}};
     return pieces;
+}
+
+/// Of 2,000 places of two pieces a third is the same, a third is near, and a third is not.
+TEST(Seams, TellEqualPlacesFromNearOnesWhereverTheyLie) {
+    constexpr std::size_t places = 2000;
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> anywhere(0, 1);
+    Places first, second;
+    std::vector<std::int64_t> corners, other_corners;
+    for (std::size_t i = 0; i < places; ++i) {
+        std::array<double, 3> place{anywhere(random), anywhere(random), anywhere(random)};
+        if (i < 2) place.fill(static_cast<double>(i)); // so that the grid's length is 1
+        first.push_back(place);
+        place[i / 3 % 3] += (i % 3 == 0 ? 0 : i % 3 == 1 ? 0.4e-6 : 3e-6) * (i == 1 ? -1 : 1);
+        second.push_back(place);
+        corners.push_back(static_cast<std::int64_t>(i));
+        other_corners.push_back(static_cast<std::int64_t>((i + 2) % places)); // of other cells
+    }
+    const ReadResult grid =
+        joined_in_any_order({piece_of<double>(first, corners), piece_of<double>(second, other_corners)});
+    EXPECT_EQ(grid.grid.points.tuples(), 2 * places - 667);
+    EXPECT_TRUE(says(grid, "coordinates: 667 points were merged"));
+    EXPECT_TRUE(says(grid, "1334 points lie up to 4e-07 beside another piece's"));
 }
 
 TEST(Seams, LeaveACrackOfOnePieceAsItIsInAnyOrder) {

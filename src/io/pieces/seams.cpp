@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Points that can be shared lie in the boxes of two pieces. They are grouped by a coarse distance, within which groups
-// are nearly always the copies of one point; each group is then settled by itself.
+// Points that can be shared lie in the boxes of two pieces. Nearly all are at the very place of their copies and near
+// no other place: sorted by cells of space, these are joined at once. The others are grouped by a coarse distance, and
+// each group is settled by itself.
 #include "io/pieces/seams.hpp"
 
 #include <algorithm>
@@ -34,6 +35,47 @@ struct Scale {
     double coarse = 0;
 };
 
+/// A cube of space whose edge is `edge` times the coarse distance, so that few points are near its faces.
+class CellOfSpace {
+public:
+    CellOfSpace(const Scale& scale, const Point& place) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            // Not at whole numbers, where the places of regular grids are.
+            const double along = (place[axis] - scale.lower[axis]) / (edge * scale.coarse) + 1.382;
+            const double begin = std::floor(along);
+            cell_[axis] = static_cast<std::uint64_t>(begin);
+            step_[axis] = along - begin < margin ? -1 : begin + 1 - along < margin ? 1 : 0;
+        }
+    }
+
+    /// In the order of x, then y, then z.
+    std::uint64_t key() const { return key_of(cell_); }
+
+    /// Calls visit(key) for the other cells that have places within the coarse distance, with room for rounding.
+    template <class Visit>
+    void each_other(const Visit& visit) const {
+        if (step_[0] == 0 && step_[1] == 0 && step_[2] == 0) return;
+        for (unsigned axes = 1; axes < 8; ++axes) {
+            std::array<std::uint64_t, 3> other = cell_;
+            bool is_near = true;
+            for (unsigned axis = 0; axis < 3; ++axis) {
+                if ((axes >> axis & 1) == 0) continue;
+                is_near = is_near && step_[axis] != 0;
+                other[axis] += static_cast<std::uint64_t>(step_[axis]);
+            }
+            if (is_near) visit(key_of(other));
+        }
+    }
+
+private:
+    static constexpr double edge = 64, margin = 1.1 / edge;
+    static std::uint64_t key_of(const std::array<std::uint64_t, 3>& cell) {
+        return cell[0] << 42 | cell[1] << 21 | cell[2]; // at most 15,628 cells along an axis
+    }
+    std::array<std::uint64_t, 3> cell_;
+    std::array<std::int64_t, 3> step_; ///< -1 or 1: the face of the cell at that side is near
+};
+
 Scale scale_of(const std::vector<SeamPiece>& pieces) {
     constexpr double share = 1e-12, roundings = 2, coarse_share = 1e-6;
     Box whole;
@@ -63,7 +105,10 @@ class SeamFinder {
 public:
     SeamFinder(const std::vector<SeamPiece>& pieces, const Progress& progress)
         : pieces_(pieces), progress_(progress), scale_(scale_of(pieces)) {
-        for (const SeamPiece& piece : pieces_) first_.push_back(first_.back() + piece.points.tuples());
+        for (const SeamPiece& piece : pieces_) {
+            first_.push_back(first_.back() + piece.points.tuples());
+            places_.emplace_back(piece.points);
+        }
     }
 
     Result<Seams> find() {
@@ -74,21 +119,29 @@ public:
             return enough.error();
         if (progress_.cancelled()) return cancelled();
         progress_("join pieces", 0.3);
+        join_equal_places();
+        if (progress_.cancelled()) return cancelled();
+        if (candidates_.empty()) return std::move(seams_);
+        const auto joined = static_cast<std::ptrdiff_t>(seams_.joined.size());
         const std::vector<Keyed> grouped = group();
         if (progress_.cancelled()) return cancelled();
         settle(grouped);
         if (progress_.cancelled()) return cancelled();
-        std::ranges::sort(seams_.joined, {}, &JoinedPoint::point);
+        const auto middle = seams_.joined.begin() + joined;
+        std::sort(middle, seams_.joined.end(), by_point);
+        std::inplace_merge(seams_.joined.begin(), middle, seams_.joined.end(), by_point);
         return std::move(seams_);
     }
 
 private:
+    static bool by_point(const JoinedPoint& a, const JoinedPoint& b) { return a.point < b.point; }
+
     std::uint32_t piece_of(std::uint64_t point) const {
         return static_cast<std::uint32_t>(std::ranges::upper_bound(first_, point) - first_.begin() - 1);
     }
     Point place_of(std::uint64_t point) const {
         const std::uint32_t piece = piece_of(point);
-        return core::PointReader(pieces_[piece].points)[point - first_[piece]];
+        return places_[piece][point - first_[piece]];
     }
     std::uint64_t id_of(std::uint64_t point) const {
         const std::uint32_t piece = piece_of(point);
@@ -242,6 +295,93 @@ private:
         return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]) <= scale_.coarse;
     }
 
+    /// The candidates by cell of space, each also in other cells that it is near to; `number`: which, and whether it is
+    /// in the cell.
+    core::Buffer<Keyed> placed_candidates() const {
+        const std::size_t count = candidates_.size(), chunks = (count + seam_grain - 1) / seam_grain;
+        std::vector<std::vector<Keyed>> near(chunks); // in other cells
+        core::Buffer<Keyed> placed(count + count / 4);
+        core::parallel_each(chunks, 1, [&](std::size_t chunk) {
+            const std::size_t begin = chunk * seam_grain, end = std::min(begin + seam_grain, count);
+            for (std::size_t i = begin; i < end; ++i) {
+                const CellOfSpace cell(scale_, place_of(candidates_[i]));
+                placed[i] = {cell.key(), 2 * i + 1};
+                cell.each_other([&](std::uint64_t key) { near[chunk].push_back({key, 2 * i}); });
+            }
+        });
+        std::size_t all = count;
+        for (const auto& found : near) all += found.size();
+        if (all > placed.size()) {
+            core::Buffer<Keyed> larger(all);
+            std::copy_n(placed.begin(), count, larger.begin());
+            placed = std::move(larger);
+        }
+        Keyed* next = placed.begin() + count;
+        for (const auto& found : near) next = std::copy(found.begin(), found.end(), next);
+        placed.shrink(all);
+        core::Buffer<Keyed> scratch(all);
+        core::radix_sort({placed.data(), all}, {scratch.data(), all});
+        return placed;
+    }
+
+    /// Calls visit(entries) for each cell, in parallel.
+    template <class Visit>
+    void each_cell(const core::Buffer<Keyed>& placed, const Visit& visit) const {
+        core::parallel_ranges(placed.size(), seam_grain, [&](std::size_t begin, std::size_t end) {
+            if (progress_.cancelled()) return;
+            for (std::size_t i = begin, last = begin; i < end; i = last) {
+                last = i + 1;
+                while (last < placed.size() && placed[last].key == placed[i].key) ++last;
+                if (i == 0 || placed[i - 1].key != placed[i].key)
+                    visit(std::span(placed.begin() + i, placed.begin() + last));
+            }
+        });
+    }
+
+    /// Whether candidates of one place can be joined without looking closer: they are of different pieces, and the ids
+    /// agree where these decide.
+    bool are_copies(std::span<const Keyed> entries) const {
+        const bool by_id = seams_.ids == IdUse::trusted;
+        for (std::size_t i = 1; i < entries.size(); ++i) {
+            const std::uint64_t one = candidates_[entries[i - 1].number / 2], next = candidates_[entries[i].number / 2];
+            if (piece_of(one) == piece_of(next) || (by_id && id_of(one) != id_of(next))) return false;
+        }
+        return true;
+    }
+
+    /// Joins candidates at equal places, near no other place, and leaves those that must be looked at closer.
+    void join_equal_places() {
+        const std::size_t count = candidates_.size();
+        const core::Buffer<Keyed> placed = placed_candidates();
+        // The first candidate at the place of each; itself where it is alone; `close`: it must be looked at closer. Two
+        // that are near each other at different places are in one cell of both's, and both are marked there.
+        constexpr std::uint64_t close = ~std::uint64_t{0};
+        core::Buffer<std::uint64_t> first(count);
+        core::parallel_each(count, seam_grain, [&](std::size_t i) { first[i] = i; });
+        const auto mark = [&](std::span<const Keyed> entries) {
+            for (const Keyed& entry : entries)
+                std::atomic_ref(first[entry.number / 2]).store(close, std::memory_order_relaxed);
+        };
+        const auto place = [&](const Keyed& entry) { return place_of(candidates_[entry.number / 2]); };
+        each_cell(placed, [&](std::span<const Keyed> entries) {
+            if (entries.size() == 1) return;
+            const Point here = place(entries[0]);
+            const bool are_equal =
+                std::ranges::all_of(entries.subspan(1), [&](const Keyed& other) { return place(other) == here; });
+            if (!are_equal || (entries[0].number % 2 == 1 && !are_copies(entries))) mark(entries);
+        });
+        each_cell(placed, [&](std::span<const Keyed> entries) {
+            if (entries.size() == 1 || entries[0].number % 2 == 0 || first[entries[0].number / 2] == close) return;
+            for (const Keyed& entry : entries) first[entry.number / 2] = entries[0].number / 2;
+        });
+        if (progress_.cancelled()) return;
+        std::vector<std::uint64_t> left;
+        for (std::size_t i = 0; i < count; ++i)
+            if (first[i] == close) left.push_back(candidates_[i]);
+            else if (first[i] != i) seams_.joined.push_back({candidates_[i], candidates_[first[i]]});
+        candidates_ = std::move(left);
+    }
+
     /// Candidates that are near others, by group; the key is the lowest of the group.
     std::vector<Keyed> group() {
         std::vector<double> places(3 * candidates_.size());
@@ -294,6 +434,7 @@ private:
     const Progress& progress_;
     Scale scale_;
     std::vector<std::uint64_t> first_{0}; ///< number of each piece's first point, and of all
+    std::vector<core::PointReader> places_; ///< by piece
     std::vector<std::uint64_t> candidates_;
     Seams seams_;
 };
