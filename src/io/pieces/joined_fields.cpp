@@ -98,6 +98,18 @@ void put(const From* from, To* to, std::size_t components, std::uint64_t begin, 
     }
 }
 
+/// The same for points, in runs.
+template <class To, class From>
+void put(const From* from, To* to, std::size_t components, std::uint64_t begin, std::uint64_t end,
+         const PieceNumbers& numbers) {
+    numbers.each_run(begin, end, [&](std::uint64_t point, std::uint64_t count, std::uint64_t number) {
+        if (number == PieceNumbers::none) return;
+        const From* const first = from + point * components;
+        std::transform(first, first + count * components, to + number * components,
+                       [](From value) { return static_cast<To>(value); });
+    });
+}
+
 /// Makes an array of `tuples` x `components` scalars; `fill(values)` writes to it.
 template <class Fill>
 Result<Array> filled(const JoinedColumn& column, std::uint64_t tuples, bool missing, const Fill& fill) {

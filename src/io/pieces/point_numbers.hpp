@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <span>
@@ -20,6 +21,27 @@ public:
         const std::uint64_t word = is_listed_[point / 64], bit = std::uint64_t{1} << point % 64;
         const std::uint64_t before = before_[point / 64] + static_cast<std::uint64_t>(std::popcount(word & (bit - 1)));
         return word & bit ? listed_[before] : first_ + point - before;
+    }
+
+    /// Calls visit(point, count, number) for points [begin, end), in runs whose numbers follow one another; of `none` one
+    /// at a time.
+    template <class Visit>
+    void each_run(std::uint64_t begin, std::uint64_t end, const Visit& visit) const {
+        if (is_listed_.empty()) return visit(begin, end - begin, first_ + begin);
+        for (std::uint64_t i = begin, count = 0; i < end; i += count) {
+            const std::uint64_t word = is_listed_[i / 64] >> i % 64;
+            const auto until_listed = static_cast<std::uint64_t>(word ? std::countr_zero(word) : 64);
+            count = std::max<std::uint64_t>(1, std::min({until_listed, 64 - i % 64, end - i}));
+            visit(i, count, (*this)(i));
+        }
+    }
+
+    /// Calls visit(point) for those that other pieces have, too.
+    template <class Visit>
+    void each_shared(const Visit& visit) const {
+        for (std::size_t i = 0; i < is_shared_.size(); ++i)
+            for (std::uint64_t word = is_shared_[i]; word != 0; word &= word - 1)
+                visit(64 * i + static_cast<std::uint64_t>(std::countr_zero(word)));
     }
 
     /// Whether another piece has it, too.
