@@ -124,6 +124,16 @@ public:
         return true;
     }
 
+    void prepare(std::size_t bytes) {
+        const std::lock_guard lock(mutex_);
+        make_room_for_one();
+        if (reuses_ || bytes_ > 0) return;
+        const Block block = map_block(bytes);
+        if (!block.data) return;
+        blocks_.push_back(block);
+        bytes_ += block.bytes;
+    }
+
     std::size_t drop() {
         const std::lock_guard lock(mutex_);
         const std::size_t dropped = bytes_;
@@ -236,6 +246,15 @@ void give_back(Block block) noexcept {
     } catch (...) { // no memory for the list, or no lock
     }
     munmap(block.data, block.bytes);
+}
+
+void prepare_blocks(std::size_t bytes) noexcept {
+    bytes = std::min(bytes / huge_page * huge_page, max_to_keep() / 4);
+    if (!is_large(bytes) || other_place.load()) return;
+    try {
+        kept_blocks().prepare(bytes);
+    } catch (...) { // no memory for the list, or no lock
+    }
 }
 
 std::size_t drop_kept_blocks() noexcept {

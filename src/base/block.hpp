@@ -32,4 +32,8 @@ std::size_t drop_kept_blocks() noexcept;
 /// system, and every small surface would touch its pages anew.)
 constexpr std::size_t large_block = std::size_t{256} << 10;
 
+/// Maps memory, in huge pages where there are some, from which the next large blocks are taken. A wish: nothing happens
+/// where there is no room. What is not taken costs address space only.
+void prepare_blocks(std::size_t bytes) noexcept;
+
 } // namespace isotet::core

@@ -72,12 +72,18 @@ Reply do_task(const Request& request) {
         return Error{ErrorCode::invalid_argument,
                      fmt::format("isotet-reader does not read format \"{}\"", escaped(request.format))};
     const bool inspecting = request.task == Task::inspect;
-    auto loaded = load(request.path, request.options, inspecting ? Depth::description : Depth::arrays);
-    if (!loaded) return loaded.error();
-    loaded->info.format = request.format;
-    loaded->info.files = take_opened_files();
-    if (inspecting) return std::move(loaded->info);
-    auto joined = join(std::move(*loaded), request.options);
+    const auto load_all = [&] {
+        auto loaded = load(request.path, request.options, inspecting ? Depth::description : Depth::arrays);
+        if (!loaded) return loaded;
+        loaded->info.format = request.format;
+        loaded->info.files = take_opened_files();
+        return loaded;
+    };
+    if (inspecting) {
+        auto loaded = load_all();
+        return loaded ? Reply(std::move(loaded->info)) : Reply(loaded.error());
+    }
+    auto joined = load_and_join(load_all, request.options);
     return joined ? Reply(std::move(*joined)) : Reply(joined.error());
 }
 

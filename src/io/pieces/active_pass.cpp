@@ -25,8 +25,11 @@ constexpr std::uint32_t number_bits = used_bit - 1;
 /// Up to the next power of two, so that a masked number that is no point has an entry, too.
 core::Buffer<std::uint32_t> numbers_of_points(const PieceNumbers& numbers, std::uint64_t points) {
     core::Buffer<std::uint32_t> result(std::bit_ceil(points));
-    for (std::uint64_t i = 0; i < points; ++i)
-        result[i] = (static_cast<std::uint32_t>(numbers(i)) & number_bits) | (numbers.is_shared(i) ? shared_bit : 0);
+    numbers.each_run(0, points, [&](std::uint64_t point, std::uint64_t count, std::uint64_t number) {
+        for (std::uint64_t i = 0; i < count; ++i)
+            result[point + i] = static_cast<std::uint32_t>(number + i) & number_bits;
+    });
+    numbers.each_shared([&](std::uint64_t point) { result[point] |= shared_bit; });
     std::fill(result.begin() + points, result.end(), used_bit);
     return result;
 }
@@ -47,18 +50,23 @@ std::uint64_t hash_of(std::uint8_t type, std::span<const std::int32_t> corners) 
 
 } // namespace
 
-void SharedHashes::add(const std::vector<core::Keyed>& cells) {
+void SharedHashes::add(std::vector<core::Keyed> cells) {
     const std::lock_guard lock(mutex_);
-    cells_.insert(cells_.end(), cells.begin(), cells.end());
+    parts_.push_back(std::move(cells));
 }
 
 Result<std::vector<std::vector<std::uint8_t>>> SharedHashes::repeated(std::span<const std::uint64_t> counts) {
-    const std::uint64_t bytes = sizeof(core::Keyed) * cells_.size();
-    if (auto enough = core::require_memory("comparing cells of pieces", bytes); !enough) return enough.error();
-    core::Buffer<core::Keyed> scratch(cells_.size());
-    core::radix_sort(cells_, {scratch.data(), scratch.size()});
+    std::size_t count = 0;
+    for (const auto& part : parts_) count += part.size();
+    if (auto enough = core::require_memory("comparing cells of pieces", 2 * sizeof(core::Keyed) * count); !enough)
+        return enough.error();
+    core::Buffer<core::Keyed> cells(count), scratch(count);
+    core::Keyed* next = cells.begin();
+    for (const auto& part : parts_) next = std::copy(part.begin(), part.end(), next);
+    parts_ = {};
+    core::radix_sort({cells.data(), count}, {scratch.data(), count});
     std::vector<std::uint64_t> places{0};
-    for (const std::uint64_t count : counts) places.push_back(places.back() + count);
+    for (const std::uint64_t cells_of_piece : counts) places.push_back(places.back() + cells_of_piece);
     std::vector<std::vector<std::uint8_t>> marks;
     const auto mark = [&](std::uint64_t place) {
         const auto piece = static_cast<std::size_t>(std::ranges::upper_bound(places, place) - places.begin() - 1);
@@ -66,12 +74,11 @@ Result<std::vector<std::vector<std::uint8_t>>> SharedHashes::repeated(std::span<
         marks[piece].resize(counts[piece]);
         marks[piece][place - places[piece]] = 1;
     };
-    for (std::size_t i = 1; i < cells_.size(); ++i) {
-        if (cells_[i].key != cells_[i - 1].key) continue;
-        mark(cells_[i - 1].number);
-        mark(cells_[i].number);
+    for (std::size_t i = 1; i < count; ++i) {
+        if (cells[i].key != cells[i - 1].key) continue;
+        mark(cells[i - 1].number);
+        mark(cells[i].number);
     }
-    cells_ = {};
     return marks;
 }
 
@@ -107,7 +114,7 @@ ActivePass::ActivePass(const Piece& piece, const PieceNumbers& numbers, const Ta
     : piece_(piece),
       target_(target),
       places_(piece.unread->places()),
-      points_(piece.grid.points.tuples()),
+      points_(target.points),
       whole_(places_, [this](std::uint64_t first, std::uint64_t cells, const Array& corners) {
           corners.visit([&](auto values) {
               using Index = std::remove_const_t<typename decltype(values)::element_type>;
@@ -230,7 +237,7 @@ void ActivePass::pass(std::uint64_t first_cell, std::uint64_t cells, const Index
     }
     send_them();
     if (broken) broken_ = true;
-    if (!hashes.empty()) target_.hashes->add(hashes);
+    if (!hashes.empty()) target_.hashes->add(std::move(hashes));
     if (!shared.empty()) target_.shared->add(shared);
 }
 

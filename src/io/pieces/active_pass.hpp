@@ -27,7 +27,7 @@ namespace isotet::io {
 class SharedHashes {
 public:
     /// `cells`   hashes, and numbers in the order of the pieces
-    void add(const std::vector<core::Keyed>& cells);
+    void add(std::vector<core::Keyed> cells);
 
     /// By piece, of as many cells as `counts` says: 1 for those whose hash another cell has. Empty where there are none.
     ///
@@ -36,7 +36,7 @@ public:
 
 private:
     std::mutex mutex_;
-    std::vector<core::Keyed> cells_;
+    std::vector<std::vector<core::Keyed>> parts_;
 };
 
 /// Cells of which each may be one of another piece, too: that is known when all are there.
@@ -72,6 +72,7 @@ public:
         std::uint32_t piece = 0;
         SharedHashes* hashes = nullptr; ///< get all shared cells
         std::uint64_t place = 0;        ///< of the piece's first cell there
+        std::uint64_t points = 0;       ///< of the piece
         SharedCells* shared = nullptr;  ///< has those instead of the filter that `repeated` marks
         std::span<const std::uint8_t> repeated{};
     };

@@ -2,6 +2,7 @@
 #include "io/pieces/join.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "base/parallel.hpp"
@@ -73,9 +74,9 @@ Result<void> join_arrays(OrderedPieces& all, const PointNumbers& numbers, const 
     return {};
 }
 
-} // namespace
-
-Result<ReadResult> join(Loaded loaded, const ReadOptions& options, const Progress& progress) {
+/// Nothing where `may_free` and pieces that are needed were freed.
+Result<std::optional<ReadResult>> join_loaded(Loaded loaded, const ReadOptions& options, const Progress& progress,
+                                              bool may_free) {
     ReadResult result;
     result.info = std::move(loaded.info);
     result.step = loaded.step;
@@ -89,19 +90,19 @@ Result<ReadResult> join(Loaded loaded, const ReadOptions& options, const Progres
     if (pieces.size() > 1) std::erase_if(pieces, is_empty);
     if (pieces.empty()) { // none has a point
         result.grid.points = Array(ScalarType::float32, nullptr, 0, 3, nullptr);
-        return result;
+        return std::optional(std::move(result));
     }
     if (std::ranges::any_of(pieces, [](const Piece& piece) { return piece.unread != nullptr; })) {
-        auto active = join_active(pieces, result, options, progress);
-        if (!active) return active.error();
-        if (*active) return **std::move(active);
+        auto active = join_active(pieces, result, options, progress, may_free);
+        if (!active || *active) return active;
+        if (pieces.empty()) return std::optional<ReadResult>();
         if (auto read = read_cells_of(pieces); !read) return read.error();
     }
     if (pieces.size() == 1 && pieces[0].left_out.empty()) {
         if (const auto sound = check_shape(pieces[0]); !sound) return sound.error();
         result.grid = std::move(pieces[0].grid);
         result.cells_in_file = pieces[0].cells_in_file;
-        return result;
+        return std::optional(std::move(result));
     }
 
     auto all = checked(std::move(pieces));
@@ -113,7 +114,26 @@ Result<ReadResult> join(Loaded loaded, const ReadOptions& options, const Progres
     if (!repeated) return repeated.error();
     note_repeated(*repeated, all->pieces, result.notes);
     if (auto done = join_arrays(*all, joined->numbers, joined->seams, result, progress); !done) return done.error();
-    return result;
+    return std::optional(std::move(result));
+}
+
+} // namespace
+
+Result<ReadResult> join(Loaded loaded, const ReadOptions& options, const Progress& progress) {
+    auto joined = join_loaded(std::move(loaded), options, progress, false);
+    if (!joined) return joined.error();
+    return **std::move(joined);
+}
+
+Result<ReadResult> load_and_join(const std::function<Result<Loaded>()>& load, const ReadOptions& options,
+                                 const Progress& progress) {
+    for (bool may_free = true;; may_free = false) {
+        auto loaded = load();
+        if (!loaded) return loaded.error();
+        auto joined = join_loaded(*std::move(loaded), options, progress, may_free);
+        if (!joined) return joined.error();
+        if (*joined) return **std::move(joined);
+    }
 }
 
 } // namespace isotet::io

@@ -1,6 +1,8 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
+
 #include <isotet/export.hpp>
 #include <isotet/progress.hpp>
 
@@ -19,5 +21,10 @@ namespace isotet::io {
 /// Errors   invalid_data when arrays do not fit together or a cell has a point out of range; out_of_memory; cancelled
 /// Cost     O(P + T) and what find_seams() takes; frees each piece's arrays once they are joined
 ISOTET_API Result<ReadResult> join(Loaded loaded, const ReadOptions& options, const Progress& progress = {});
+
+/// join() of what `load` gives. Where only active cells are wanted, points and fields of the pieces are freed before their
+/// cells go by, and loaded once more in the rare case that these call for them.
+ISOTET_API Result<ReadResult> load_and_join(const std::function<Result<Loaded>()>& load, const ReadOptions& options,
+                                            const Progress& progress = {});
 
 } // namespace isotet::io

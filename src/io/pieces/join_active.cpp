@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "base/block.hpp"
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
 #include "io/files/first_error.hpp"
@@ -43,18 +44,29 @@ std::vector<Piece> points_of(const std::vector<Piece>& pieces) {
     return result;
 }
 
+void free_points(std::vector<Piece>& pieces) {
+    for (Piece& piece : pieces) {
+        piece.grid.points = Array();
+        piece.grid.point_fields.clear();
+    }
+}
+
 class ActiveJoin {
 public:
     ActiveJoin(std::vector<Piece>& pieces, const ReadResult& begun, const ReadOptions& options,
-               const Progress& progress)
-        : begun_(begun), options_(options), progress_(progress), all_(in_order_of_file(std::move(pieces))) {}
+               const Progress& progress, bool may_free)
+        : begun_(begun),
+          options_(options),
+          progress_(progress),
+          all_(in_order_of_file(std::move(pieces))),
+          may_free_(may_free) {}
 
     Result<std::optional<ReadResult>> join() {
         if (!are_unread()) return std::optional<ReadResult>();
         if (all_.size() == 1 && all_.pieces[0].left_out.empty()) return take_one();
         if (auto found = find_uses_with_ghosts(); !found) return found.error();
         std::optional<ReadResult> result;
-        for (bool again = true; again && !needs_all_;) {
+        for (bool again = true; again && !needs_all_ && !freed_;) {
             again = false;
             auto tried = attempt(again);
             if (!tried) return tried.error();
@@ -63,7 +75,9 @@ public:
         return result;
     }
 
+    /// None where they were freed.
     std::vector<Piece> pieces() && {
+        if (freed_) return {};
         all_.arrange(all_.order_of_file());
         return std::move(all_.pieces);
     }
@@ -148,7 +162,9 @@ private:
         core::parallel_each(all_.size(), 1, [&](std::size_t p) {
             const Piece& piece = all_.pieces[p];
             if (piece.left_out.empty() || !piece.unread || failed) return;
-            ActivePass pass(piece, {}, {});
+            ActivePass::Target target;
+            target.points = piece.grid.points.tuples();
+            ActivePass pass(piece, {}, target);
             const auto add = [&](std::uint64_t first, const Array& corners) { pass.add(first, corners); };
             if (auto done = piece.unread->each_block(add); !done) return failed.add(p, done.error());
             if (!pass.finish()) needs_all_ = true; // what is broken is told when all cells are there
@@ -167,9 +183,13 @@ private:
         if (!joined) return joined.error();
         if (joined->numbers.count > ActivePass::max_points || has_twins(*joined)) needs_all_ = true;
         if (needs_all_) return std::optional<ReadResult>();
+        for (Piece& piece : all_.pieces)
+            if (may_free_ && all_.size() > 1) piece.point_ids = Array();
         if (auto enough = core::require_memory("joining the points of pieces", bytes_of_points()); !enough)
             return enough.error();
         const std::size_t notes = result.notes.size();
+        points_.clear();
+        for (const Piece& piece : all_.pieces) points_.push_back(piece.grid.points.tuples());
         if (auto done = join_points_of(*joined, result); !done) return done.error();
         std::vector<std::string> of_fields(result.notes.begin() + static_cast<std::ptrdiff_t>(notes),
                                            result.notes.end());
@@ -223,19 +243,23 @@ private:
         return bytes;
     }
 
-    Result<void> join_points_of(const JoinedNumbers& joined, ReadResult& result) const {
+    Result<void> join_points_of(const JoinedNumbers& joined, ReadResult& result) {
         if (all_.size() == 1) {
             result.grid.points = all_.pieces[0].grid.points;
             result.grid.point_fields = all_.pieces[0].grid.point_fields;
             return {};
         }
         std::vector<Piece> pieces = points_of(all_.pieces);
+        freed_ = may_free_;
+        if (freed_) free_points(all_.pieces); // those of `pieces` are freed as they are joined
         auto fields = join_point_fields(pieces, joined.numbers, joined.seams.joined, result, progress_);
         if (!fields) return fields.error();
         result.grid.point_fields = *std::move(fields);
         auto points = join_points(pieces, joined.numbers);
         if (!points) return points.error();
         result.grid.points = *std::move(points);
+        pieces.clear();
+        if (freed_) core::drop_kept_blocks(); // many small ones that nothing else fits into
         return {};
     }
 
@@ -279,6 +303,7 @@ private:
         for (std::size_t p = 0; p < all_.size(); ++p) {
             targets[p] = {&filter, typed_, first[p], static_cast<std::uint32_t>(p)};
             targets[p].place = std::exchange(place, place + all_.pieces[p].cell_count());
+            targets[p].points = points_[p];
         }
         return targets;
     }
@@ -313,8 +338,10 @@ private:
     const ReadOptions& options_;
     const Progress& progress_;
     OrderedPieces all_;
+    bool may_free_, freed_ = false; ///< points and fields of the pieces
     bool typed_ = false;           ///< not all cells are of one type
     std::optional<CellType> type_; ///< of all
+    std::vector<std::uint64_t> points_; ///< of each piece
     std::vector<PointUse> used_;   ///< of the joined points, where their bounds are asked for
     std::atomic<bool> needs_all_ = false;
 };
@@ -322,8 +349,8 @@ private:
 } // namespace
 
 Result<std::optional<ReadResult>> join_active(std::vector<Piece>& pieces, const ReadResult& begun,
-                                              const ReadOptions& options, const Progress& progress) {
-    ActiveJoin joining(pieces, begun, options, progress);
+                                              const ReadOptions& options, const Progress& progress, bool may_free) {
+    ActiveJoin joining(pieces, begun, options, progress, may_free);
     auto result = joining.join();
     pieces = std::move(joining).pieces();
     return result;

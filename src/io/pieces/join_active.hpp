@@ -19,8 +19,9 @@ namespace isotet::io {
 /// Cost         memory for the points of the pieces and of the grid, and for active cells; one pass over all cells, two
 ///              over those of pieces with ghost cells, and over all where some points are in no cell
 /// `begun`      what the result is to begin with; its notes come first
-/// Returns nothing, and leaves the pieces as they were, where all cells are needed
+/// `may_free`   points and fields of the pieces may be freed before the cells go by
+/// Returns nothing where all cells are needed, and leaves the pieces as they were; none where they were freed
 Result<std::optional<ReadResult>> join_active(std::vector<Piece>& pieces, const ReadResult& begun,
-                                              const ReadOptions& options, const Progress& progress);
+                                              const ReadOptions& options, const Progress& progress, bool may_free);
 
 } // namespace isotet::io

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/block.hpp"
 #include "base/errors.hpp"
 #include "base/parallel.hpp"
 #include "io/files/first_error.hpp"
@@ -134,6 +135,8 @@ Result<Loaded> load_file(const std::string& path, std::string_view type, const R
 
 Result<std::vector<Loaded>> load_files(std::span<const File> files, const ReadOptions& options,
                                        const Progress& progress) {
+    constexpr std::size_t many = 8, prepared = std::size_t{64} << 20;
+    if (files.size() >= many && files.front().depth == Depth::arrays) core::prepare_blocks(prepared);
     std::vector<Loaded> parts(files.size());
     FirstError failed;
     core::parallel_each(files.size(), 1, [&](std::size_t i) {

@@ -85,9 +85,7 @@ GridReader series_reader() {
         return loaded ? Result<FileInfo>(std::move(loaded->info)) : loaded.error();
     };
     reader.read = [](const std::string& path, const ReadOptions& options, const Progress& progress) {
-        auto loaded = load(path, options, Depth::arrays, progress);
-        if (!loaded) return Result<ReadResult>(loaded.error());
-        return join(std::move(*loaded), options, progress);
+        return load_and_join([&] { return load(path, options, Depth::arrays, progress); }, options, progress);
     };
     return reader;
 }

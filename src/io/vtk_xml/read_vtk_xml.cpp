@@ -53,9 +53,8 @@ GridReader reader() {
         return loaded ? Result<FileInfo>(std::move(loaded->info)) : loaded.error();
     };
     result.read = [](const std::string& path, const ReadOptions& options, const Progress& progress) {
-        auto loaded = load(kinds[number], path, options, Depth::arrays, progress);
-        if (!loaded) return Result<ReadResult>(loaded.error());
-        return join(std::move(*loaded), options, progress);
+        return load_and_join([&] { return load(kinds[number], path, options, Depth::arrays, progress); }, options,
+                             progress);
     };
     return result;
 }
