@@ -1,7 +1,8 @@
 # Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-"""A grid of `isotet make` as a PVTU of N x N x N boxes of cells, as parallel solvers write it, with global point numbers.
+"""A grid of `isotet make` as a PVTU of N x N x N boxes of cells, as parallel solvers write it, with global point numbers
+unless told otherwise.
 
-    python bench/scale/pieces.py GRID.vtu OUT.pvtu N FIELD
+    python bench/scale/pieces.py GRID.vtu OUT.pvtu N FIELD [no-ids]
 """
 import pathlib
 import sys
@@ -28,7 +29,7 @@ def write_piece(grid, path):
     writer.Write()
 
 
-def part_of(grid, cells, field):
+def part_of(grid, cells, field, ids):
     """The cells of a grid of one kind, with the points that they use, in their order."""
     corners = vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(grid.GetNumberOfCells(), -1)[cells]
     used, local = np.unique(corners, return_inverse=True)
@@ -40,24 +41,27 @@ def part_of(grid, cells, field):
     part = vtk.vtkUnstructuredGrid()
     part.SetPoints(points)
     part.SetCells(grid.GetCellType(0), connectivity)
-    for name, values in ((field, vtk_to_numpy(grid.GetPointData().GetArray(field))[used]), ("GlobalNodeId", used)):
+    arrays = [(field, vtk_to_numpy(grid.GetPointData().GetArray(field))[used])] + [("GlobalNodeId", used)] * ids
+    for name, values in arrays:
         array = numpy_to_vtk(values, deep=True)
         array.SetName(name)
         part.GetPointData().AddArray(array)
-    part.GetPointData().SetActiveGlobalIds("GlobalNodeId")
+    if ids:
+        part.GetPointData().SetActiveGlobalIds("GlobalNodeId")
     return part
 
 
-def index_of(names, grid, field):
+def index_of(names, grid, field, ids=True):
     """What a PVTU says of its pieces."""
     kinds = {vtk.VTK_FLOAT: "Float32", vtk.VTK_DOUBLE: "Float64"}
     point = kinds[grid.GetPoints().GetDataType()]
     values = kinds[grid.GetPointData().GetArray(field).GetDataType()]
     sources = "\n".join(f'<Piece Source="{name}"/>' for name in names)
+    announced = '<PDataArray type="Int64" Name="GlobalNodeId"/>' if ids else ""
     return f"""<?xml version="1.0"?>
 <VTKFile type="PUnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">
 <PUnstructuredGrid GhostLevel="0">
-<PPointData GlobalIds="GlobalNodeId"><PDataArray type="{values}" Name="{field}"/><PDataArray type="Int64" Name="GlobalNodeId"/></PPointData>
+<PPointData><PDataArray type="{values}" Name="{field}"/>{announced}</PPointData>
 <PPoints><PDataArray type="{point}" Name="Points" NumberOfComponents="3"/></PPoints>
 {sources}
 </PUnstructuredGrid>
@@ -65,7 +69,7 @@ def index_of(names, grid, field):
 """
 
 
-def cut(path, out, boxes, field):
+def cut(path, out, boxes, field, ids=True):
     """Writes OUT and a piece for each of `boxes`^3 boxes, beside it."""
     grid = read(path)
     points = vtk_to_numpy(grid.GetPoints().GetData())
@@ -78,9 +82,9 @@ def cut(path, out, boxes, field):
     out = pathlib.Path(out)
     names = [f"{out.stem}_{number}.vtu" for number in range(boxes**3)]
     for number, name in enumerate(names):
-        write_piece(part_of(grid, order[ends[number] : ends[number + 1]], field), out.parent / name)
-    out.write_text(index_of(names, grid, field))
+        write_piece(part_of(grid, order[ends[number] : ends[number + 1]], field, ids), out.parent / name)
+    out.write_text(index_of(names, grid, field, ids))
 
 
 if __name__ == "__main__":
-    cut(sys.argv[1], sys.argv[2], int(sys.argv[3]), sys.argv[4])
+    cut(sys.argv[1], sys.argv[2], int(sys.argv[3]), sys.argv[4], sys.argv[5:] != ["no-ids"])
