@@ -33,6 +33,17 @@ void add_memory(const Command& command, std::optional<std::uint64_t>& memory) {
               "Of a packed file, keep at most so much in memory, such as 2GB; default: half of what is free");
 }
 
+/// `what`   is made between two steps
+void add_interpolate(const Command& command, std::uint64_t& between, const std::string& what) {
+    constexpr std::uint64_t most = 10'000;
+    command
+        .add_count(
+            "--interpolate", {1, most}, [&](std::uint64_t n) { between = n; }, "N",
+            "N more " + what +
+                " between two steps of a packed file, of values (1-w)a+wb; points likewise where they move")
+        .needs(command.option("--all-steps"));
+}
+
 constexpr const char* program_details = R"(
 isotet FILE is short for isotet info FILE. FILE may be make:SHAPE:SIDE[:FIELDS] wherever a grid is read: a test grid
 made in memory, make:kuhn:64:gyroid for example.
@@ -330,7 +341,6 @@ void add_extract(const Command& program, ExtractCommand& extract) {
     add_surface_options(command, extract,
                         "Closed solids: the part of the grid where the field is at least the isovalue, below it, or "
                         "from A to B; cell field boundary: 1 on the grid's boundary, 0 on isosurfaces");
-    add_memory(command, extract.memory);
     add_common(command, extract.common);
     command.set_common({"--output", "--field", "--isovalue", "--all-steps", "--with", "--solid"});
     command.set_details(extract_details);
@@ -344,6 +354,7 @@ void add_render(const Command& program, RenderCommand& render) {
                                               "A picture of every time step, with one camera and one colour scale");
     for (const char* name : {"--time", "--step", "--sweep", "--orbit", "--reference"})
         all_steps.excludes(command.option(name));
+    add_interpolate(command, render.interpolate, "pictures");
     command.set_common({"--output", "--field", "--isovalue", "--color-by", "--view", "--all-steps"});
 }
 
@@ -381,6 +392,7 @@ void add_view(const Command& program, ViewCommand& view) {
         "was lost");
     command.add_flag("--no-browser", view.no_browser, "Open no browser: only print the address");
     add_refinement(command, view.refine);
+    add_memory(command, view.memory);
     add_time(command, view.grid);
     add_reading(command, view.grid, "--format");
     add_common(command, view.common);
@@ -492,13 +504,12 @@ void add_pack(const Command& program, PackCommand& pack) {
     command.add_flag("--cell-field", pack.cell_field,
                      "A name that is both a point and a cell field means the cell field");
     add_time(command, pack.grid);
-    command.add_flag("--all-steps", pack.all_steps, "All time steps; they must have the same cells and points")
+    command.add_flag("--all-steps", pack.all_steps, "All time steps; they must have the same cells")
         .excludes(command.option("--time"))
         .excludes(command.option("--step"));
     command.add_flag(
         "--append", pack.append,
-        "Add the time step, or all, to OUT, which has the same cells and points: with its fields, precision and "
-        "so on");
+        "Add the time step, or all, to OUT, which has the same cells: with its fields, precision and so on");
     command.add_flag("--source-cells", pack.source_cells,
                      "Keep the numbers of cells, for extract --source-cells: 4 bytes a tet, 8 another cell");
     command.add_flag("--gradients", pack.gradients,
@@ -898,6 +909,7 @@ void add_surface_options(const Command& command, ExtractJob& job, const std::str
         command.add_flag("--all-steps", job.all_steps, "Every time step; OUT then needs {step} or {time}")
             .excludes(command.option("--time"))
             .excludes(command.option("--step"));
+        add_interpolate(command, job.interpolate, "surfaces");
     }
     add_surface_arrays(command, job);
     add_refinement(command, job.refine, &job.refine_averaged);
@@ -915,6 +927,7 @@ void add_surface_options(const Command& command, ExtractJob& job, const std::str
     add_device(command, job.device);
     add_device_memory(command, job.device);
     add_reading(command, job.grid, "--format");
+    add_memory(command, job.memory);
 }
 
 void add_device_memory(const Command& command, DeviceChoice& choice) {

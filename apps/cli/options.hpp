@@ -68,6 +68,7 @@ struct ViewCommand {
     std::uint64_t port = 0;         ///< 0: a free one
     std::vector<std::string> hosts; ///< names beside localhost by which a browser reaches the page
     std::uint64_t pages = 4;        ///< that may be open at once
+    std::optional<std::uint64_t> memory; ///< of a packed file, as PackedFileOptions::memory; nothing: half of what is free
     bool keep = false;
     bool no_browser = false;
     std::string out;    ///< a folder where the page may save files; empty: none

@@ -52,6 +52,11 @@ std::string packed_table(const PackedFileInfo& info, const std::string& path) {
                                      ? grouped(info.steps)
                                      : fmt::format("{}, times {} to {}", info.steps, shortest(info.times.front()),
                                                    shortest(info.times.back()))});
+    for (const PackedPointsInfo& points : info.moved_points)
+        table.row({"points move",
+                   fmt::format("x {}, y {}, z {} from step {} on", rounded_range(points.lower[0], points.upper[0]),
+                               rounded_range(points.lower[1], points.upper[1]),
+                               rounded_range(points.lower[2], points.upper[2]), points.step)});
     for (const PackedFieldInfo& field : info.fields) {
         const FieldReport& report = field.report;
         std::string text = fmt::format("{}: {}, ", report.name, name_of(field.type));
@@ -87,6 +92,10 @@ Json packed_json(const PackedFileInfo& info, const std::string& path, const std:
     report["bounds"] = {{"lower", info.lower}, {"upper", info.upper}};
     report["steps"] = info.steps;
     report["times"] = info.times;
+    Json moved = Json::array();
+    for (const PackedPointsInfo& points : info.moved_points)
+        moved.push_back({{"step", points.step}, {"lower", points.lower}, {"upper", points.upper}});
+    report["moved_points"] = std::move(moved);
     Json fields = Json::array();
     for (const PackedFieldInfo& field : info.fields) {
         const bool none = field.report.lower > field.report.upper;

@@ -72,6 +72,13 @@ private:
     Result<void> reduce_triangles(Surface& surface, SurfaceNumbers& numbers);
     Result<void> write(Surface surface, SurfaceNumbers& numbers);
     OutputKey key(double isovalue, std::size_t step) const;
+    std::optional<double> time_at(std::size_t step) const;
+    double fraction() const {
+        return static_cast<double>(between_) / (static_cast<double>(job_.interpolate) + 1);
+    } ///< of the way to the next step
+    Result<PackedGrid> packed_grid(const std::string& field, std::size_t step) const;
+    bool is_packed_at(const std::string& field, std::size_t step) const;
+    Result<void> run_step(std::size_t step);
 
     ExtractJob job_; ///< with the field that was chosen where none is named
     Caller& caller_;
@@ -79,6 +86,7 @@ private:
     std::optional<PackedFile> packed_;      ///< where chunks of it are read in place of a grid
     std::vector<ComponentGroup> vectors_;   ///< that surfaces of it carry, by component
     std::vector<std::string> packed_names_; ///< of the fields that are read from it
+    std::uint64_t between_ = 0;             ///< surfaces behind the step at hand, of ExtractJob::interpolate
     ExtractPlan plan_;
     std::shared_ptr<const Engine> device_; ///< null: the CPU extracts
     std::optional<Contour> contour_;
@@ -344,16 +352,25 @@ Result<void> ExtractRun::prepare_and_look(std::size_t step) {
 
 /// Opens the grid as a packed file, where surfaces as the job asks for them come from its chunks.
 Result<void> ExtractRun::open_packed() {
-    if (!source_->is_packed_file()) return {};
+    const auto interpolates_unless = [&](bool refused, const char* why) -> Result<void> {
+        if (refused && job_.interpolate > 0) return refusal("`interpolate` is {}, but {}", job_.interpolate, why);
+        return {};
+    };
+    if (auto ok = interpolates_unless(!job_.all_steps, "it goes with `all_steps` only"); !ok) return ok;
+    if (!source_->is_packed_file())
+        return interpolates_unless(
+            true, "only packed files have values between steps: isotet pack IN OUT.isotet --all-steps");
     Result<PackedFile> file = PackedFile::open(job_.grid.file, {job_.memory.value_or(0)}, caller_.run());
     if (!file) return file.error();
     const PackedFileInfo& info = file->info();
-    const bool reworks_cells =
-        job_.piece || job_.solid || plan_.touched || job_.volumes || !job_.shares.empty() || job_.exact_vertices ||
-        job_.split_cells || job_.grid.merge_points || !job_.grid.displace.empty() || !job_.grid.cells.empty() ||
-        job_.method == Method::direct || job_.engine == EngineChoice::reference || job_.field.shape;
+    const bool reworks_cells = job_.piece || job_.solid || plan_.touched || job_.volumes || !job_.shares.empty() ||
+                               job_.exact_vertices || job_.split_cells || job_.grid.merge_points ||
+                               !job_.grid.displace.empty() || !job_.grid.cells.empty() ||
+                               job_.method == Method::direct || job_.engine == EngineChoice::reference;
+    const bool needs_gradients = job_.normals == Normals::gradient;
     const auto has_field = [&](const PackedFieldInfo& field) {
-        return field.report.name == plan_.field.name && (job_.normals != Normals::gradient || field.gradients);
+        if (job_.field.shape) return !needs_gradients;
+        return field.report.name == plan_.field.name && (!needs_gradients || field.gradients);
     };
     const auto is_packed = [&](const FoundField& component) {
         return std::ranges::any_of(info.fields, [&](const auto& field) { return field.report.name == component.name; });
@@ -363,8 +380,14 @@ Result<void> ExtractRun::open_packed() {
     if (reworks_cells || !has_all) {
         caller_.note(
             "all of the packed file is read and unpacked: what was asked for needs its cells, or is not packed");
-        return {};
+        return interpolates_unless(true, "what else was asked for needs all of the packed file, or is not packed");
     }
+    if (auto ok = interpolates_unless(needs_gradients, "between steps there are no gradients for `normals`"); !ok)
+        return ok;
+    if (auto ok = interpolates_unless(job_.field.shape && !info.moved_points.empty(),
+                                      "the points of the file move, and slices are those of a step");
+        !ok)
+        return ok;
     plan_.contour.precision = info.precision;
     plan_.contour.method.reset();
     packed_ = *std::move(file);
@@ -377,7 +400,7 @@ std::vector<ComponentGroup> ExtractRun::carried_of_packed(std::size_t step) {
     if (!plan_.out_holds_fields) return {};
     std::vector<std::string> names;
     for (const PackedFieldInfo& field : packed_->info().fields)
-        if (field.step == step) names.push_back(field.report.name);
+        if (field.step == step && is_packed_at(field.report.name, step)) names.push_back(field.report.name);
     std::vector<ComponentGroup> all = joined_fields(names);
     if (!plan_.carried) return all;
     const auto& wanted = plan_.carried->point;
@@ -407,32 +430,48 @@ Result<void> ExtractRun::join_vectors(Surface& surface) const {
     return {};
 }
 
+/// Whether a step has a field, and where surfaces are between steps, the next one.
+bool ExtractRun::is_packed_at(const std::string& field, std::size_t step) const {
+    const auto has = [&](std::size_t wanted) {
+        return std::ranges::any_of(packed_->info().fields, [&](const PackedFieldInfo& one) {
+            return one.step == wanted && one.report.name == field;
+        });
+    };
+    return has(step) && (between_ == 0 || has(step + 1));
+}
+
+Result<PackedGrid> ExtractRun::packed_grid(const std::string& field, std::size_t step) const {
+    return packed_->interpolated(field, step, fraction(), caller_.run());
+}
+
 /// Gives a step of a packed file to the session.
 Result<bool> ExtractRun::load_packed(std::size_t step) {
     const core::Stopwatch reading;
     const std::string& name = plan_.field.name;
     const auto& fields = packed_->info().fields;
-    const auto is_there = [&](const std::string& wanted) {
-        return std::ranges::any_of(
-            fields, [&](const PackedFieldInfo& field) { return field.step == step && field.report.name == wanted; });
-    };
-    if (!is_there(name)) return false;
-    Result<PackedGrid> grid = packed_->grid(name, step, caller_.run());
+    if (!job_.field.shape && !is_packed_at(name, step)) return false;
+    if (job_.field.shape) caller_.detail("looking where the points are");
+    Result<PackedGrid> grid =
+        job_.field.shape ? packed_->sliced(*job_.field.shape, step, caller_.run()) : packed_grid(name, step);
     if (!grid) return grid.error();
     ContourInput input;
     input.packed = *grid;
     vectors_.clear();
-    packed_names_ = {name};
+    packed_names_.clear();
+    if (!job_.field.shape) packed_names_ = {name};
     for (const ComponentGroup& carried : carried_of_packed(step)) {
         for (const std::string& part : carried.parts) {
             add_names(packed_names_, {part});
-            Result<PackedGrid> other = part == name ? grid : packed_->grid(part, step, caller_.run());
+            Result<PackedGrid> other = part == name && !job_.field.shape ? grid : packed_grid(part, step);
             if (!other) return other.error();
             input.packed_fields.push_back(*std::move(other));
         }
         if (carried.parts.size() > 1) vectors_.push_back(carried);
     }
-    for (const std::string& carried : plan_.carried ? plan_.carried->cell : std::vector<std::string>()) {
+    std::vector<std::string> cell_fields;
+    if (plan_.carried) cell_fields = plan_.carried->cell;
+    else if (job_.field.shape && plan_.out_holds_cell_fields) cell_fields = source_->names(Association::cell);
+    for (const std::string& carried : cell_fields) {
         Result<Field> field = packed_->cell_field(carried, step, caller_.run());
         if (field) input.cell_fields.push_back(*std::move(field));
         else if (field.error().code == ErrorCode::invalid_argument) not_carried_.insert(carried);
@@ -443,7 +482,8 @@ Result<bool> ExtractRun::load_packed(std::size_t step) {
     coarse_tets_ = 0;
     const auto info = std::ranges::find_if(
         fields, [&](const PackedFieldInfo& field) { return field.step == step && field.report.name == name; });
-    field_ = {name, Array(info->type, nullptr, 0, 1, nullptr), false, {}};
+    const ScalarType type = job_.field.shape ? ScalarType::float64 : info->type;
+    field_ = {name, Array(type, nullptr, 0, 1, nullptr), false, {}};
     if (Result<void> taken = set(std::move(input)); !taken) return taken.error();
     if (Result<void> ready = prepare_and_look(step); !ready) return ready.error();
     return true;
@@ -510,7 +550,15 @@ Result<void> ExtractRun::choose_values(std::size_t step) {
 }
 
 OutputKey ExtractRun::key(double isovalue, std::size_t step) const {
-    return {isovalue, time_of(source_->info(), step), step, std::max<std::size_t>(source_->info().times.size(), 1)};
+    const std::size_t each = job_.interpolate + 1, steps = std::max<std::size_t>(source_->info().times.size(), 1);
+    return {isovalue, time_at(step), step * each + between_, (steps - 1) * each + 1};
+}
+
+/// Of what is extracted: at the step, or between it and the next.
+std::optional<double> ExtractRun::time_at(std::size_t step) const {
+    const std::optional<double> time = time_of(source_->info(), step);
+    if (!time || between_ == 0) return time;
+    return (1 - fraction()) * *time + fraction() * source_->info().times[step + 1];
 }
 
 /// Isovalues that are all outside the range of the field were not meant.
@@ -552,7 +600,7 @@ Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> is
         numbers.extract_seconds = seconds;
         if (result->engine == "vulkan") numbers.device = result->work;
         numbers.isovalue = isovalues[i];
-        numbers.time = time_of(source_->info(), step);
+        numbers.time = time_at(step);
         numbers.report = result->surfaces[i].report;
         numbers.vertices = surface.vertex_count();
         numbers.triangles = surface.triangle_count();
@@ -584,7 +632,7 @@ Result<std::vector<Surface>> ExtractRun::extract_solid(double isovalue, std::siz
     numbers_.refinement = made->contour.refinement;
     SurfaceNumbers& numbers = numbers_.surfaces.emplace_back();
     numbers.isovalue = isovalue;
-    numbers.time = time_of(source_->info(), step);
+    numbers.time = time_at(step);
     numbers.report = made->contour.surfaces[0].report;
     numbers.extract_seconds = made->contour.extract_seconds;
     numbers.vertices = made->surface.vertex_count();
@@ -741,7 +789,7 @@ Result<void> ExtractRun::extract_step(std::size_t step) {
     Surface surface = joined.size() == 1 ? joined.front() : join(joined, isovalues_);
     if (plan_.steps.size() == 1 || !is_animated(plan_.names))
         return write(std::move(surface), numbers_.surfaces.back());
-    const double time = time_of(source_->info(), step).value_or(static_cast<double>(step));
+    const double time = time_at(step).value_or(static_cast<double>(step) + fraction());
     surface.cell_fields.push_back(
         {std::string(animation_field), Array::own(std::vector<double>(surface.triangle_count(), time))});
     animated_.push_back(std::move(surface));
@@ -757,18 +805,27 @@ void ExtractRun::note_what_steps_miss() {
                                  not_carried_.size() == 1 ? "it" : "them"));
 }
 
-Result<void> ExtractRun::run() {
-    if (Result<void> opened = open(); !opened) return opened;
-    for (const std::size_t step : plan_.steps) {
+/// A step, and what is wanted between it and the next.
+Result<void> ExtractRun::run_step(std::size_t step) {
+    const std::uint64_t last = step == plan_.steps.back() ? 0 : job_.interpolate;
+    for (between_ = 0; between_ <= last; ++between_) {
         if (caller_.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
         const Result<bool> loaded = packed_ ? load_packed(step) : load(step);
         if (!loaded) return loaded.error();
         if (!*loaded) {
-            skipped_.push_back(step);
-            continue;
+            if (between_ == 0) skipped_.push_back(step);
+            break;
         }
         if (Result<void> extracted = extract_step(step); !extracted) return extracted;
     }
+    between_ = 0;
+    return {};
+}
+
+Result<void> ExtractRun::run() {
+    if (Result<void> opened = open(); !opened) return opened;
+    for (const std::size_t step : plan_.steps)
+        if (Result<void> done = run_step(step); !done) return done;
     if (skipped_.size() == plan_.steps.size()) return source_->no_such_field(plan_.field.name);
     note_what_steps_miss();
     if (!animated_.empty())

@@ -51,6 +51,7 @@ private:
     std::vector<std::string> packed_names(const std::string& name) const;
     Result<void> pack_step(std::size_t step);
     Result<PackedGrid> packed_with(const Grid& grid, PointField field, std::size_t step);
+    Result<std::optional<PackedGrid>> packed_as_in_file(const Grid& grid, const PointField& field, std::size_t step);
     Result<void> write(const PackedGrid& packed, std::size_t step, bool first_field);
     FieldChoice choice(const std::string& name) const { return {name, job_.cell_field, false, {}}; }
 
@@ -245,13 +246,17 @@ Result<PackedGrid> PackRun::packed_with(const Grid& grid, PointField field, std:
     } else {
         const Result<ContourUpdate> update = contour_->set(std::move(input), caller_.run());
         if (!update) return update.error();
-        if (*update > ContourUpdate::field)
-            return Error{ErrorCode::invalid_data,
-                         fmt::format("step {} has other {} than step {}, but a packed file has one grid for all steps: "
-                                     "pack it into a file of its own",
-                                     step, *update == ContourUpdate::points ? "points" : "cells", steps_.front())};
+        if (*update > ContourUpdate::points)
+            return Error{
+                ErrorCode::invalid_data,
+                fmt::format("step {} has other cells than step {}, but a packed file has one grid for all steps: "
+                            "pack it into a file of its own",
+                            step, steps_.front())};
     }
-    if (auto ready = contour_->prepare(caller_.run()); !ready) return ready.error();
+    if (auto ready = contour_->prepare(caller_.run()); !ready) {
+        if (step == steps_.front() || ready.error().code != ErrorCode::invalid_data) return ready.error();
+        return Error{ErrorCode::invalid_data, fmt::format("step {}: {}", step, ready.error().message)};
+    }
     const std::optional<PackedGrid> packed = contour_->packed();
     if (!packed) return Error{ErrorCode::internal, "the session packed nothing"};
     return *packed;
@@ -278,6 +283,26 @@ Result<double> round_values(PointField& field, int bits, const Run& run) {
     });
     field.values = Array::own(std::move(rounded));
     return change;
+}
+
+/// The grid of a step that is added, packed with the first points of the file, and moved then: other points would be packed in
+/// another order. Nothing where the file has another number of points.
+Result<std::optional<PackedGrid>> PackRun::packed_as_in_file(const Grid& grid, const PointField& field,
+                                                             std::size_t step) {
+    const Result<PackedFile> file = PackedFile::open(job_.out, {}, caller_.run());
+    if (!file) return file.error();
+    const Result<PackedGrid> first = file->grid(file->info().fields.front().report.name, 0, caller_.run());
+    if (!first) return first.error();
+    Result<UnpackedSample> sample = unpack_sample(*first, 1, caller_.run());
+    if (!sample) return sample.error();
+    if (sample->grid.points.tuples() != grid.points.tuples()) return std::optional<PackedGrid>();
+    Grid still = grid;
+    still.points = std::move(sample->grid.points);
+    contour_.reset();
+    if (auto packed = packed_with(still, field, step); !packed) return packed.error();
+    Result<PackedGrid> moved = packed_with(grid, field, step);
+    if (!moved) return moved.error();
+    return std::optional(*std::move(moved));
 }
 
 Result<void> PackRun::write(const PackedGrid& packed, std::size_t step, bool first_field) {
@@ -341,10 +366,17 @@ Result<void> PackRun::pack_step(std::size_t step) {
             double& largest = numbers_.rounded_by[static_cast<std::size_t>(&name - names_.data())];
             largest = std::max(largest, *change);
         }
-        const Result<PackedGrid> packed = packed_with(*grid, *std::move(field), step);
+        Result<PackedGrid> packed = packed_with(*grid, *field, step);
         if (!packed) return packed.error();
         numbers_.pack_seconds += packing.seconds();
-        if (auto written = write(*packed, step, &name == &names_.front()); !written) return written;
+        const bool is_first = &name == &names_.front(), may_have_moved = job_.append && !writer_;
+        Result<void> written = write(*packed, step, is_first);
+        if (!written && may_have_moved && written.error().code == ErrorCode::invalid_argument) {
+            auto again = packed_as_in_file(*grid, *field, step);
+            if (again && *again) packed = **std::move(again);
+            if (again) written = write(*packed, step, is_first);
+        }
+        if (!written) return written;
         numbers_.fields.push_back(packed->field());
         numbers_.pack = packed->report();
     }

@@ -106,7 +106,23 @@ Result<PictureSource> PictureSource::open(const DrawJob& job, Caller& caller) {
     }
     if (auto chosen = source.choose_steps_and_view(caller); !chosen) return chosen.error();
     if (auto kept = source.keep_steps_with_fields(caller); !kept) return kept.error();
+    if (auto checked = source.check_interpolation(); !checked) return checked.error();
     return source;
+}
+
+Result<void> PictureSource::check_interpolation() const {
+    if (job_.interpolate == 0) return {};
+    if (!job_.all_steps) return refusal("`interpolate` is {}, but it goes with `all_steps` only", job_.interpolate);
+    if (!packed_)
+        return refusal(
+            "`interpolate` is {}, but only packed files have values between steps (isotet pack IN OUT.isotet "
+            "--all-steps), and pictures of their boundary and isosurfaces",
+            job_.interpolate);
+    for (std::size_t i = 1; i < steps_.size(); ++i)
+        if (steps_[i] != steps_[i - 1] + 1)
+            return refusal("`interpolate` is {}, but step {} lacks a field that is drawn", job_.interpolate,
+                           steps_[i - 1] + 1);
+    return {};
 }
 
 /// Whether isosurfaces are drawn, as far as options say: else the boundary or slices.
@@ -398,7 +414,9 @@ bool PictureSource::has_cell_field(const FoundField& colored, std::size_t step) 
 Result<void> PictureSource::take_packed(const FoundField& contoured, const FoundField& colored, std::size_t step,
                                         Contents& contents, Caller& caller) {
     const PackedFileInfo& info = packed_->info();
-    const auto grid_of = [&](const std::string& name) { return packed_->grid(name, step, caller.run()); };
+    const auto grid_of = [&](const std::string& name) {
+        return packed_->interpolated(name, step, fraction_, caller.run());
+    };
     const bool contours = !contoured.name.empty();
     const auto first = std::ranges::find(info.fields, step, &PackedFieldInfo::step);
     Result<PackedGrid> grid = grid_of(contours                ? contoured.name
@@ -408,6 +426,8 @@ Result<void> PictureSource::take_packed(const FoundField& contoured, const Found
     contents.packed = PackedScene{*grid, {}, contours};
     contents.cells = info.user_cells;
     contents.bounds = {info.lower, info.upper};
+    for (const PackedPointsInfo& points : info.moved_points)
+        if (points.step <= step) contents.bounds = {points.lower, points.upper};
     if (contours) {
         contents.field = PointField{contoured.name, {}, false, {}};
         if (job_.isovalues.empty()) {
@@ -462,6 +482,9 @@ Result<PictureSource::Contents> PictureSource::read_contents(std::size_t step, b
     if (source_->info().format == "isotet" && !std::exchange(told_of_cells_, true))
         caller.note(
             "all of the packed file is read and unpacked: what was asked for needs its cells, or is not packed");
+    if (fraction_ > 0)
+        return refusal("`interpolate` is {}, but what is drawn needs all of the packed file, or is not packed",
+                       job_.interpolate);
     const bool some_may_do = contours && on_cpu && !colored.neighbours; // else colours follow from all cells around
     const auto active = some_may_do ? active_cells(contents, contoured, read) : std::nullopt;
     if (auto done = read_cells(read, step, active, contents, caller); !done) return done.error();
@@ -550,17 +573,25 @@ Result<DrawInput> PictureSource::read(std::size_t which, const std::optional<Dev
     if (surface_) return take_surface(device, caller);
     DrawInput input;
     const core::Stopwatch reading;
-    const std::size_t step = steps_[which];
+    const std::size_t each = static_cast<std::size_t>(job_.interpolate) + 1, step = steps_[which / each];
+    fraction_ = static_cast<double>(which % each) / static_cast<double>(each);
     Result<Contents> contents = read_contents(step, !device, caller);
     if (!contents) return contents.error();
     input.read_seconds = reading.seconds();
     if (auto found = find_sweep(*contents, caller); !found) return found.error();
     input.sweep = job_.sweep;
-    const bool is_last = which + 1 == steps_.size();
+    const bool is_last = which + 1 == steps();
     if (!is_last && caller.run().threads != 1 && !contents->all_cells && !contents->packed)
         read_ahead(steps_[which + 1], caller);
+    if (!is_last && contents->packed && fraction_ == 0) {
+        const std::size_t next = steps_[which / each + 1];
+        for (const std::string& name : {job_.field.name, job_.color_by, job_.boundary_color_by})
+            if (!name.empty()) packed_->read_ahead(name, next);
+    }
     input.format = source_->info().format;
     input.time = time_of(source_->info(), step);
+    if (input.time && fraction_ > 0)
+        input.time = (1 - fraction_) * *input.time + fraction_ * source_->info().times[step + 1];
     if (source_->info().times.size() > 1) input.step = step;
     input.cells = contents->cells;
     input.colors = contents->volume ? contents->volume_colors : contents->colors;

@@ -21,7 +21,10 @@ public:
     /// Errors   as of reading; invalid_argument where options are for grids, but the file is a surface
     static Result<PictureSource> open(const DrawJob& job, Caller& caller);
 
-    std::size_t steps() const noexcept { return steps_.empty() ? 1 : steps_.size(); }
+    /// With what is drawn between them.
+    std::size_t steps() const noexcept {
+        return steps_.empty() ? 1 : (steps_.size() - 1) * (static_cast<std::size_t>(job_.interpolate) + 1) + 1;
+    }
 
     /// Reads a step, chooses field and isovalues, and starts the scene. All steps have the isovalues and the colour scale
     /// of the first that is read, whose range is that of all of them.
@@ -55,6 +58,7 @@ private:
     bool is_packed(std::size_t step, const FoundField& contoured, const FoundField& colored) const;
     Result<void> take_packed(const FoundField& contoured, const FoundField& colored, std::size_t step,
                              Contents& contents, Caller& caller);
+    Result<void> check_interpolation() const;
     Result<Grid> read_for(const FoundField& field, std::size_t step, Caller& caller);
     Result<ColorField> colors_at(std::size_t step, const std::string& name, Caller& caller);
     Result<PointField> field_at(std::size_t step, const std::string& name, Caller& caller);
@@ -75,6 +79,7 @@ private:
     std::optional<PackedFile> packed_; ///< that is drawn without its grid
     bool told_of_cells_ = false;       ///< that all of a packed file is needed
     std::vector<std::size_t> steps_;
+    double fraction_ = 0; ///< of the way to the next step
     FirstView first_; ///< where no field is named
     std::optional<OpacityCurve> volume_opacity_; ///< of the first step
 

@@ -11,6 +11,7 @@
 
 #include <isotet/jobs/draw_files.hpp>
 #include <isotet/jobs/extract_files.hpp>
+#include <isotet/jobs/slice_files.hpp>
 #include <isotet/make.hpp>
 #include <isotet/memory.hpp>
 #include <isotet/packed_file.hpp>
@@ -157,6 +158,161 @@ TEST(PackFile, SeveralFilesAreTimeSteps) {
     draw.picture.width = draw.picture.height = 64;
     draw.all_steps = true;
     EXPECT_EQ(draw_files(draw, listener).value().pictures.pictures, 2U);
+}
+
+/// Files of the same cells, whose values change, and whose points move; the last of them.
+std::vector<std::string> moving_files(const test::TemporaryFolder& folder) {
+    std::vector<std::string> files;
+    for (const float factor : {1.0F, 1.0F, 1.25F}) {
+        Grid grid = make_grid({.shape = "mixed", .side = 6, .fields = {"gyroid", "sphere"}}).value();
+        std::vector<float> points(grid.points.as<float>().begin(), grid.points.as<float>().end());
+        for (float& x : points) x *= factor;
+        std::vector<float> values(grid.point_fields[0].values.as<float>().begin(),
+                                  grid.point_fields[0].values.as<float>().end());
+        for (float& value : values) value += 0.125F * static_cast<float>(files.size());
+        grid.points = Array::own(std::move(points), 3);
+        grid.point_fields[0].values = Array::own(std::move(values));
+        files.push_back(folder.file("step" + std::to_string(files.size()) + ".vtu"));
+        write_grid(grid, files.back()).value();
+    }
+    return files;
+}
+
+TEST(PackFile, KeepsPointsThatMove) {
+    const test::TemporaryFolder folder;
+    const std::vector<std::string> files = moving_files(folder);
+    Listener listener;
+    PackJob together;
+    together.grid.file = files[0];
+    together.grid.more_files = {files[1], files[2]};
+    together.all_steps = true;
+    together.out = folder.file("together.isotet");
+    EXPECT_EQ(pack_file(together, listener).value().steps, 3U);
+    for (const std::string& file : files) {
+        PackJob one;
+        one.grid.file = file;
+        one.append = file != files[0];
+        one.out = folder.file("added.isotet");
+        pack_file(one, listener).value();
+    }
+    for (const std::string out : {"together.isotet", "added.isotet"}) {
+        const PackedFile file = PackedFile::open(folder.file(out)).value();
+        file.check().value();
+        ASSERT_EQ(file.info().moved_points.size(), 1U) << out;
+        EXPECT_EQ(file.info().moved_points[0].step, 2U) << out;
+        for (std::size_t step = 0; step < files.size(); ++step) {
+            ExtractJob plain;
+            plain.grid.file = files[step];
+            plain.field.name = "gyroid";
+            plain.isovalues = {0.1};
+            plain.method = Method::clusters;
+            plain.out = folder.file("a.vtp");
+            ExtractJob packed_job = plain;
+            packed_job.grid.file = folder.file(out);
+            packed_job.grid.step = step;
+            packed_job.method.reset();
+            packed_job.out = folder.file("b.vtp");
+            extract_files(plain, listener).value();
+            extract_files(packed_job, listener).value();
+            EXPECT_TRUE(test::content_of(plain.out) == test::content_of(packed_job.out)) << out << ", step " << step;
+        }
+    }
+}
+
+TEST(PackFile, RefusesToAddOtherCells) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    PackJob job;
+    job.grid.file = "make:kuhn:4:gyroid";
+    job.out = folder.file("grid.isotet");
+    pack_file(job, listener).value();
+    const std::string before = test::content_of(job.out);
+    job.grid.file = "make:kuhn:5:gyroid";
+    job.append = true;
+    EXPECT_EQ(pack_file(job, listener).error().code, ErrorCode::invalid_argument);
+    EXPECT_TRUE(test::content_of(job.out) == before);
+}
+
+/// Surfaces of a packed file with so many between two steps.
+ExtractJob job_between(const std::string& file, const std::string& out, std::uint64_t between) {
+    ExtractJob job;
+    job.grid.file = file;
+    job.field.name = "gyroid";
+    job.isovalues = {0.1};
+    job.all_steps = true;
+    job.interpolate = between;
+    job.out = out;
+    return job;
+}
+
+TEST(PackFile, GivesSurfacesBetweenSteps) {
+    const test::TemporaryFolder folder;
+    const std::vector<std::string> files = moving_files(folder);
+    Listener listener;
+    PackJob pack;
+    pack.grid.file = files[0];
+    pack.grid.more_files = {files[1], files[2]};
+    pack.all_steps = true;
+    pack.out = folder.file("run.isotet");
+    pack_file(pack, listener).value();
+    const ExtractNumbers numbers =
+        extract_files(job_between(pack.out, folder.file("s{step}.vtp"), 3), listener).value();
+    ASSERT_EQ(numbers.surfaces.size(), 9U);
+    const ExtractNumbers steps = extract_files(job_between(pack.out, folder.file("t{step}.vtp"), 0), listener).value();
+    ASSERT_EQ(steps.surfaces.size(), 3U);
+    for (const std::size_t step : {0U, 1U, 2U})
+        EXPECT_TRUE(test::content_of(numbers.surfaces[4 * step].file) == test::content_of(steps.surfaces[step].file));
+    EXPECT_TRUE(numbers.surfaces[1].file.ends_with("s1.vtp"));
+    EXPECT_TRUE(numbers.surfaces[8].file.ends_with("s8.vtp"));
+    for (std::size_t i = 1; i < 4; ++i) EXPECT_GT(numbers.surfaces[4 + i].area, numbers.surfaces[3 + i].area);
+
+    DrawJob draw;
+    draw.grid.file = pack.out;
+    draw.field.name = "gyroid";
+    draw.isovalues = {0.1};
+    draw.out = folder.file("p-{frame}.png");
+    draw.picture.width = draw.picture.height = 64;
+    draw.all_steps = true;
+    draw.interpolate = 1;
+    EXPECT_EQ(draw_files(draw, listener).value().pictures.pictures, 5U);
+
+    ExtractJob refused = job_between(files[0], folder.file("u{step}.vtp"), 1);
+    EXPECT_EQ(extract_files(refused, listener).error().code, ErrorCode::invalid_argument) << "no packed file";
+    refused = job_between(pack.out, folder.file("u{step}.vtp"), 1);
+    refused.normals = Normals::gradient;
+    EXPECT_EQ(extract_files(refused, listener).error().code, ErrorCode::invalid_argument) << "no gradients";
+    draw.solid = SolidSide::above;
+    EXPECT_EQ(draw_files(draw, listener).error().code, ErrorCode::invalid_argument);
+}
+
+TEST(PackFile, IsSlicedWithoutItsGrid) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    const std::string grid = grid_with_all_kinds(folder), path = packed(grid, folder, listener, {"region"});
+    SliceJob job;
+    job.grid.file = path;
+    job.shape = Plane{{0, 0, 1}, 0.3};
+    job.out = folder.file("cut.vtp");
+    job.memory = 50'000;
+    listener.noted.clear();
+    const ExtractNumbers numbers = slice_files(job, listener).value();
+    for (const std::string& note : listener.noted) EXPECT_EQ(note.find("all of the packed file"), note.npos) << note;
+    EXPECT_EQ(numbers.why, "the file is packed");
+    const Surface surface = read_surface(job.out).value().surface;
+    EXPECT_NEAR(area(surface), 4, 1e-5);
+    ASSERT_EQ(surface.point_fields.size(), 2U);
+    EXPECT_EQ(surface.point_fields[1].name, "U");
+    ASSERT_EQ(surface.cell_fields.size(), 1U);
+    EXPECT_EQ(surface.cell_fields[0].name, "region");
+    SliceJob whole = job;
+    whole.grid.file = grid;
+    whole.method = Method::clusters;
+    whole.with = {"U", "region"};
+    job.with = whole.with;
+    whole.out = folder.file("whole.vtp");
+    slice_files(job, listener).value();
+    slice_files(whole, listener).value();
+    EXPECT_TRUE(test::content_of(job.out) == test::content_of(whole.out));
 }
 
 TEST(PackFile, SurfacesCarryCellFieldsAsThoseOfTheGrid) {

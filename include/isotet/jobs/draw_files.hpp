@@ -64,6 +64,7 @@ struct DrawJob {
     ShadeBy shade_by = ShadeBy::vertices;
     std::string boundary_color_by; ///< a field; empty: none
     bool all_steps = false;
+    std::uint64_t interpolate = 0; ///< pictures between two steps of a packed file: PackedFile::interpolated()
     bool outline = false;                    ///< the box around
     bool volume = false;                     ///< the field as a volume; isosurfaces only where isovalues are given
     std::optional<OpacityText> volume_opacity; ///< nothing: a ramp, and with `dirac` none

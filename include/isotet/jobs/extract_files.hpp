@@ -46,6 +46,7 @@ struct ColorChoice {
 struct ExtractJob {
     GridOptions grid;
     bool all_steps = false;
+    std::uint64_t interpolate = 0; ///< surfaces between two steps of a packed file, with `all_steps`: PackedFile::interpolated()
     std::string out;                        ///< with {value}, {time} and {step}; empty: only numbers
     std::vector<std::string> other_outputs; ///< of the caller: no surface may overwrite them
     FieldChoice field;

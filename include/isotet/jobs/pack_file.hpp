@@ -17,8 +17,8 @@ namespace isotet::jobs {
 struct PackJob {
     GridOptions grid;
     bool all_steps = false;
-    bool append = false; ///< OUT is there, with the same cells and points: steps are added, as PackedWriter::append(). Fields,
-                         ///< precision, source cells and gradients are those of the file
+    bool append = false; ///< OUT is there, with the same cells: steps are added, as PackedWriter::append(), also where points
+                         ///< have moved. Fields, precision, source cells and gradients are those of the file
     std::string out;                        ///< .isotet
     std::vector<std::string> other_outputs; ///< of the caller: OUT may not be one
     std::vector<std::string> fields; ///< as choose_field_names(); empty: all point fields of one or three components, or if
@@ -58,7 +58,7 @@ struct PackNumbers {
 ///
 /// Guarantees   the same file for any limit of memory
 /// Errors   invalid_argument: a field or step is not there, source cells are asked for of cells that are made linear;
-///          invalid_data: a step has other cells or points than the first; as of reading, Contour and save_packed();
+///          invalid_data: a step has other cells than the first, or its points turn a cell over; as of reading, Contour and save_packed();
 ///          out_of_memory: `memory` is below the least; cannot_write: the scratch folder has no room
 Result<PackNumbers> pack_file(const PackJob& job, Caller& caller);
 
