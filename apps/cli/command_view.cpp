@@ -96,9 +96,9 @@ public:
         file.reading = reading_options(command_.grid, command_.refine);
         file.read = [this](const Run& run) -> Result<view::ViewerInput> {
             if (error_) return *error_;
-            const ViewStart start{command_.grid,   command_.field,        command_.isovalues,
-                                  command_.shares, command_.color_by,     FirstCells::some,
-                                  false,           command_.decimal_comma};
+            const ViewStart start{command_.grid,   command_.field,         command_.isovalues,
+                                  command_.shares, command_.color_by,      FirstCells::some,
+                                  false,           command_.decimal_comma, command_.memory};
             return read_view_input(start, *source_, console_, run);
         };
         file.read_step = [this](std::size_t step, const Run& run) -> Result<Grid> {

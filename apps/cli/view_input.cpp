@@ -94,7 +94,7 @@ Result<view::ViewerInput> read_view_input(const ViewStart& start, GridSource& so
     const Grid& grid = read->grid;
     view::ViewerInput input;
     if (read->cells_in_file) {
-        Result<PackedFile> file = PackedFile::open(start.grid.file, {}, run);
+        Result<PackedFile> file = PackedFile::open(start.grid.file, {start.memory.value_or(0)}, run);
         if (!file) return file.error();
         input.packed = *std::move(file);
         input.cells = *read->cells_in_file;

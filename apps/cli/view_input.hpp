@@ -34,6 +34,7 @@ struct ViewStart {
     FirstCells cells = FirstCells::all;
     bool isosurfaces_always = true; ///< else the boundary may stand alone
     std::optional<double> decimal_comma = {}; ///< what two isovalues mean if their comma is a decimal sign
+    std::optional<std::uint64_t> memory = {}; ///< of a packed file
 };
 
 /// Names that are no field's, before anything is read. Errors   as choose_field()

@@ -91,7 +91,7 @@ Result<Surface> GridView::surface_of_pick(const PickMessage& message, const Run&
     if (message.boundary) return boundary_of_pick(run);
     const Plane* plane = message.slice ? &message.state.slices[*message.slice] : nullptr;
     if (message.state.solid && !plane) return solid_of_pick(message, run);
-    if (packed && plane) return lean_->slice(grid_.points, *plane, with_all, run);
+    if (packed && plane) return lean_->slice(grid_.points, *plane, step_, with_all, run);
     Result<PointField> field = plane ? slice_field(grid_.points, *plane, run) : field_of(message.state.field, run);
     if (!field) return field.error();
     const double isovalue = plane ? plane->offset : message.state.isovalues.front();

@@ -236,7 +236,8 @@ Result<void> GridView::show_grid(std::optional<std::uint64_t> wanted, const std:
         grid = options_.only_cells(*std::move(grid), chosen);
         if (!grid) return grid.error();
     }
-    const bool all_same = is_of_file() && chosen.empty() && cells_.empty();
+    const bool all_same = is_of_file() && chosen.empty() && cells_.empty() &&
+                          same_points(options_.packed->info(), step_, wanted.value_or(step_));
     const bool same = all_same || same_cells(*grid, grid_);
     {
         const std::lock_guard lock(grid_mutex_);
@@ -322,10 +323,11 @@ Result<void> GridView::find_boundary(const Run& run) {
     std::unique_lock lock(grid_mutex_);
     const Grid grid = grid_;
     const std::uint64_t number = grid_number_;
+    const std::size_t step = step_;
     const bool all = !all_cells_;
     lock.unlock();
     Result<Surface> boundary =
-        is_of_file() && all ? PackedSource(*options_.packed).boundary(run) : drawn_boundary(grid, run);
+        is_of_file() && all ? PackedSource(*options_.packed).boundary(step, run) : drawn_boundary(grid, run);
     if (!boundary) return boundary.error();
     Result<Mesh> mesh = mesh_of(*boundary, nullptr, run);
     if (!mesh) return mesh.error();

@@ -221,7 +221,7 @@ Result<std::shared_ptr<const Mesh>> GridView::slice_at(const ViewState& state, c
         if (uses_packed() && lean_) {
             const Result<ExtractOptions> options = carried_fields(state.color_by, run);
             if (!options) return options.error();
-            return lean_->slice(grid_.points, plane, *options, run);
+            return lean_->slice(grid_.points, plane, step_, *options, run);
         }
         const std::optional<ColorField> colors = scale ? color_field(state, *scale, run) : std::nullopt;
         return slice_of(grid_, plane, colors ? &*colors : nullptr, run);

@@ -10,24 +10,39 @@
 
 namespace isotet::view {
 
+bool same_points(const PackedFileInfo& file, std::size_t one, std::size_t other) {
+    const auto [first, last] = std::minmax(one, other);
+    return std::ranges::none_of(
+        file.moved_points, [&](const PackedPointsInfo& points) { return points.step > first && points.step <= last; });
+}
+
+bool PackedSource::has(const std::string& field, std::size_t step) const {
+    return file_ && std::ranges::any_of(file_->info().fields, [&](const PackedFieldInfo& one) {
+               return one.step == step && one.report.name == field;
+           });
+}
+
 /// All arrays in memory, of any field.
-Result<PackedGrid> PackedSource::whole(const Run& run) {
+Result<PackedGrid> PackedSource::whole(std::size_t step, const Run& run) {
     if (!file_) return *packed_;
-    if (!whole_) {
-        Result<PackedGrid> loaded = file_->load(file_->info().fields.front().report.name, 0, run);
+    if (!whole_ || !same_points(file_->info(), step, whole_step_)) {
+        whole_.reset();
+        const auto& fields = file_->info().fields;
+        const auto any = std::ranges::find(fields, step, &PackedFieldInfo::step);
+        Result<PackedGrid> loaded = file_->load(any == fields.end() ? std::string() : any->report.name, step, run);
         if (!loaded) return loaded;
         whole_ = *std::move(loaded);
+        whole_step_ = step;
     }
     return *whole_;
 }
 
 Result<PackedGrid> PackedSource::grid_of(const PointField& field, std::size_t step, const Run& run) {
     if (packed_ && field.name == field_.name && field.values.data() == field_.values.data()) return *packed_;
-    const auto is_it = [&](const PackedFieldInfo& one) { return one.step == step && one.report.name == field.name; };
     Result<PackedGrid> changed = Error{};
-    if (file_ && std::ranges::any_of(file_->info().fields, is_it)) changed = file_->grid(field.name, step, run);
+    if (has(field.name, step)) changed = file_->grid(field.name, step, run);
     else {
-        const Result<PackedGrid> all = whole(run);
+        const Result<PackedGrid> all = whole(step, run);
         if (!all) return all;
         changed = all->with_field(field, run);
     }
@@ -37,31 +52,68 @@ Result<PackedGrid> PackedSource::grid_of(const PointField& field, std::size_t st
     return changed;
 }
 
+/// Fields of the file in place of the arrays of all its points, which would bring all of it in.
+Result<ExtractOptions> PackedSource::with_packed_fields(ExtractOptions options, std::size_t step,
+                                                        const Run& run) const {
+    std::vector<Field> others;
+    for (Field& field : options.point_fields) {
+        if (!has(field.name, step)) {
+            others.push_back(std::move(field));
+            continue;
+        }
+        Result<PackedGrid> packed = file_->grid(field.name, step, run);
+        if (!packed) return packed.error();
+        options.packed_fields.push_back(*std::move(packed));
+    }
+    options.point_fields = std::move(others);
+    return options;
+}
+
 Result<Surface> PackedSource::isosurface(const PointField& field, std::size_t step, double isovalue,
                                          const ExtractOptions& options, const Run& run) {
     const Result<PackedGrid> packed = grid_of(field, step, run);
     if (!packed) return packed.error();
-    Result<Extraction> extracted = extract(*packed, isovalue, options, run);
+    const bool of_file = has(field.name, step);
+    const auto carried = of_file ? with_packed_fields(options, step, run) : Result<ExtractOptions>(options);
+    if (!carried) return carried.error();
+    Result<Extraction> extracted = extract(*packed, isovalue, *carried, run);
     if (!extracted) return extracted.error();
     return std::move(extracted->surface);
 }
 
-Result<Surface> PackedSource::boundary(const Run& run) {
+Result<Surface> PackedSource::boundary(std::size_t step, const Run& run) {
     if (!file_) return boundary_of(*packed_, run);
-    const Result<PackedGrid> grid = file_->grid(file_->info().fields.front().report.name, 0, run);
+    const auto& fields = file_->info().fields;
+    const auto any = std::ranges::find(fields, step, &PackedFieldInfo::step);
+    const Result<PackedGrid> grid = file_->grid(any == fields.end() ? std::string() : any->report.name, step, run);
     if (!grid) return grid.error();
     return boundary_of(*grid, run);
 }
 
-Result<Surface> PackedSource::slice(const Array& points, const Plane& plane, const ExtractOptions& options,
-                                    const Run& run) {
-    const Result<PointField> field = slice_field(points, plane, run);
-    if (!field) return field.error();
-    const Result<PackedGrid> all = whole(run);
-    if (!all) return all.error();
-    const Result<PackedGrid> heights = all->with_field(*field, run);
+Result<Surface> PackedSource::slice(const Array& points, const Plane& plane, std::size_t step,
+                                    const ExtractOptions& options, const Run& run) {
+    Result<PackedGrid> heights = Error{};
+    Result<ExtractOptions> carried = options;
+    if (file_) {
+        const bool is_known =
+            sliced_ && plane_.normal == plane.normal && same_points(file_->info(), step, sliced_step_);
+        if (is_known) heights = *sliced_;
+        else {
+            sliced_.reset();
+            heights = file_->sliced(plane, step, run);
+            if (heights) sliced_ = *heights;
+            plane_ = plane;
+            sliced_step_ = step;
+        }
+        if (heights) carried = with_packed_fields(options, step, run);
+    } else {
+        const Result<PointField> field = slice_field(points, plane, run);
+        if (!field) return field.error();
+        heights = packed_->with_field(*field, run);
+    }
     if (!heights) return heights.error();
-    Result<Extraction> extracted = extract(*heights, plane.offset, options, run);
+    if (!carried) return carried.error();
+    Result<Extraction> extracted = extract(*heights, plane.offset, *carried, run);
     if (!extracted) return extracted.error();
     return std::move(extracted->surface);
 }

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include <isotet/extract.hpp>
@@ -13,6 +14,9 @@
 
 namespace isotet::view {
 
+/// Whether the points of two steps of a file are the same.
+bool same_points(const PackedFileInfo& file, std::size_t one, std::size_t other);
+
 /// Threads   one call at a time
 class PackedSource {
 public:
@@ -20,7 +24,7 @@ public:
     PackedSource(const PackedGrid& packed, PointField field)
         : packed_(packed), field_(std::move(field)), knows_cells_(packed.report().source_bytes > 0) {}
 
-    /// Surfaces of the fields of the file read what they meet; other fields, and slices, bring all of it into memory once.
+    /// Surfaces of the fields of the file, and slices, read what they meet; other fields bring all of it into memory once.
     explicit PackedSource(const PackedFile& file) : file_(file), knows_cells_(file.info().source_cells) {}
 
     /// Surfaces can have source cells.
@@ -33,20 +37,28 @@ public:
     Result<Surface> isosurface(const PointField& field, std::size_t step, double isovalue,
                                const ExtractOptions& options, const Run& run);
 
-    /// What slice_of() gives, in another order. Cost and errors as above
-    Result<Surface> slice(const Array& points, const Plane& plane, const ExtractOptions& options, const Run& run);
+    /// What slice_of() gives, in another order, of a step. Cost and errors as above; of a file, as PackedFile::sliced() where the
+    /// normal is not that of the call before
+    Result<Surface> slice(const Array& points, const Plane& plane, std::size_t step, const ExtractOptions& options,
+                          const Run& run);
 
-    /// As boundary_of(). Errors   as there, and as PackedFile::grid()
-    Result<Surface> boundary(const Run& run);
+    /// As boundary_of(), of a step. Errors   as there, and as PackedFile::grid()
+    Result<Surface> boundary(std::size_t step, const Run& run);
 
 private:
     Result<PackedGrid> grid_of(const PointField& field, std::size_t step, const Run& run);
-    Result<PackedGrid> whole(const Run& run);
+    Result<PackedGrid> whole(std::size_t step, const Run& run);
+    Result<ExtractOptions> with_packed_fields(ExtractOptions options, std::size_t step, const Run& run) const;
+    bool has(const std::string& field, std::size_t step) const;
 
     std::optional<PackedFile> file_;
     std::optional<PackedGrid> packed_; ///< of field_
     PointField field_;
     std::optional<PackedGrid> whole_; ///< of a file, once something needs all
+    std::size_t whole_step_ = 0;      ///< that its points are of
+    std::optional<PackedGrid> sliced_; ///< of a file
+    Plane plane_;                      ///< whose normal made it
+    std::size_t sliced_step_ = 0;
     bool knows_cells_;
 };
 

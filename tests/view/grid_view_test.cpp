@@ -1197,6 +1197,35 @@ TEST_F(GridViewOfFile, ShowsStepsByTheirValuesAlone) {
     EXPECT_EQ(reads_, 0);
 }
 
+TEST_F(GridViewOfFile, ShowsPointsThatMove) {
+    std::vector<float> far(grid_.points.as<float>().begin(), grid_.points.as<float>().end());
+    for (float& x : far) x *= 2;
+    const PackedGrid moved =
+        PackedFile::open(path_).value().load("sphere").value().with_points(Array::own(std::move(far), 3)).value();
+    PackedWriter::append(moved, path_, 2).value().commit().value();
+    GridViewOptions options;
+    options.steps = 3;
+    options.packed = PackedFile::open(path_).value();
+    options.cells = grid_.cells.count();
+    options.read_step = [this](std::size_t step, const isotet::Run&) { return read_step(step, 100); };
+    options.read_cells = [this](std::size_t step, const isotet::Run&) { return read_step(step, 0); };
+    const auto view = GridView::create(read_step(0, 100).value(), options).value();
+    EXPECT_TRUE(view->find_boundary({}));
+    ShowMessage message = show(1, {0.7});
+    message.state.boundary = 1;
+    message.state.slices = {Plane{{1, 2, 0.5}, 0.5}};
+    const auto near = triangles(*view, message);
+    message.state.step = 2;
+    EXPECT_NE(triangles(*view, message), near);
+    message.state.slices = {Plane{{1, 2, 0.5}, 1}};
+    EXPECT_EQ(triangles(*view, message), near);
+    PickMessage pick;
+    pick.state = message.state;
+    pick.boundary = true;
+    pick.point = {2, 0.1, 0.2};
+    EXPECT_NEAR(view->pick(pick, {}).value().point[0], 2, 1e-6) << "a boundary of twice the size";
+}
+
 TEST_F(GridViewOfFile, ReadsAllCellsWhereSomeAreChosenAndGivesThemBack) {
     ShowMessage message = show(1, {0.7});
     message.state.boundary = 1;
