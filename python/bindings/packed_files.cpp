@@ -6,6 +6,7 @@
 #include <nanobind/stl/string_view.h>
 #include <nanobind/stl/vector.h>
 
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,6 +14,7 @@
 
 #include <isotet/packed_file.hpp>
 
+#include "arrays.hpp"
 #include "call.hpp"
 #include "parts.hpp"
 
@@ -49,6 +51,16 @@ nb::dict info_out(const PackedFileInfo& info) {
     out["steps"] = info.steps;
     out["times"] = info.times;
     out["fields"] = fields_out(info);
+    nb::list cell_fields;
+    for (const PackedCellFieldInfo& field : info.cell_fields) {
+        nb::dict one;
+        one["name"] = field.name;
+        one["step"] = field.step;
+        one["type"] = std::string(name_of(field.type));
+        one["components"] = field.components;
+        cell_fields.append(one);
+    }
+    out["cell_fields"] = cell_fields;
     return out;
 }
 
@@ -75,10 +87,24 @@ void add_packed_files(nb::module_& module) {
         .def("info", [](const PackedFile& self) { return info_out(self.info()); })
         .def(
             "grid",
-            [](const PackedFile& self, std::string_view field, std::size_t step, const CallOptions& how) {
-                return call(how, [&](const Run& run) { return self.grid(field, step, run); });
+            [](const PackedFile& self, std::string_view field, std::size_t step, double fraction,
+               const CallOptions& how) {
+                return call(how, [&](const Run& run) { return self.interpolated(field, step, fraction, run); });
             },
-            "field"_a, "step"_a, "call"_a)
+            "field"_a, "step"_a, "fraction"_a, "call"_a)
+        .def(
+            "cell_field",
+            [](const PackedFile& self, std::string_view name, std::size_t step, const CallOptions& how) {
+                return array_out(call(how, [&](const Run& run) { return self.cell_field(name, step, run); }).values);
+            },
+            "name"_a, "step"_a, "call"_a)
+        .def(
+            "plane_grid",
+            [](const PackedFile& self, const std::array<double, 3>& normal, double offset, std::size_t step,
+               const CallOptions& how) {
+                return call(how, [&](const Run& run) { return self.sliced(Plane{normal, offset}, step, run); });
+            },
+            "normal"_a, "offset"_a, "step"_a, "call"_a)
         .def(
             "load",
             [](const PackedFile& self, std::string_view field, std::size_t step, const CallOptions& how) {

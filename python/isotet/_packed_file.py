@@ -10,7 +10,7 @@ from typing import Any
 import numpy.typing as npt
 
 from . import _isotet
-from ._arrays import isovalues_in, words_in
+from ._arrays import direction_in, fields_in, isovalues_in, place_in, words_in
 from ._call import Progress, call_options
 from ._grid import PackedGrid
 from ._surface import Surface
@@ -30,22 +30,28 @@ class PackedFile:
         self._file = file
         return self
 
-    def grid(self, field: str = "", *, step: int = 0, threads: int = 0, progress: Progress | None = None) -> PackedGrid:
+    def grid(self, field: str = "", *, step: int = 0, fraction: float = 0, threads: int = 0,
+             progress: Progress | None = None) -> PackedGrid:  # fmt: skip
         """The packed grid with a field at a step. What needs all of it, `PackedGrid.set_field` say, reads all of it.
 
         field
             A name in `fields`; not needed where the file has one field.
+        fraction
+            Of the way to the next step, 0 to 1: values are (1 - fraction) a + fraction b, of points likewise where they move.
 
         Raises ValueError for a field or step that there is not, and for a broken file; OSError.
         """
-        return PackedGrid._of(self._file.grid(field, step, call_options(threads, progress)))
+        return PackedGrid._of(self._file.grid(field, step, fraction, call_options(threads, progress)))
 
-    def contour(self, isovalues: npt.ArrayLike, field: str = "", *, step: int = 0, fields: Iterable[str] = (),
-                normals: str = "none", edge_ends: bool = False, source_cells: bool = False, ties: str = "merge",
-                threads: int = 0, progress: Progress | None = None) -> Surface:  # fmt: skip
+    def contour(self, isovalues: npt.ArrayLike, field: str = "", *, step: int = 0, fraction: float = 0,
+                fields: Iterable[str] = (), cell_fields: Iterable[str] = (), normals: str = "none",
+                edge_ends: bool = False, source_cells: bool = False, ties: str = "merge", threads: int = 0,
+                progress: Progress | None = None) -> Surface:  # fmt: skip
         """The surface on which a field of the file has a value: the same as that of the grid that was saved.
 
-        fields
+        fraction
+            As of `grid`; cell fields are those of the step.
+        fields, cell_fields
             Names of fields of the file to carry onto the surface.
 
         The other parameters are those of `PackedGrid.contour`.
@@ -54,10 +60,44 @@ class PackedFile:
         """
         words_in(normals=normals, ties=ties)
         call = call_options(threads, progress)
-        packed = self._file.grid(field, step, call)
-        carried = [self._file.grid(name, step, call) for name in fields]
+        packed = self._file.grid(field, step, fraction, call)
         options = _isotet.ContourOptions(normals, edge_ends, source_cells, ties, packed.precision, None, 0)
-        surface = packed.extract(isovalues_in(isovalues), [], [], options, call, carried)
+        return self._extract(packed, isovalues_in(isovalues), fields, cell_fields, step, fraction, options, call)
+
+    def slice(self, normal: npt.ArrayLike | str = "x", origin: npt.ArrayLike | None = None, *,
+              offsets: npt.ArrayLike | None = None, step: int = 0, fields: Iterable[str] | None = None,
+              cell_fields: Iterable[str] | None = None, threads: int = 0, progress: Progress | None = None,
+              ) -> Surface:  # fmt: skip
+        """The cut along a plane, or along several parallel ones: all of the file but values is read once, within the limit.
+
+        normal, origin, offsets
+            As of `Grid.slice`.
+        fields, cell_fields
+            Names of fields of the file to carry; without them all of the step.
+
+        Raises as `contour`.
+        """
+        direction = direction_in("normal", normal)
+        if offsets is not None and origin is not None:
+            raise ValueError("origin and offsets were given, but one of them says where the plane is")
+        info = self._file.info()
+        if offsets is None:
+            lower, upper = info["bounds"]
+            point = place_in("origin", [(a + b) / 2 for a, b in zip(lower, upper)] if origin is None else origin)
+            offsets = [sum(a * b for a, b in zip(direction, point))]
+        if fields is None:
+            fields = [field["name"] for field in info["fields"] if field["step"] == step]
+        if cell_fields is None:
+            cell_fields = dict.fromkeys(field["name"] for field in info["cell_fields"] if field["step"] <= step)
+        places, call = isovalues_in(offsets), call_options(threads, progress)
+        packed = self._file.plane_grid(direction, places[0] if places else 0.0, step, call)
+        options = _isotet.ContourOptions("none", False, False, "merge", packed.precision, None, 0)
+        return self._extract(packed, places, fields, cell_fields, step, 0, options, call)
+
+    def _extract(self, packed, isovalues, fields, cell_fields, step, fraction, options, call) -> Surface:
+        carried = [self._file.grid(name, step, fraction, call) for name in fields]
+        of_cells = {name: self._file.cell_field(name, step, call) for name in cell_fields}
+        surface = packed.extract(isovalues, [], fields_in("cell_fields", of_cells), options, call, carried)
         return Surface._of(surface, {"method": "clusters"})
 
     @property

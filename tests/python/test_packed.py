@@ -1,6 +1,8 @@
 # Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 """Packed grids in files."""
 
+import subprocess
+
 import numpy as np
 import pytest
 
@@ -45,6 +47,46 @@ def test_a_grid_of_the_file_is_a_packed_grid(saved):
     from_file.set_field(grid.fields["sphere"])
     packed.set_field(grid.fields["sphere"])
     assert np.array_equal(from_file.contour(0.5).points, packed.contour(0.5).points)
+
+
+def test_slices_are_those_of_the_grid(saved):
+    grid, _, path = saved
+    file = isotet.open(path, memory=100_000)
+    cut, whole = file.slice("z", offsets=0.3), grid.slice("z", offsets=0.3)
+    assert cut.area == pytest.approx(whole.area)
+    assert sorted(cut.fields) == ["gyroid", "sphere"]
+    assert np.allclose(np.sort(cut.fields["gyroid"]), np.sort(whole.fields["gyroid"]))
+    assert file.slice("x").area == pytest.approx(4)
+    with pytest.raises(ValueError):
+        file.slice((0, 0, 0))
+
+
+@pytest.fixture
+def series(tmp_path):
+    grid = isotet.make("mixed", 8, ["gyroid"])
+    region = np.arange(len(grid), dtype=np.int32)
+    paths = []
+    for step in range(2):
+        values = grid.fields["gyroid"] + np.float32(0.25 * step)
+        step_grid = isotet.Grid(grid.points * (1 + step), grid.cells, offsets=grid.offsets, types=grid.types,
+                                fields={"p": values}, cell_fields={"region": region})  # fmt: skip
+        paths.append(tmp_path / f"step{step}.vtu")
+        step_grid.write(paths[-1])
+    return grid, region, paths, tmp_path / "run.isotet"
+
+
+def test_the_carried_cell_fields_and_fractions_of_steps(series, program):
+    grid, region, paths, packed = series
+    for path, options in zip(paths, (["--cell-fields", "region"], ["--append"])):
+        subprocess.run([program, "pack", path, packed, "-q", *options], check=True)
+    file = isotet.open(packed)
+    surface = file.contour(0.1, "p", cell_fields=["region"], source_cells=True)
+    assert np.array_equal(surface.cell_fields["region"], region[surface.source_cells])
+    areas = [file.contour(0.1, "p", fraction=f).area for f in (0, 0.25, 0.5, 0.75, 1)]
+    assert areas == sorted(areas)
+    assert file.contour(0.1, "p", fraction=1).area == file.contour(0.1, "p", step=1).area
+    with pytest.raises(ValueError, match="fraction"):
+        file.contour(0.1, "p", fraction=2)
 
 
 def test_what_is_wrong_is_told(saved, tmp_path):
