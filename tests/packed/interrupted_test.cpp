@@ -1,11 +1,18 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Packed files while writing ends early: at every write the old file is whole, or the new one is.
 #include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <optional>
+#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -43,6 +50,45 @@ private:
     Limit limit_;
 };
 
+/// Calls work() in a process of its own, which is killed by kill -9 so long after its start, or where a file would grow beyond
+/// so many bytes. Returns whether it was.
+template <class Work>
+bool is_killed(std::optional<std::chrono::microseconds> after, std::optional<std::uint64_t> bytes, const Work& work) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+        std::optional<Limit> limit;
+        if (bytes) {
+            limit.emplace(RLIMIT_FSIZE, *bytes);
+            std::signal(SIGXFSZ, [](int) { ::kill(::getpid(), SIGKILL); });
+        }
+        work();
+        ::_exit(0);
+    }
+    if (after) {
+        std::this_thread::sleep_for(*after);
+        ::kill(child, SIGKILL);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    return WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
+}
+
+/// How long a process takes at least that calls work().
+template <class Work>
+std::chrono::microseconds time_of_process(const Work& work) {
+    auto least = std::chrono::microseconds::max();
+    for (int i = 0; i < 5; ++i) {
+        const auto start = std::chrono::steady_clock::now();
+        is_killed({}, {}, work);
+        const auto time = std::chrono::steady_clock::now() - start;
+        least = std::min(least, std::chrono::duration_cast<std::chrono::microseconds>(time));
+    }
+    return least;
+}
+
+constexpr int kills = 200;          ///< of each kind
+const Run one_thread{.threads = 1}; ///< a process has no others behind fork()
+
 /// A file of one step, and the same with two.
 struct TwoFiles {
     TemporaryFolder folder;
@@ -58,7 +104,7 @@ struct TwoFiles {
         two = content_of(path);
     }
     Result<std::uint64_t> append() const {
-        Result<PackedWriter> writer = PackedWriter::append(packed, path, 1.0);
+        Result<PackedWriter> writer = PackedWriter::append(packed, path, 1.0, one_thread);
         return writer ? writer->commit() : writer.error();
     }
     std::size_t sound_steps() const {
@@ -82,6 +128,72 @@ TEST(InterruptedPacking, LeavesTheOldStepsAtEveryWrite) {
         EXPECT_TRUE(files.append());
         EXPECT_TRUE(content_of(files.path) == files.two) << bytes;
     }
+}
+
+/// What is there after a kill while steps are added: `killed` ends the process that adds them.
+template <class Killed>
+void expect_steps_survive(const TwoFiles& files, const Killed& killed) {
+    std::array<int, 3> counts{}; // of files with so many steps
+    int all_killed = 0;
+    for (int i = 0; i < kills; ++i) {
+        files.folder.write("grid.isotet", files.one);
+        all_killed += killed(i);
+        const std::size_t steps = files.sound_steps();
+        ASSERT_TRUE(steps == 1 || steps == 2) << "kill " << i;
+        ++counts[steps];
+        EXPECT_TRUE(steps == 1 || content_of(files.path) == files.two) << "kill " << i;
+        if (i % 10 != 0 || steps == 2) continue;
+        ASSERT_TRUE(files.append()) << "kill " << i;
+        EXPECT_TRUE(content_of(files.path) == files.two) << "kill " << i;
+    }
+    EXPECT_GT(counts[1], kills / 10) << "steps were added nearly each time before the kill";
+    EXPECT_GT(all_killed, kills / 10);
+}
+
+TEST(KilledPacking, LeavesTheOldStepsOrAllWheneverItIsKilled) {
+    const TwoFiles files;
+    const auto append = [&] { [[maybe_unused]] const auto done = files.append(); };
+    const auto time = time_of_process([&] {
+        files.folder.write("grid.isotet", files.one);
+        append();
+    });
+    expect_steps_survive(files, [&](int i) { return is_killed(time * i / kills, {}, append); });
+}
+
+TEST(KilledPacking, LeavesTheOldStepsWhereverTheLastWriteEnds) {
+    const TwoFiles files;
+    expect_steps_survive(files, [&](int i) {
+        const std::uint64_t more = (files.two.size() - files.one.size()) * static_cast<std::uint64_t>(i) / kills;
+        return is_killed({}, files.one.size() + more, [&] { [[maybe_unused]] const auto done = files.append(); });
+    });
+}
+
+/// `killed` ends the process that writes a new file in place of an old one.
+template <class Killed>
+void expect_file_survives(const TwoFiles& files, const Killed& killed) {
+    int all_killed = 0;
+    for (int i = 0; i < kills; ++i) {
+        files.folder.write("grid.isotet", "old");
+        all_killed += killed(i);
+        const std::string content = content_of(files.path);
+        ASSERT_TRUE(content == "old" || content == files.one) << "kill " << i;
+        for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(files.path).parent_path()))
+            EXPECT_TRUE(entry.path() == files.path || entry.path().extension() == ".part") << entry.path();
+    }
+    EXPECT_GT(all_killed, kills / 10);
+}
+
+TEST(KilledPacking, LeavesTheOldFileOrTheNewOne) {
+    const TwoFiles files;
+    SavePackedOptions options;
+    options.chunk_bytes = 500;
+    const auto save = [&] {
+        [[maybe_unused]] const auto done = save_packed(files.packed, files.path, options, one_thread);
+    };
+    const auto time = time_of_process(save);
+    expect_file_survives(files, [&](int i) { return is_killed(time * i / kills, {}, save); });
+    expect_file_survives(
+        files, [&](int i) { return is_killed({}, files.one.size() * static_cast<std::uint64_t>(i) / kills, save); });
 }
 
 TEST(InterruptedPacking, HasOldOrNewStepsWhateverPartOfTheSlotIsWritten) {
