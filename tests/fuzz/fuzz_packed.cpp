@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <sys/mman.h>
 #include <unistd.h>
@@ -13,6 +15,7 @@
 #include <isotet/make.hpp>
 #include <isotet/boundary.hpp>
 #include <isotet/packed_file.hpp>
+#include <isotet/slice.hpp>
 
 #include "packed/right_checksums.hpp"
 
@@ -51,7 +54,11 @@ std::string sample_file() {
     const std::string path = "/tmp/isotet-fuzz-" + std::to_string(::getpid()) + ".isotet";
     SavePackedOptions saving;
     saving.chunk_bytes = 500;
-    save_packed(packed, path, saving).value();
+    std::vector<float> far(grid.points.as<float>().begin(), grid.points.as<float>().end());
+    for (float& x : far) x *= 1.25F;
+    PackedWriter writer = PackedWriter::create(packed, path, saving).value();
+    writer.add_step(packed.with_points(Array::own(std::move(far), 3)).value(), 1.0).value();
+    writer.commit().value();
     std::string content;
     FILE* const file = std::fopen(path.c_str(), "rb");
     for (int byte; (byte = std::fgetc(file)) != EOF;) content += static_cast<char>(byte);
@@ -64,18 +71,14 @@ void expect_sentence(const Error& error) {
     if (error.message.empty() || error.code == ErrorCode::internal) std::abort();
 }
 
-void extract_from(const std::string& path) {
-    const auto file = PackedFile::open(path);
-    if (!file) return expect_sentence(file.error());
-    if (const auto checked = file->check(); !checked) expect_sentence(checked.error());
-    const auto grid = file->grid();
+void extract_from(const Result<PackedGrid>& grid, bool gradients) {
     if (!grid) return expect_sentence(grid.error());
     const auto boundary = boundary_of(*grid, {*grid});
     if (!boundary) return expect_sentence(boundary.error());
     for (const std::uint32_t vertex : boundary->triangles.as<std::uint32_t>())
         if (vertex >= boundary->vertex_count()) std::abort();
     ExtractOptions options;
-    options.normals = Normals::gradient;
+    if (gradients) options.normals = Normals::gradient;
     options.edge_ends = options.source_cells = true;
     for (const double isovalue : {0.0, 1.5}) {
         const auto out = extract(*grid, isovalue, options, {.threads = 1});
@@ -83,6 +86,15 @@ void extract_from(const std::string& path) {
         for (const std::uint32_t vertex : out->surface.triangles.as<std::uint32_t>())
             if (vertex >= out->surface.vertex_count()) std::abort();
     }
+}
+
+void extract_from(const std::string& path) {
+    const auto file = PackedFile::open(path);
+    if (!file) return expect_sentence(file.error());
+    if (const auto checked = file->check(); !checked) expect_sentence(checked.error());
+    for (std::size_t step = 0; step < 2; ++step) extract_from(file->grid("", step), true);
+    extract_from(file->interpolated("", 0, 0.5), false);
+    extract_from(file->sliced(Plane{{1, 2, 3}, 0}, 1), false);
 }
 
 } // namespace

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstdint>
@@ -15,6 +16,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -83,6 +85,25 @@ TEST(ScratchMemory, LetsGoOfPagesNotOfWhatIsInThem) {
     EXPECT_LE(resident_memory().value(), *before + 16 * megabyte);
     EXPECT_TRUE(is_counted(first));
     EXPECT_TRUE(is_counted(second));
+}
+
+TEST(ScratchMemory, IsUsedByManyThreadsAtOnce) {
+    const TemporaryFolder folder;
+    const ScratchMemory scratch = scratch_in(folder.file(""), 8 * megabyte);
+    std::atomic<int> wrong{0};
+    std::vector<std::thread> threads;
+    for (std::size_t which = 0; which < 6; ++which)
+        threads.emplace_back([&, which] {
+            std::vector<Buffer<std::uint64_t>> kept;
+            for (std::size_t i = 0; i < 12; ++i) {
+                kept.push_back(counted((1 + (i + which) % 4) * megabyte));
+                if (kept.size() > 3) kept.erase(kept.begin() + static_cast<std::ptrdiff_t>((i + which) % 3));
+                for (const Buffer<std::uint64_t>& buffer : kept) wrong += !is_counted(buffer);
+                if (scratch.report().bytes > scratch.report().peak_bytes) ++wrong;
+            }
+        });
+    for (std::thread& thread : threads) thread.join();
+    EXPECT_EQ(wrong, 0);
 }
 
 TEST(ScratchMemory, LeavesNothingBehindAfterAKill) {

@@ -10,7 +10,9 @@
 #include <isotet/boundary.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/packed_file.hpp>
+#include <isotet/slice.hpp>
 
+#include "io/packed/chunk_cache.hpp"
 #include "io/packed/piece_reader.hpp"
 #include "packed/packed_samples.hpp"
 #include "packed/right_checksums.hpp"
@@ -51,6 +53,40 @@ TEST(PackedChunks, GiveTheSurfacesOfTheGridInMemory) {
         EXPECT_TRUE(bytes_of_all(grid, sample.isovalues, {}, 3) ==
                     bytes_of_all(sample.packed, sample.isovalues, {}, 3));
     }
+}
+
+/// What was not brought cannot be read: any other read ends the process.
+TEST(PackedChunks, AreAllThatIsRead) {
+    io::guard_address_space(true);
+    for (const PackedSample& sample : packed_samples(6)) {
+        SCOPED_TRACE(sample.name);
+        const TemporaryFolder folder;
+        SavePackedOptions options;
+        options.chunk_bytes = 1'000;
+        PackedWriter writer = PackedWriter::create(sample.packed, folder.file("a.isotet"), options).value();
+        writer.add_step(sample.packed, std::nullopt).value();
+        writer.commit().value();
+        for (const std::uint64_t memory : {std::uint64_t{1}, std::uint64_t{100'000}, std::uint64_t{1} << 30}) {
+            const PackedFile file = PackedFile::open(folder.file("a.isotet"), {memory}).value();
+            const PackedGrid grid = file.grid().value(), between = file.interpolated("", 0, 0.25).value(),
+                             sliced = file.sliced(Plane{{1, 2, 3}, 0.1}).value();
+            for (const int threads : {1, 5})
+                for (const Ties ties : {Ties::merge, Ties::keep}) {
+                    ExtractOptions all = with_all(ties);
+                    all.packed_fields = {grid};
+                    EXPECT_TRUE(bytes_of_all(grid, sample.isovalues, with_all(ties), threads) ==
+                                bytes_of_all(sample.packed, sample.isovalues, with_all(ties), 2));
+                    EXPECT_TRUE(extract(grid, sample.isovalues, all, {.threads = threads}));
+                    all.normals = Normals::none;
+                    EXPECT_TRUE(extract(between, sample.isovalues, all, {.threads = threads}));
+                    EXPECT_TRUE(extract(sliced, 0.1, all, {.threads = threads}));
+                }
+            EXPECT_TRUE(boundary_of(grid, {grid, between, sliced}));
+            EXPECT_TRUE(unpack_field(between));
+            EXPECT_TRUE(unpack_sample(sliced, 100));
+        }
+    }
+    io::guard_address_space(false);
 }
 
 TEST(PackedChunks, TellTiesAsTheGridInMemoryWhereValuesAreUnchanged) {

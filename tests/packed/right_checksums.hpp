@@ -43,6 +43,13 @@ inline std::string with_right_checksums(std::string file) {
         chunk.clusters_checksum = io::crc32c(bytes(clusters_at, io::cluster_record_bytes * chunk.clusters));
         clusters_at += io::cluster_record_bytes * chunk.clusters;
     }
+    for (io::PointsEntry& points : d.moved_points) {
+        const std::vector<std::uint64_t> positions = io::positions_offsets(d, points);
+        for (std::size_t k = 0; k < d.chunks.size(); ++k)
+            points.checksums[k] = io::crc32c(bytes(positions[k], d.positions_bytes(d.chunks[k])));
+        points.boundary_checksum =
+            io::crc32c(bytes(points.boundary_offset, 3 * d.boundary->points * d.real_bytes()));
+    }
     for (io::FieldEntry& field : d.fields) {
         std::uint64_t ranges_at = field.ranges_offset;
         for (std::size_t k = 0; k < d.chunks.size(); ++k) {

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <new>
 #include <utility>
@@ -20,12 +21,16 @@ std::size_t system_page() { return static_cast<std::size_t>(::sysconf(_SC_PAGESI
 
 std::uint64_t whole_pages(std::uint64_t bytes, std::size_t page) { return (bytes + page - 1) / page * page; }
 
+std::atomic<bool> guards_reserved{false};
+
 } // namespace
+
+void guard_address_space(bool guard) { guards_reserved = guard; }
 
 std::shared_ptr<std::byte> reserve_address_space(std::size_t bytes) {
     const std::size_t size = whole_pages(std::max<std::size_t>(bytes, 1), system_page());
-    void* const data =
-        ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    const int use = guards_reserved ? PROT_NONE : PROT_READ | PROT_WRITE;
+    void* const data = ::mmap(nullptr, size, use, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (data == MAP_FAILED) throw std::bad_alloc();
 #ifdef MADV_NOHUGEPAGE
     ::madvise(data, size, MADV_NOHUGEPAGE); // a huge page would hold many chunks
@@ -37,7 +42,8 @@ ChunkCache::ChunkCache(std::shared_ptr<const PackedSource> source, std::uint64_t
     : source_(std::move(source)),
       page_(std::max<std::size_t>(system_page(), 4096)),
       places_(ChunkPlaces::on_pages(source_->directory, page_)),
-      limit_(limit) {
+      limit_(limit),
+      guards_(guards_reserved) {
     report_.limit = limit;
 }
 
@@ -61,12 +67,27 @@ std::uint64_t ChunkCache::bytes_in_memory(const CachedPieces& pieces, std::size_
     return bytes;
 }
 
+/// With guarded address space: the pages of a piece, and of what may be read behind it.
+void ChunkCache::let_use(const CachedPieces& pieces, std::size_t chunk, bool use) {
+    if (!guards_) return;
+    const auto& arrays = pieces.kind().arrays;
+    for (std::size_t a = 0; a < arrays.size(); ++a) {
+        const auto part = pieces.kind().part(source_->directory, places_, a, chunk);
+        const std::uint64_t size = part.size() + core::slack_words * arrays[a].bytes_each;
+        if (part.empty() ||
+            ::mprotect(part.data(), whole_pages(size, page_), use ? PROT_READ | PROT_WRITE : PROT_NONE) == 0)
+            continue;
+        throw std::bad_alloc();
+    }
+}
+
 void ChunkCache::drop(CachedPieces& pieces, std::size_t chunk) {
     const auto& arrays = pieces.kind().arrays;
     for (std::size_t a = 0; a < arrays.size(); ++a) {
         const auto part = pieces.kind().part(source_->directory, places_, a, chunk);
         if (!part.empty()) ::madvise(part.data(), whole_pages(part.size(), page_), MADV_DONTNEED);
     }
+    let_use(pieces, chunk, false);
     pieces.states_[chunk].is = CachedPieces::Is::absent;
     report_.bytes -= bytes_in_memory(pieces, chunk);
     ++report_.pieces_dropped;
@@ -106,6 +127,7 @@ std::vector<PieceWanted> ChunkCache::begin_loading(std::span<const PieceWanted> 
         ++state.pins;
         state.last_use = clock_;
         if (state.is != CachedPieces::Is::absent) continue;
+        let_use(*one.pieces, one.chunk, true);
         state.is = CachedPieces::Is::loading;
         missing.push_back(one);
         bytes += bytes_in_memory(*one.pieces, one.chunk);

@@ -21,6 +21,9 @@ namespace isotet::io {
 /// Errors   throws std::bad_alloc
 std::shared_ptr<std::byte> reserve_address_space(std::size_t bytes);
 
+/// For tests: what is reserved from now on can be read and written only where pieces are in memory, and ends the process elsewhere.
+void guard_address_space(bool guard);
+
 /// Pieces of a kind, and what is known of each.
 class CachedPieces {
 public:
@@ -74,6 +77,7 @@ public:
 private:
     void make_room(std::uint64_t bytes);
     void drop(CachedPieces& pieces, std::size_t chunk);
+    void let_use(const CachedPieces& pieces, std::size_t chunk, bool use);
     void unpin_locked(std::span<const PieceWanted> wanted);
     std::vector<PieceWanted> begin_loading(std::span<const PieceWanted> wanted);
 
@@ -81,6 +85,7 @@ private:
     std::size_t page_;
     ChunkPlaces places_;
     std::uint64_t limit_;
+    bool guards_; ///< guard_address_space()
 
     mutable std::mutex mutex_;
     std::condition_variable loaded_;

@@ -113,6 +113,7 @@ SlicedResidency::SlicedResidency(std::shared_ptr<FileResidency> grid, const Slic
     PieceKind kind;
     kind.arrays = make_value_arrays(without_gradients, maker, packed_);
     kind.arrays.resize(1); // group ranges stay in memory: they depend on the points of neighbours, too
+    packed_.group_ranges = core::SharedBuffer<core::GroupRange>(cache.places().size(Unit::groups));
     kind.fill = [this](std::size_t chunk) {
         const ChunkRange range = range_of(chunk);
         point_values_.store(packed_, range.first_point, range.first_point + range.points);
