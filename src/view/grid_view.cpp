@@ -258,6 +258,19 @@ Result<void> GridView::show_grid(std::optional<std::uint64_t> wanted, const std:
     return {};
 }
 
+/// Whether a choice that failed is right, and what it leaves out is all.
+bool GridView::leaves_no_cell(std::optional<std::uint64_t> wanted, const std::vector<std::string>& cells,
+                              const Run& run) {
+    if (!options_.only_cells || cells.empty()) return false;
+    const Result<Grid> grid = grid_of_step(wanted, run);
+    if (!grid) return false;
+    std::vector<std::string> shown;
+    for (const std::string& choice : cells)
+        if (!choice.starts_with('!')) shown.push_back(choice);
+        else if (!options_.only_cells(*grid, {choice.substr(1)})) return false;
+    return shown.size() < cells.size() && (shown.empty() || options_.only_cells(*grid, shown));
+}
+
 void GridView::read_ahead(const ShowMessage& message) {
     if (steps_ && message.next && *message.next < options_.steps && *message.next != step_)
         steps_->read_ahead(*message.next);
@@ -422,7 +435,10 @@ Result<GridView::Source*> GridView::source_for(const ViewState& state, const Run
 
 Result<Chart> GridView::chart(const std::string& field, std::optional<std::uint64_t> step, const Run& run,
                               const std::vector<std::string>& cells) {
-    if (Result<void> there = show_grid(step, cells, run); !there) return there.error();
+    if (Result<void> there = show_grid(step, cells, run); !there) {
+        if (leaves_no_cell(step, cells, run)) return Chart{};
+        return there.error();
+    }
     const Result<PointField> found = field_of(field, run);
     if (!found) return found.error();
     if (uses_packed() && has_cells_to_linearize(grid_.cells)) { // the linear ones are known

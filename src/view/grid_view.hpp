@@ -195,6 +195,8 @@ private:
     Result<OpacityCurve> opacity_of_volume(const ViewState& state, const Run& run);
     std::optional<ColorField> color_field(const ViewState& state, const ColorScale& scale, const Run& run);
     Result<void> show_grid(std::optional<std::uint64_t> wanted, const std::vector<std::string>& cells, const Run& run);
+    bool leaves_no_cell(std::optional<std::uint64_t> wanted, const std::vector<std::string>& cells, const Run& run);
+    Result<FrameParts> frame_begun(const ShowMessage& message, const Run& run);
     Result<Grid> grid_of_step(std::optional<std::uint64_t> wanted, const Run& run);
     bool uses_packed() const { return is_packed_.load(std::memory_order_acquire) && cells_.empty(); }
     void read_ahead(const ShowMessage& message);

@@ -384,20 +384,28 @@ Result<void> GridView::add_boundary(const ViewState& state, const std::vector<st
     return {};
 }
 
-Result<FrameParts> GridView::frame_parts(const ShowMessage& message, const std::vector<std::string>& known,
-                                         const Run& run) {
-    const ViewState& state = message.state;
-    if (Result<void> there = show_grid(state.step, state.cells, run); !there) return there.error();
-    scene_.reset();
-    Result<std::optional<ColorScale>> scale = scale_of(state, run);
+/// What is told of the field and its colours; no surface yet.
+Result<FrameParts> GridView::frame_begun(const ShowMessage& message, const Run& run) {
+    Result<std::optional<ColorScale>> scale = scale_of(message.state, run);
     if (!scale) return scale.error();
-    for (Kept& kept : kept_) kept.used = false;
     FrameParts making;
     making.most = limit_of(message, options_);
     making.facts.number = message.number;
     making.facts.scale = *scale;
     if (*scale && !(*scale)->classes.empty()) making.facts.classes = classes_->field.classes;
-    if (Result<void> told = tell_field(state.field, making.facts, run); !told) return told.error();
+    if (Result<void> told = tell_field(message.state.field, making.facts, run); !told) return told.error();
+    return making;
+}
+
+Result<FrameParts> GridView::frame_parts(const ShowMessage& message, const std::vector<std::string>& known,
+                                         const Run& run) {
+    const ViewState& state = message.state;
+    if (Result<void> there = show_grid(state.step, state.cells, run); !there) return there.error();
+    scene_.reset();
+    Result<FrameParts> begun = frame_begun(message, run);
+    if (!begun) return begun;
+    FrameParts making = *std::move(begun);
+    for (Kept& kept : kept_) kept.used = false;
     if (Result<void> added = add_isosurfaces(message, known, making, run); !added) return added.error();
     if (Result<void> added = add_slices(state, known, making, run); !added) return added.error();
     if (Result<void> added = add_boundary(state, known, making, run); !added) return added.error();
@@ -407,7 +415,14 @@ Result<FrameParts> GridView::frame_parts(const ShowMessage& message, const std::
 
 Result<Frame> GridView::frame(const ShowMessage& message, double wait_seconds, std::vector<std::string>& known,
                               const Run& run) {
-    if (Result<void> there = show_grid(message.state.step, message.state.cells, run); !there) return there.error();
+    const ViewState& state = message.state;
+    if (Result<void> there = show_grid(state.step, state.cells, run); !there) {
+        if (message.picture || !leaves_no_cell(state.step, state.cells, run)) return there.error();
+        const Result<FrameParts> nothing = frame_begun(message, run);
+        if (!nothing) return nothing.error();
+        known.clear();
+        return Frame{frame_bytes(nothing->facts, {}), false};
+    }
     read_ahead(message);
     if (message.picture) return picture_frame(message, wait_seconds, known, run);
     Result<FrameParts> parts = frame_parts(message, known, run);

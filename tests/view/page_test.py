@@ -141,6 +141,14 @@ def test_boundary_alone(browser, viewer):
         browser.wait('document.body.dataset.hidden === "Region_3" && !document.querySelector("#regions-list li:nth-child(2) input").checked')
         browser.click('#regions-all')
         browser.wait('!location.hash.includes("hidden=")')
+        for region in range(1, 5):
+            browser.click(f'#regions-list li:nth-child({region}) input')
+        browser.wait('document.body.dataset.kinds === ""')
+        check(browser.value('document.getElementById("message").hidden'), 'nothing is shown where all are hidden, and nothing is wrong')
+        browser.value('new Promise(requestAnimationFrame)')
+        check(red() == 0, 'nothing is seen')
+        browser.click('#regions-all')
+        browser.wait('!location.hash.includes("hidden=") && document.body.dataset.kinds === "boundary"')
         browser.value('new Promise(requestAnimationFrame)')
         check(red() > 0.9 * all_red, 'all are shown again')
         places = []

@@ -129,7 +129,7 @@ function showSpan() {
   const ranges = many && state.span === 'step' ? [steps.get(step)].filter(Boolean) : [...steps.values()];
   slider.span = ranges.length === 0 ? null : {lower: Math.min(...ranges.map(([lower]) => lower)), upper: Math.max(...ranges.map(([, upper]) => upper))};
   id('lower').textContent = slider.span ? format.short(slider.span.lower) : '';
-  id('upper').textContent = slider.span ? format.short(slider.span.upper) : level.empty === question() ? 'The field has no finite value' : '';
+  id('upper').textContent = slider.span ? format.short(slider.span.upper) : level.empty === question() ? (cellsOf(app.state).length > 0 ? 'No finite value in the cells that are shown' : 'The field has no finite value') : '';
   id('ends-of').textContent = !many || !slider.span ? '' : state.span === 'step' ? `step ${step}` :
     steps.size === app.time.times.length ? 'all steps' : `${steps.size} of ${app.time.times.length} steps`;
   Object.assign(document.body.dataset, {chart_step: slider.chart?.step ?? '', span: slider.span ? `${slider.span.lower} ${slider.span.upper}` : ''});
