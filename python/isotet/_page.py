@@ -83,6 +83,17 @@ def _wanted_fields(grid: Grid, fields: Mapping[str, Any] | Iterable[str] | None,
     return wanted
 
 
+def _first_look(grid: Grid, color_by: str | None) -> dict[str, Any]:
+    """What a page begins with where no field and no value is named: the boundary, where isosurfaces say little."""
+    view = grid.first_view
+    if view["draw"] == "isosurfaces":
+        return {}
+    look: dict[str, Any] = {"isosurfaces": False, "boundary": 1}
+    if view["draw"] == "field_on_boundary" and not view["cell_field"] and color_by in (None, view["field"]):
+        look |= {"color_by": view["field"], "colored_boundary": True}
+    return look
+
+
 def _json_in_html(value: Any) -> str:
     return json.dumps(value).replace("<", "\\u003c")
 
@@ -111,6 +122,8 @@ def html(grid: Any, field: str | None = None, *, isovalue: float | None = None, 
     others.pop(first.name, None)
     packed = _packed_bytes(grid.pack(first, threads=threads, progress=progress), others.values(), call)
     state = {"field": first.name, "isovalues": [] if isovalue is None else [float(isovalue)], "color_by": color_by or ""}
+    if field is None and isovalue is None:
+        state |= _first_look(grid, color_by)
     saved = _json_in_html({"file": name, "version": _isotet.__version__, "state": state, "notes": []})
     parts = (f'<script type="application/json" id="saved">{saved}</script>\n'
              f'<script type="text/plain" id="grid">{base64.b64encode(zlib.compress(packed, 6)).decode()}</script>\n')  # fmt: skip

@@ -44,6 +44,15 @@ def test_notebooks_and_files_have_the_same_page(unfilled, tmp_path):
     assert frame.startswith("<iframe") and page.text.count("<") + 2 == frame.count("&lt;") + frame.count("<")
 
 
+def test_pages_begin_with_the_boundary_where_the_viewer_does(unfilled):
+    grid = isotet.make("kuhn", 4, ["plane"])
+    regions = isotet.Grid(grid.points, grid.cells, cell_fields={"region": np.arange(len(grid.cells)) // 100})
+    state = json.loads(part(isotet.html(regions).text, "saved"))["state"]
+    assert regions.first_view["draw"] != "isosurfaces"
+    assert state["isosurfaces"] is False and state["boundary"] == 1
+    assert "isosurfaces" not in json.loads(part(isotet.html(regions, isovalue=1).text, "saved"))["state"]
+
+
 def test_arrays_are_fields_too(unfilled):
     grid = isotet.make("kuhn", 3, ["plane"])
     page = isotet.html(grid, fields={"mine": np.arange(len(grid.points), dtype=float)}, color_by="mine")
