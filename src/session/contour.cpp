@@ -11,6 +11,7 @@
 #include "base/errors.hpp"
 #include "base/guard.hpp"
 #include "base/parallel.hpp"
+#include "base/stopwatch.hpp"
 #include "grid/cell/linear_names.hpp"
 #include "grid/cell_faces.hpp"
 #include "grid/cells.hpp"
@@ -77,30 +78,8 @@ Result<Contour> Contour::create(ContourInput given, const ContourOptions& option
         if (auto ok = check(options); !ok) return ok.error();
         Result<ContourInput> enough = input_for(std::move(given), options, run);
         if (!enough) return enough.error();
-        ContourInput input = *std::move(enough);
         auto data = std::make_unique<Data>();
-        if (input.packed) {
-            if (auto taken = data->take_packed(std::move(input), options, run); !taken) return taken.error();
-            return Contour(std::move(data));
-        }
-        const auto met = data->take_met(input, options, run);
-        if (!met) return met.error();
-        if (*met == Data::Met::some) return Contour(std::move(data));
-        if (options.refine && has_curved_cells(input.grid.cells)) {
-            if (auto taken = data->curved.take(std::move(input), options); !taken) return taken.error();
-        } else {
-            const auto start = std::chrono::steady_clock::now();
-            Result<ContourInput> linear = data->linear.make(std::move(input), run);
-            if (!linear) return linear.error();
-            data->input = *std::move(linear);
-            if (data->linear.grid()) data->update_seconds += session::seconds_since(start);
-            data->note_new_cells();
-        }
-        const ContourInput& first = data->curved ? data->curved.corners() : data->input;
-        Result<FieldSample> sample = FieldSample::create(first.grid, first.field, options.split_cells);
-        if (!sample) return sample.error();
-        data->options = options;
-        data->sample = *std::move(sample);
+        if (auto taken = data->set(*std::move(enough), options, run); !taken) return taken.error();
         return Contour(std::move(data));
     });
 }
@@ -128,45 +107,8 @@ Result<ContourUpdate> Contour::set(ContourInput given, const ContourOptions& opt
         if (auto ok = check(options); !ok) return ok.error();
         Result<ContourInput> enough = input_for(std::move(given), options, run);
         if (!enough) return enough.error();
-        ContourInput input = *std::move(enough);
         const std::lock_guard lock(data_->mutex);
-        Data& data = *data_;
-        ++data.set_count;
-        if (input.packed) return data.take_packed(std::move(input), options, run);
-        if (options.refine && has_curved_cells(input.grid.cells)) {
-            if (auto taken = data.take_curved(std::move(input), options); !taken) return taken.error();
-            return ContourUpdate::grid;
-        }
-        if (!data.packed) {
-            const auto taken = data.take_met(input, options, run);
-            if (!taken) return taken.error();
-            if (*taken == Data::Met::some) return ContourUpdate::grid;
-        }
-        session::LinearInput linear = data.linear;
-        const auto start = std::chrono::steady_clock::now();
-        if (Result<ContourInput> made = linear.make(std::move(input), run); made) input = *std::move(made);
-        else return made.error();
-        if (linear.grid()) data.update_seconds += session::seconds_since(start);
-        const ContourUpdate update = data.what_changed(input, options, run);
-        if (run.progress.cancelled()) return Error{ErrorCode::cancelled, "setting another grid was cancelled"};
-        if (update != ContourUpdate::nothing) {
-            Result<FieldSample> sample = FieldSample::create(input.grid, input.field, options.split_cells);
-            if (!sample) return sample.error();
-            data.sample = *std::move(sample);
-            data.range.reset();
-        }
-        if (data.options.engine != options.engine) data.grid.reset();
-        if (std::exchange(data.is_given, false)) data.packed.reset();
-        data.options = options;
-        data.behind = update;
-        data.linear = std::move(linear);
-        if (data.curved) data.packed.reset();
-        data.curved = {};
-        data.met = {};
-        data.note_new_cells();
-        data.input = std::move(input);
-        if (update == ContourUpdate::nothing && options.method != Method::direct) data.input.grid = {};
-        return update;
+        return data_->set(*std::move(enough), options, run);
     });
 }
 
@@ -180,97 +122,109 @@ Result<void> Contour::prepare(const Run& run) {
 
 Result<ContourResult> Contour::extract(double isovalue, const Run& run) { return extract({&isovalue, 1}, run); }
 
+namespace {
+
+/// What is needed of a session to extract, while another thread may set it; it shares the arrays.
+struct Snapshot {
+    session::Source source;
+    ContourOptions options;
+    std::optional<PackedGrid> packed;
+    std::uint64_t inputs = 0; ///< Asked::inputs
+};
+
+/// What of the result follows from the cells before they were made linear.
+Result<void> finish(const Snapshot& now, std::span<const double> isovalues, const Run& run, ContourResult& result) {
+    const std::shared_ptr<const LinearGrid>& linear = now.source.linear_grid();
+    if (now.options.exact_vertices)
+        if (auto ok =
+                session::move_vertices(linear.get(), now.source.input(), now.options, isovalues, result.surfaces, run);
+            !ok)
+            return ok;
+    if (linear) {
+        session::map_source_cells(*linear, result.surfaces);
+        result.refinement = linear->refinement;
+        result.cells_left_out += linear->refinement.left_out;
+    }
+    if (const std::optional<ValueRange> range = now.source.range()) {
+        result.field.lower = range->lower;
+        result.field.upper = range->upper;
+    }
+    return {};
+}
+
+/// The isovalues that `result` lacks, by an engine that keeps no grid.
+Result<void> extract_the_rest(const Snapshot& now, std::span<const double> isovalues, const Run& run,
+                              ContourResult& result) {
+    result.field = now.packed->field();
+    result.cells_left_out = now.packed->report().cells_left_out;
+    if (result.surfaces.size() == isovalues.size()) return {};
+    const auto grid = now.options.engine->create_grid(*now.packed, run);
+    if (!grid) return grid.error();
+    auto rest = (*grid)->extract(isovalues.subspan(result.surfaces.size()),
+                                 session::extract_options(now.options, now.source.input()), run);
+    if (!rest) return rest.error();
+    result.engine = now.options.engine->name();
+    std::ranges::move(*rest, std::back_inserter(result.surfaces));
+    return {};
+}
+
+} // namespace
+
 Result<ContourResult> Contour::extract(std::span<const double> isovalues, const Run& run) {
     return core::guarded("extraction", [&]() -> Result<ContourResult> {
         if (!data_) return moved_from("the session");
         Data& data = *data_;
         std::unique_lock lock(data.mutex);
-        data.asked += isovalues.size();
-        if (auto ok = data.refine_for(isovalues, run); !ok) return ok.error();
-        if (!data.is_enough_for(isovalues))
-            if (auto ok = data.complete(run); !ok) return ok.error();
+        data.asked.surfaces += isovalues.size();
+        if (auto ok = data.get_cells_for(isovalues, run); !ok) return ok.error();
         if (auto ok = data.prepare(0, run); !ok) return ok.error();
-        auto start = std::chrono::steady_clock::now();
+        core::Stopwatch time;
         const Method method = data.method_of_next(0);
-        // All that is needed of the session, which another thread may set meanwhile; it shares the arrays.
-        std::shared_ptr<const LinearGrid> linear = data.linear_grid();
-        ContourInput input = data.input;
-        const session::MetInput met = data.met;
-        const session::LinearInput linear_input = data.linear;
-        const std::uint64_t set_count = data.set_count;
-        const ContourOptions options = data.options;
-        const std::optional<FieldReport> whole = data.curved ? std::optional(data.field_of_curved()) : std::nullopt;
-        const std::shared_ptr<const core::Residency> residency = data.packed ? data.packed->data().residency : nullptr;
+        const std::optional<FieldReport> whole =
+            data.source.is_curved() ? std::optional(data.field_of_curved()) : std::nullopt;
+        const std::optional<PackedGrid>& packed = data.state.packed();
+        const std::shared_ptr<const core::Residency> residency = packed ? packed->data().residency : nullptr;
         const std::uint64_t read_before = residency ? residency->use().read : 0;
-        const std::optional<ValueRange> range = data.met ? std::optional(data.met.range()) : std::nullopt;
-        ContourResult head;
-        head.notes = std::exchange(data.notes, {});
-        head.pack_seconds = std::exchange(data.update_seconds, 0);
-        Result<ContourResult> result = ContourResult{};
+        ContourResult result;
+        if (method != Method::direct)
+            if (auto ok = data.state.extract(isovalues, data.source, data.options, run, result, data.told); !ok)
+                return ok.error();
+        Snapshot now{data.source, data.options, packed, data.asked.inputs};
+        session::Told told = std::exchange(data.told, {});
+        lock.unlock();
         if (method == Method::direct) {
-            lock.unlock();
-            Result<std::optional<ContourResult>> found = extract_directly(input, options, isovalues, run);
+            Result<std::optional<ContourResult>> found =
+                extract_directly(now.source.input(), now.options, isovalues, run);
             if (found && !*found) {
-                Result<Data::Completed> all = Data::completed(input, met, linear_input, options, run);
+                Result<session::Source> all = now.source.whole(now.options, run, told);
                 if (!all) return all.error();
-                input = all->input;
-                linear = all->linear.grid();
-                head.pack_seconds += std::exchange(all->seconds, 0);
-                lock.lock();
-                if (data.set_count == set_count && (data.met || data.input.all_cells)) data.take(*std::move(all));
-                lock.unlock();
-                start = std::chrono::steady_clock::now();
-                found = extract_directly(input, options, isovalues, run);
+                now.source = *std::move(all);
+                if (auto ok = data.keep_all_cells(now.source, now.options, now.inputs); !ok) return ok.error();
+                time = {};
+                found = extract_directly(now.source.input(), now.options, isovalues, run);
             }
             if (!found) return found.error();
             result = **std::move(found);
-            result->engine = options.engine->name();
-        } else {
-            if (auto ok = data.extract_from_grid(isovalues, run, *result); !ok) return ok.error();
-            std::ranges::move(std::exchange(data.notes, {}), std::back_inserter(head.notes));
-            const PackedGrid packed = *data.packed;
-            const std::shared_ptr<const Engine> engine = data.options.engine;
-            lock.unlock();
-            result->field = packed.field();
-            result->cells_left_out = packed.report().cells_left_out;
-            if (result->surfaces.size() < isovalues.size()) {
-                const auto grid = engine->create_grid(packed, run);
-                if (!grid) return grid.error();
-                auto rest = (*grid)->extract(isovalues.subspan(result->surfaces.size()),
-                                             session::extract_options(options, input), run);
-                if (!rest) return rest.error();
-                result->engine = engine->name();
-                std::ranges::move(*rest, std::back_inserter(result->surfaces));
-            }
+            result.engine = now.options.engine->name();
+        } else if (auto ok = extract_the_rest(now, isovalues, run, result); !ok) {
+            return ok.error();
         }
-        if (!result) return result;
-        if (options.exact_vertices)
-            if (auto ok = session::move_vertices(linear.get(), input, options, isovalues, result->surfaces, run); !ok)
-                return ok.error();
-        if (linear) {
-            session::map_source_cells(*linear, result->surfaces);
-            result->refinement = linear->refinement;
-            result->cells_left_out += linear->refinement.left_out;
-        }
+        if (auto ok = finish(now, isovalues, run, result); !ok) return ok.error();
         if (whole) {
-            result->field.lower = whole->lower;
-            result->field.upper = whole->upper;
-            result->field.no_data = whole->no_data;
-            result->field.infinite = whole->infinite;
-        }
-        if (range) {
-            result->field.lower = range->lower;
-            result->field.upper = range->upper;
+            result.field.lower = whole->lower;
+            result.field.upper = whole->upper;
+            result.field.no_data = whole->no_data;
+            result.field.infinite = whole->infinite;
         }
         if (residency) {
             const core::Residency::Use use = residency->use();
-            result->file_bytes_read = use.read - read_before;
-            result->file_bytes_kept = use.kept;
+            result.file_bytes_read = use.read - read_before;
+            result.file_bytes_kept = use.kept;
         }
-        result->method = method;
-        result->extract_seconds = session::seconds_since(start);
-        result->pack_seconds = head.pack_seconds;
-        result->notes = std::move(head.notes);
+        result.method = method;
+        result.extract_seconds = time.seconds();
+        result.pack_seconds = told.seconds;
+        result.notes = std::move(told.notes);
         return result;
     });
 }
@@ -282,14 +236,14 @@ Result<void> Contour::use_grid(std::size_t surfaces,
         if (!data_) return moved_from("the session");
         const std::lock_guard lock(data_->mutex);
         Data& data = *data_;
-        if (data.curved && !data.curved.grid())
-            if (auto ok = data.refine_for({}, run); !ok) return ok;
+        if (!data.source.is_refined())
+            if (auto ok = data.get_cells_for({}, run); !ok) return ok;
         if (auto ok = data.prepare(surfaces, run); !ok) return ok;
-        if (!data.grid)
+        if (!data.state.has_grid())
             return invalid_argument(
                 fmt::format("the session extracts by the {} engine, which keeps no grid", data.options.engine->name()));
-        data.asked += surfaces;
-        return work(*data.grid, session::extract_options(data.options, data.input));
+        data.asked.surfaces += surfaces;
+        return work(data.state.grid(), session::extract_options(data.options, data.source.input()));
     });
 }
 
@@ -304,15 +258,15 @@ Result<Contour::Prediction> Contour::predict(double isovalue) const {
     const std::lock_guard lock(data_->mutex);
     const Data& data = *data_;
     Prediction prediction;
-    prediction.triangles = data.sample.triangles(isovalue);
+    prediction.triangles = data.look.sample.triangles(isovalue);
     Workload work;
-    work.points = data.sample.points();
-    work.tets = data.sample.tets();
+    work.points = data.look.sample.points();
+    work.tets = data.look.sample.tets();
     work.gradients = data.options.normals == Normals::gradient;
     work.triangles = work.triangles_together = prediction.triangles;
     const Method method = data.method_of_next(1);
     prediction.estimate = estimate(method, work);
-    if (method == Method::clusters && data.packed && data.behind == ContourUpdate::nothing) {
+    if (method == Method::clusters && data.state.is_current()) {
         work.surfaces = 0; // packing is done
         prediction.estimate.seconds -= estimate(method, work).seconds;
     }
@@ -323,7 +277,7 @@ Result<FieldSample> Contour::sample() const {
     return core::guarded("looking at the field", [&]() -> Result<FieldSample> {
         if (!data_) return moved_from("the session");
         const std::lock_guard lock(data_->mutex);
-        return data_->sample;
+        return data_->look.sample;
     });
 }
 
@@ -332,33 +286,34 @@ Result<FieldReport> Contour::field(const Run& run) {
         if (!data_) return moved_from("the session");
         const std::lock_guard lock(data_->mutex);
         Data& data = *data_;
-        if (data.range) return *data.range;
-        if (data.curved) return data.field_of_curved();
+        if (data.look.range) return *data.look.range;
+        if (data.source.is_curved()) return data.field_of_curved();
         if (auto ok = data.prepare(0, run); !ok) return ok.error();
-        if (data.method_of_next(0) == Method::clusters) return data.packed->field();
-        if (data.input.all_cells)
-            if (auto ok = data.complete(run); !ok) return ok.error();
-        const Result<std::optional<ContourResult>> looked = extract_directly(data.input, data.options, {}, run);
+        if (data.method_of_next(0) == Method::clusters) return data.state.packed()->field();
+        if (data.source.input().all_cells)
+            if (auto ok = data.get_all_cells(run); !ok) return ok.error();
+        const Result<std::optional<ContourResult>> looked =
+            extract_directly(data.source.input(), data.options, {}, run);
         if (!looked) return looked.error();
-        data.range = (*looked)->field;
-        if (data.met) {
-            data.range->lower = data.met.range().lower;
-            data.range->upper = data.met.range().upper;
+        data.look.range = (*looked)->field;
+        if (const std::optional<ValueRange> range = data.source.range()) {
+            data.look.range->lower = range->lower;
+            data.look.range->upper = range->upper;
         }
-        return *data.range;
+        return *data.look.range;
     });
 }
 
 std::optional<PackedGrid> Contour::packed() const {
     if (!data_) return std::nullopt;
     const std::lock_guard lock(data_->mutex);
-    return data_->behind == ContourUpdate::nothing ? data_->packed : std::nullopt;
+    return data_->state.is_current() ? data_->state.packed() : std::nullopt;
 }
 
 std::shared_ptr<const LinearGrid> Contour::linear_grid() const {
     if (!data_) return nullptr;
     const std::lock_guard lock(data_->mutex);
-    return data_->linear_grid();
+    return data_->source.linear_grid();
 }
 
 std::string_view Contour::engine() const {
