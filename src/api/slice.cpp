@@ -3,7 +3,7 @@
 
 #include <fmt/core.h>
 
-#include "api/slice_function.hpp"
+#include "grid/points/slice_function.hpp"
 #include "base/buffer.hpp"
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
@@ -26,7 +26,7 @@ Result<PointField> field_of_function(const Array& points, const Function& functi
         core::parallel_pieces(values.size(), std::size_t{1} << 16, progress, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
                 values[i] =
-                    function(api::Vector3{static_cast<double>(scalars[3 * i]), static_cast<double>(scalars[3 * i + 1]),
+                    function(core::Vector3{static_cast<double>(scalars[3 * i]), static_cast<double>(scalars[3 * i + 1]),
                                           static_cast<double>(scalars[3 * i + 2])});
         });
     });
@@ -38,7 +38,7 @@ Result<PointField> field_of_function(const Array& points, const Function& functi
 
 Result<PointField> slice_field(const Array& points, const SliceShape& shape, const Run& run) {
     return core::carry_out("slicing", run, [&](const Progress& progress) {
-        return std::visit([&](const auto& one) { return field_of_function(points, api::function_of(one), progress); },
+        return std::visit([&](const auto& one) { return field_of_function(points, core::function_of(one), progress); },
                           shape);
     });
 }

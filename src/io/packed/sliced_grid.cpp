@@ -9,7 +9,7 @@
 
 #include <isotet/slice.hpp>
 
-#include "api/slice_function.hpp"
+#include "grid/points/slice_function.hpp"
 #include "base/parallel.hpp"
 #include "io/files/first_error.hpp"
 #include "io/packed/checks.hpp"
@@ -37,10 +37,10 @@ public:
     void each(const Packed& packed, std::uint64_t first, std::uint64_t last, const Use& use) const {
         std::visit(
             [&](const auto& shape, const auto& reals) {
-                const auto function = api::function_of(shape);
+                const auto function = core::function_of(shape);
                 const bool floats = packed.point_type == ScalarType::float32;
                 for (std::uint64_t p = first; p < last; ++p) {
-                    api::Vector3 place;
+                    core::Vector3 place;
                     for (std::size_t axis = 0; axis < 3; ++axis) {
                         const double x = static_cast<double>(reals.positions[3 * p + axis]) + packed.origin[axis];
                         place[axis] = floats ? core::rounded_to_float(x) : x;
@@ -127,7 +127,7 @@ Result<std::shared_ptr<SlicedResidency>> SlicedResidency::make(std::shared_ptr<F
     std::string name;
     const auto checked = std::visit(
         [&](const auto& one) {
-            const auto function = api::function_of(one);
+            const auto function = core::function_of(one);
             name = function.name();
             return function.check();
         },

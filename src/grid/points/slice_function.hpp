@@ -13,7 +13,7 @@
 
 #include "base/errors.hpp"
 
-namespace isotet::api {
+namespace isotet::core {
 
 using Vector3 = std::array<double, 3>;
 
@@ -121,4 +121,4 @@ inline PlaneField function_of(const Plane& plane) { return PlaneField(plane); }
 inline SphereField function_of(const Sphere& sphere) { return SphereField(sphere); }
 inline CylinderField function_of(const Cylinder& cylinder) { return CylinderField(cylinder); }
 
-} // namespace isotet::api
+} // namespace isotet::core
