@@ -29,11 +29,6 @@ double finite_number(const std::string& names, std::string_view text, std::strin
     return *value;
 }
 
-/// Refuses a file of numbers; parse() makes an error of this code.
-[[noreturn]] void refuse_file(ErrorCode code, std::string sentence) {
-    throw CLI::ValidationError(std::move(sentence), first_error_code + static_cast<int>(code));
-}
-
 void append_numbers_of_file(const std::string& path, std::vector<double>& numbers, const Command::OtherWords& other) {
     std::ifstream file(path);
     if (!file) refuse_file(ErrorCode::file, fmt::format("the file of numbers '{}' cannot be read", path));
@@ -184,6 +179,10 @@ bool has_short_option(const CLI::App& app, char c) {
 
 } // namespace
 
+void refuse_file(ErrorCode code, std::string sentence) {
+    throw CLI::ValidationError(std::move(sentence), first_error_code + static_cast<int>(code));
+}
+
 void refuse_loose_number(std::string_view word) {
     if (parse_number(word)) throw CLI::ValidationError(one_word_too_many(word));
 }
@@ -313,12 +312,30 @@ Option Command::add_words(const std::string& names, SetTexts set, const std::str
     return Option(*add_list(*app_, names, set, type, description).delimiter(','));
 }
 
+Command::NamedText Command::text_of_file(const std::string& given) const {
+    NamedText out{given.substr(1), {}, {}};
+    std::ifstream file(out.file);
+    const std::size_t colon = out.file.rfind(':');
+    if (!file && colon != std::string::npos) {
+        out.name = out.file.substr(colon + 1);
+        out.file.resize(colon);
+        file.open(out.file);
+    }
+    out.text.assign(std::istreambuf_iterator<char>(file), {});
+    if (!file) refuse_file(ErrorCode::file, fmt::format("the file '{}' cannot be read", out.file));
+    number_files_->push_back(out.file);
+    return out;
+}
+
 Option Command::add_one_of(const std::string& names, std::vector<std::string> words,
-                           std::function<void(std::size_t)> set, const std::string& description) const {
-    const std::string type = fmt::format("{}", fmt::join(words, "|"));
+                           std::function<void(std::size_t)> set, const std::function<void(const NamedText&)>& set_file,
+                           const std::string& description) const {
+    const std::string type = fmt::format("{}{}", fmt::join(words, "|"), set_file ? "|@JSON[:NAME]" : "");
     return add_value(
         names,
-        [words = std::move(words), set = std::move(set), type, names](const std::string& given) {
+        [words = std::move(words), set = std::move(set), set_file, type, names,
+         command = *this](const std::string& given) {
+            if (set_file && given.starts_with('@')) return set_file(command.text_of_file(given));
             const auto found = std::find(words.begin(), words.end(), given);
             if (found == words.end()) refuse_value(names, given, type);
             set(static_cast<std::size_t>(found - words.begin()));

@@ -33,6 +33,9 @@ void refuse_loose_number(std::string_view word);
 /// last.
 [[noreturn]] void refuse_value(const std::string& names, std::string_view given, std::string_view rule);
 
+/// Refuses a file that is read during parsing, whose OptionTree::parse() then makes an error of this code.
+[[noreturn]] void refuse_file(ErrorCode code, std::string sentence);
+
 /// One option of a command.
 class Option {
 public:
@@ -61,7 +64,7 @@ struct CountLimits {
 /// `target`  is set when the command line is parsed; must live until then. So must what a `set` refers to.
 class Command {
 public:
-    /// `number_files`   gets the names of files that numbers are read from while the command line is parsed
+    /// `number_files`   gets the names of files that are read while the command line is parsed
     Command(CLI::App& app, std::vector<std::string>& number_files) : app_(&app), number_files_(&number_files) {}
 
     Command add_command(const std::string& word, const std::string& summary) const;
@@ -128,19 +131,34 @@ public:
     template <class Value>
     Option add_choice(const std::string& names, Value& target,
                       const std::vector<std::pair<std::string, Value>>& choices, const std::string& description) const {
+        return add_choice_or_file(names, target, choices, {}, description);
+    }
+
+    /// The text of a file, and the name that an option has behind it.
+    struct NamedText {
+        std::string file, text, name;
+    };
+    /// The same, or "@FILE" or "@FILE:NAME", which `set` takes.
+    template <class Value>
+    Option add_choice_or_file(const std::string& names, Value& target,
+                              const std::vector<std::pair<std::string, Value>>& choices,
+                              const std::function<void(const NamedText&)>& set, const std::string& description) const {
         std::vector<std::string> words;
         for (const auto& [word, value] : choices) words.push_back(word);
         return add_one_of(
-            names, std::move(words), [&target, choices](std::size_t chosen) { target = choices[chosen].second; },
+            names, std::move(words), [&target, choices](std::size_t chosen) { target = choices[chosen].second; }, set,
             description);
     }
+
+    /// The file of "@FILE" or "@FILE:NAME". Refuses one that cannot be read.
+    NamedText text_of_file(const std::string& given) const;
 
 private:
     friend class OptionGroup;
 
-    /// `set` is called with the number of the chosen word.
+    /// `set` is called with the number of the chosen word, `set_file` where there is one with a file instead.
     Option add_one_of(const std::string& names, std::vector<std::string> words, std::function<void(std::size_t)> set,
-                      const std::string& description) const;
+                      const std::function<void(const NamedText&)>& set_file, const std::string& description) const;
 
     CLI::App* app_;
     std::vector<std::string>* number_files_;
@@ -172,7 +190,7 @@ public:
 
     /// Parses a command line, argv[0] first. With --help only `command` and `help` of the CommandLine are set.
     ///
-    /// Errors   invalid_argument; file and invalid_data for a file of numbers
+    /// Errors   invalid_argument; file and invalid_data for a file that is read meanwhile
     Result<void> parse(const std::vector<std::string>& words);
 
     /// The program, then its commands in order; hidden ones are left out.

@@ -2,7 +2,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include <isotet/jobs/number_text.hpp>
+#include <isotet/scene.hpp>
 
 #include "command_options.hpp"
 #include "shape_text.hpp"
@@ -195,7 +198,14 @@ void add_cuts(const Command& command, RenderCommand& render) {
 }
 
 /// A number is the opacity of surfaces, all else that of a volume.
-void set_opacity(RenderCommand& render, const std::string& text) {
+void set_opacity(const Command& command, RenderCommand& render, const std::string& text) {
+    if (text.starts_with('@')) {
+        const Command::NamedText file = command.text_of_file(text);
+        Result<OpacityText> parsed = parse_opacity_file(file.text, file.name);
+        if (!parsed) refuse_file(ErrorCode::invalid_data, file.file + ": " + parsed.error().message);
+        render.volume_opacity = *std::move(parsed);
+        return;
+    }
     const std::vector<double> numbers = parse_numbers(text);
     if (numbers.size() == 1) {
         if (numbers[0] < 0 || numbers[0] > 1) refuse_value("--opacity", text, "a number from 0 to 1");
@@ -212,13 +222,14 @@ void add_opacity(const Command& command, RenderCommand& render) {
     const OptionGroup group(command, "Opacity and light");
     command.add_texts(
         "--opacity",
-        [&render](const std::vector<std::string>& texts) {
-            for (const std::string& text : texts) set_opacity(render, text);
+        [&render, command](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) set_opacity(command, render, text);
         },
         "OPACITY",
         "Opacity of the surfaces, 0 to 1; default: 1, and 0.35 for isosurfaces that hide others. "
         "Of a volume: VALUE:OPACITY,... ascending, with lines between; ramp (default); peaks or peaks:N, at N values; "
-        "shell, transparent near the ends of the range. May be given for both");
+        "shell, transparent near the ends of the range; or @FILE[:NAME], with such points, or a colour map of ParaView "
+        "in JSON with its opacity over values as they are. May be given for both");
     command.add_flag(
         "--volume", render.volume,
         "Draw the field as a volume; isosurfaces only with -i or --levels, the boundary only with --boundary. "
@@ -340,13 +351,23 @@ Command add_render_command(const Command& program, RenderCommand& render) {
 
 void add_color_scale(const Command& command, ColorScale& scale, std::vector<double>& range) {
     const OptionGroup group(command, "Colours");
-    command.add_choice<ColorMap>("--colormap", scale.map,
-                                 {{"viridis", ColorMap::viridis},
-                                  {"cividis", ColorMap::cividis},
-                                  {"plasma", ColorMap::plasma},
-                                  {"turbo", ColorMap::turbo},
-                                  {"cool-warm", ColorMap::cool_warm}},
-                                 "Colour map; default: viridis");
+    command.add_choice_or_file<ColorMap>(
+        "--colormap", scale.map,
+        {{"viridis", ColorMap::viridis},
+         {"cividis", ColorMap::cividis},
+         {"plasma", ColorMap::plasma},
+         {"turbo", ColorMap::turbo},
+         {"cool-warm", ColorMap::cool_warm}},
+        [&scale](const Command::NamedText& file) {
+            Result<ColorMapFile> map = parse_color_map_file(file.text, file.name);
+            if (!map) refuse_file(ErrorCode::invalid_data, file.file + ": " + map.error().message);
+            if (map->colors.empty())
+                refuse_file(ErrorCode::invalid_data,
+                            fmt::format("{}: its colour map '{}' has no RGBPoints", file.file, map->name));
+            scale.colors = std::move(map->colors);
+            if (map->no_data) scale.no_data = *map->no_data;
+        },
+        "Colour map, or one of ParaView in JSON, from end to end of --range; default: viridis");
     command.add_numbers("--range", range, "A,B",
                         "Values at the ends of the colour map; default: the smallest and the largest of the field");
     command.add_flag("--log", scale.logarithmic, "Colours follow the logarithm of the values");

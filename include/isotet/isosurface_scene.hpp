@@ -73,6 +73,7 @@ struct SceneLook {
                                            ///< each; the CPU makes them, and no volume goes with them
     std::optional<PartChoice> keep = {}; ///< of each isosurface or solid only these parts, as keep_parts(); the CPU
                                          ///< extracts
+    std::vector<Color> map_colors = {};  ///< not empty: in place of `map`, as ColorScale::colors
 };
 
 /// Colour and opacity of one of several isosurfaces.

@@ -180,22 +180,51 @@ ISOTET_API std::optional<ColorMap> parse_color_map(std::string_view name) noexce
 /// The colour at a place of the map; places outside 0 to 1 have those of its ends.
 ISOTET_API Color color_at(ColorMap map, double place) noexcept;
 
+/// The same of some colours, evenly from 0 to 1; of none those of `map`.
+ISOTET_API Color color_at(const std::vector<Color>& colors, ColorMap map, double place) noexcept;
+
 /// Which value has which colour.
 ///
 /// `lower`, `upper`   values at the ends of the map, lower < upper, both finite; on a logarithmic scale lower > 0
 /// `classes`          not empty: the range is as many equal parts, each of one colour; `map` does not count
 /// `no_data`          where a value is NaN. Values beyond the ends have the colours of the ends
+/// `colors`           not empty: in place of `map`, evenly from 0 to 1, with mixed ones between (parse_color_map_file())
 struct ISOTET_API ColorScale {
     ColorMap map = ColorMap::viridis;
     double lower = 0, upper = 1;
     bool logarithmic = false;
     std::vector<Color> classes = {};
     Color no_data{0.72F, 0.72F, 0.72F, 1};
+    std::vector<Color> colors = {};
 
     /// The place of a value in the map, not limited to 0 to 1; NaN for what is no number.
     double place_of(double value) const noexcept;
     double value_of(double place) const noexcept; ///< the value at a place of the map
+    Color color_at(double place) const noexcept;  ///< without `classes`, at a place of the map
 };
+
+/// A colour map of a file.
+struct ColorMapFile {
+    std::string name;
+    std::vector<Color> colors;    ///< 1024, evenly from its first value to its last, for ColorScale::colors; or none
+    ValueRange range;             ///< these values
+    std::optional<Color> no_data; ///< its NanColor
+    OpacityCurve opacity;         ///< over values as the file has them; without points where it has none
+};
+
+/// A colour map from the text of a JSON file that ParaView exports: RGBPoints in the spaces RGB, HSV, Lab, Diverging and Step,
+/// and Points, with their midpoints and sharpness, for the opacity. LabCIEDE2000 is taken as Lab.
+///
+/// `name`   of one of several maps; empty: the file has one only
+/// Errors   invalid_data: no JSON, no such map, several but no name, neither colours nor opacity, lists that are not of
+///          four numbers a point, values that descend or are not finite, colours and opacities that are not from 0 to 1
+ISOTET_API Result<ColorMapFile> parse_color_map_file(std::string_view text, std::string_view name = {});
+
+/// Opacity from the text of a file: such a colour map, or what parse_opacity() takes, where points may also be separated
+/// by blanks and line ends, and # begins a comment.
+///
+/// Errors   as these two; invalid_data: a colour map without opacity
+ISOTET_API Result<OpacityText> parse_opacity_file(std::string_view text, std::string_view name = {});
 
 /// Values that colour a surface in memory.
 ///

@@ -2,12 +2,14 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/variant.h>
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <isotet/pack.hpp>
@@ -31,6 +33,7 @@ struct RenderRequest {
     std::vector<SurfaceColors> values;              ///< one a surface; empty: each has its color
     std::optional<std::pair<double, double>> range; ///< of values; nothing: theirs
     ColorMap map = ColorMap::viridis;
+    std::vector<Color> map_colors; ///< not empty: of a file, in its place
     double opacity = 1;
     double zoom = 1;
     bool fitted = false; ///< the camera says all
@@ -58,6 +61,7 @@ std::optional<Color> color_of(std::string_view text) { return parse_color(text);
 Result<ColorScale> scale_of(const RenderRequest& request, const Run& run) {
     ColorOptions options;
     options.scale.map = request.map;
+    options.scale.colors = request.map_colors;
     if (request.volume && request.volume->field().lower < request.volume->field().upper)
         options.range = ValueRange{request.volume->field().lower, request.volume->field().upper};
     if (request.range) options.range = ValueRange{request.range->first, request.range->second};
@@ -81,7 +85,8 @@ Result<void> set_normals(RenderRequest& request, const Run& run) {
 Color color_of_surface(const RenderRequest& request, std::size_t i) {
     if (i < request.colors.size()) return request.colors[i];
     if (request.surfaces.size() == 1) return DrawnSurface{}.color;
-    return color_at(request.map, static_cast<double>(i) / static_cast<double>(request.surfaces.size() - 1));
+    return color_at(request.map_colors, request.map,
+                    static_cast<double>(i) / static_cast<double>(request.surfaces.size() - 1));
 }
 
 void add_volume(Scene& scene, RenderRequest& request, const ColorScale& scale) {
@@ -93,9 +98,20 @@ void add_volume(Scene& scene, RenderRequest& request, const ColorScale& scale) {
     drawn.opacity = opacity_of(request.volume_opacity, {field.lower, field.upper});
     drawn.opacity_length = request.opacity_length.value_or(default_opacity_length(box));
     for (const double isovalue : request.volume_isovalues)
-        drawn.isosurfaces.push_back({isovalue, color_at(scale.map, scale.place_of(isovalue))});
+        drawn.isosurfaces.push_back({isovalue, scale.color_at(scale.place_of(isovalue))});
     scene.bounds.add(box);
     if (request.legend) request.annotation.opacity = drawn.opacity;
+}
+
+/// The text of a file, and the name of one of its colour maps.
+using NamedText = std::pair<std::string, std::string>;
+
+Result<std::vector<Color>> colors_of(const NamedText& file) {
+    Result<ColorMapFile> map = parse_color_map_file(file.first, file.second);
+    if (!map) return map.error();
+    if (map->colors.empty())
+        return Error{ErrorCode::invalid_data, "the colour map '" + map->name + "' has no RGBPoints"};
+    return std::move(map->colors);
 }
 
 Result<Picture> picture_of(RenderRequest& request, const Run& run) {
@@ -162,7 +178,7 @@ void add_pictures(nb::module_& module) {
     module.def(
         "render",
         [](const std::vector<const Surface*>& surfaces, const std::vector<std::string>& colors,
-           const std::vector<ArrayIn>& values, bool of_triangles, const std::string& map,
+           const std::vector<ArrayIn>& values, bool of_triangles, const std::variant<std::string, NamedText>& map,
            const std::optional<std::pair<double, double>>& range, double opacity, const Camera& camera, bool fitted,
            double zoom, std::pair<std::uint32_t, std::uint32_t> size, std::uint32_t samples,
            const std::string& background, const std::string& title, bool legend, bool smooth,
@@ -172,8 +188,11 @@ void add_pictures(nb::module_& module) {
             RenderRequest request;
             request.picture.occlusion = occlusion;
             request.volume = volume;
-            if (!volume_opacity.empty())
-                request.volume_opacity = call(how, [&](const Run&) { return parse_opacity(volume_opacity); });
+            if (const auto* const file = std::get_if<NamedText>(&volume_opacity))
+                request.volume_opacity =
+                    call(how, [&](const Run&) { return parse_opacity_file(file->first, file->second); });
+            else if (const auto& text = std::get<std::string>(volume_opacity); !text.empty())
+                request.volume_opacity = call(how, [&](const Run&) { return parse_opacity(text); });
             request.opacity_length = opacity_length;
             request.volume_isovalues = volume_isovalues;
             for (const Surface* surface : surfaces) request.surfaces.push_back(*surface);
@@ -182,7 +201,9 @@ void add_pictures(nb::module_& module) {
             for (const ArrayIn& array : values)
                 request.values.push_back(
                     {array_in(array), of_triangles ? Association::cell : Association::point, ColorScale{}});
-            request.map = parsed("color_map", map, map_of);
+            if (const auto* const file = std::get_if<NamedText>(&map))
+                request.map_colors = call(how, [&](const Run&) { return colors_of(*file); });
+            else request.map = parsed("color_map", std::get<std::string>(map), map_of);
             request.range = range;
             request.opacity = opacity;
             request.zoom = zoom;

@@ -6,6 +6,7 @@ from __future__ import annotations
 import struct
 import zlib
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -51,10 +52,20 @@ def _values(surfaces: Sequence[Surface], name: str) -> tuple[list[np.ndarray], b
     raise ValueError(f"color_by is '{name}', but the surfaces have no such field: there are {', '.join(known) or 'none'}")
 
 
-def _opacity(opacity: str | Sequence[tuple[float, float]]) -> str:
-    """The text of an opacity: points as pairs, or text as it is."""
+def _text_or_file(text: str) -> str | tuple[str, str]:
+    """Of "@FILE" or "@FILE:NAME" the text of the file and the name."""
+    if not text.startswith("@"):
+        return text
+    file, name = text[1:], ""
+    if not Path(file).exists() and ":" in file:
+        file, _, name = file.rpartition(":")
+    return Path(file).read_text(encoding="utf-8"), name
+
+
+def _opacity(opacity: str | Sequence[tuple[float, float]]) -> str | tuple[str, str]:
+    """An opacity: points as pairs, or text or a file as they are."""
     if isinstance(opacity, str):
-        return opacity
+        return _text_or_file(opacity)
     return ",".join(f"{float(value)!r}:{float(part)!r}" for value, part in opacity)
 
 
@@ -73,7 +84,7 @@ def render(surfaces: Surface | Sequence[Surface] = (), *, color_by: str | None =
         One, or several.
     color_by, range, color_map
         A field that all surfaces carry, or a cell field ("isovalue"); the values at the ends of the map, or those of the
-        field; "viridis", "cividis", "plasma", "turbo" or "cool-warm".
+        field; "viridis", "cividis", "plasma", "turbo", "cool-warm", or "@FILE" or "@FILE:NAME", a colour map of ParaView in JSON.
     colors
         Without `color_by`: "#1f77b4" or a name such as "gray", one for all or one for each.
     opacity
@@ -89,8 +100,8 @@ def render(surfaces: Surface | Sequence[Surface] = (), *, color_by: str | None =
         "white", "transparent", ...; a title over the colour scale, which `legend` draws beside the picture.
     volume, volume_opacity, opacity_length
         A packed grid whose field is drawn as a volume, with the surfaces in it; "ramp", "peaks", "peaks:5", "shell", or pairs of
-        a value, ascending, and the opacity from 0 to 1 of a length of it, "" for none; that length, or a tenth of the
-        diagonal of the grid's box. The scale is then the volume's.
+        a value, ascending, and the opacity from 0 to 1 of a length of it, "" for none, or "@FILE", with points or a colour map of
+        ParaView with its opacity; that length, or a tenth of the diagonal of the grid's box. The scale is then the volume's.
     volume_isovalues
         Isosurfaces of the volume that its rays meet, opaque, without being extracted.
     occlusion
@@ -113,7 +124,7 @@ def render(surfaces: Surface | Sequence[Surface] = (), *, color_by: str | None =
     values, of_triangles = ([], False) if color_by is None else _values(drawn, color_by)
     camera, fitted = _camera(view, parallel)
     width, height = size
-    pixels = _isotet.render([surface._surface for surface in drawn], names, values, of_triangles, color_map, range,
+    pixels = _isotet.render([surface._surface for surface in drawn], names, values, of_triangles, _text_or_file(color_map), range,
                             float(opacity), camera, fitted, float(zoom), (width, height), samples, background,
                             title or color_by or (str(volume.field_report["name"]) if volume is not None else ""), legend, smooth,
                             None if volume is None else volume._packed, _opacity(volume_opacity), opacity_length,

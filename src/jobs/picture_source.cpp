@@ -181,6 +181,7 @@ SceneLook PictureSource::look_of(const Contents& contents) const {
     if (contents.field && !look.colors && job_.sweep.size() == 3)
         look.isovalue_range = {std::min(job_.sweep[0], job_.sweep[1]), std::max(job_.sweep[0], job_.sweep[1])};
     look.map = job_.scale.map;
+    look.map_colors = job_.scale.colors;
     look.opacity = job_.opacity;
     look.volume = contents.volume;
     if (contents.volume) look.isovalue_range = {contents.volume->scale.lower, contents.volume->scale.upper};

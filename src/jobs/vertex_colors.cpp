@@ -24,7 +24,7 @@ Bytes bytes_of(const Color& color) {
 Bytes color_of(double value, const ColorScale& scale) {
     const double place = scale.place_of(value);
     if (std::isnan(place)) return bytes_of(scale.no_data);
-    if (scale.classes.empty()) return bytes_of(color_at(scale.map, place));
+    if (scale.classes.empty()) return bytes_of(scale.color_at(place));
     const auto classes = static_cast<double>(scale.classes.size());
     const double number = std::clamp(std::floor(place * classes), 0.0, classes - 1);
     return bytes_of(scale.classes[static_cast<std::size_t>(number)]);

@@ -164,7 +164,7 @@ void Layout::paint_bar(Picture& picture, double x, double y, const Color& ink) c
     const ColorScale& scale = *annotation_.scale;
     const double height = bar_height();
     for (double row = 0; row < height; ++row)
-        fill(picture, x, y + row, swatch_, 1, color_at(scale.map, 1 - (row + 0.5) / height));
+        fill(picture, x, y + row, swatch_, 1, scale.color_at(1 - (row + 0.5) / height));
     const double stroke = std::max(1.0, std::round(size_ / 16));
     paint_opacity(picture, x, y, stroke);
     for (const Tick& tick : ticks_) {
@@ -184,7 +184,7 @@ void Layout::paint_opacity(Picture& picture, double x, double y, double stroke) 
         const double place = 1 - (row + 0.5) / height;
         const double at = opacity.at(annotation_.scale->value_of(place)) / most * (swatch_ - stroke);
         const double from = before < 0 ? at : std::min(before, at), to = before < 0 ? at : std::max(before, at);
-        const bool on_light = is_light(color_at(annotation_.scale->map, place));
+        const bool on_light = is_light(annotation_.scale->color_at(place));
         fill(picture, x + std::round(from), y + row, std::round(to) - std::round(from) + stroke, 1,
              on_light ? dark : light);
         before = at;

@@ -18,12 +18,13 @@ Color color_among(std::size_t count, std::size_t which, const ValueAt& value_at,
     const std::optional<double> isovalue = value_at(which);
     if (look.isovalue_range && isovalue) {
         const auto [lower, upper] = *look.isovalue_range;
-        return color_at(look.map, lower < upper ? (*isovalue - lower) / (upper - lower) : 0.5);
+        return color_at(look.map_colors, look.map, lower < upper ? (*isovalue - lower) / (upper - lower) : 0.5);
     }
     if (count < 2) return single_color;
     std::size_t below = 0;
     for (std::size_t i = 0; i < count; ++i) below += value_at(i) < isovalue ? 1 : 0;
-    return color_at(look.map, 0.12 + 0.76 * static_cast<double>(below) / static_cast<double>(count - 1));
+    return color_at(look.map_colors, look.map,
+                    0.12 + 0.76 * static_cast<double>(below) / static_cast<double>(count - 1));
 }
 
 } // namespace

@@ -179,6 +179,42 @@ TEST_F(RenderOnCpu, DrawsAVolumeWithWhatIsInIt) {
     EXPECT_GT(unlike(read_picture(path("v1.png")).value(), read_picture(path("v3.png")).value()), 0.01);
 }
 
+TEST_F(RenderOnCpu, TakesColoursAndOpacityFromFiles) {
+    put_content(path("map.json"), R"([{"Name": "one", "ColorSpace": "RGB", "NanColor": [1, 0, 0],
+        "RGBPoints": [0, 0, 0, 1, 5, 1, 1, 0], "Points": [-1, 0, 0.5, 0, 0, 0.5, 0.5, 0, 1, 0, 0.5, 0]}])");
+    put_content(path("points.txt"), "# of the gyroid\n-1:0\n0:0.5\n1:0\n");
+    const std::vector<std::string> base{"-f", "gyroid", "--volume"};
+    const auto with = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), base.begin(), base.end());
+        return more;
+    };
+    const Picture expected = picture("a.png", with({"--opacity=-1:0,0:0.5,1:0"}));
+    for (const char* file : {"map.json", "points.txt", "map.json:one"})
+        EXPECT_EQ(unlike(picture("b.png", with({"--opacity", "@" + path(file)})), expected), 0) << file;
+    EXPECT_GT(
+        unlike(picture("b.png", with({"--opacity=-1:0,0:0.5,1:0", "--colormap", "@" + path("map.json")})), expected),
+        0.02);
+    EXPECT_GT(unlike(picture("b.png", {"-f", "gyroid", "--levels", "2", "--colormap", "@" + path("map.json")}),
+                     picture("c.png", {"-f", "gyroid", "--levels", "2"})),
+              0.02)
+        << "isosurfaces have its colours, too";
+    put_content(path("none.json"), R"({"Name": "n", "RGBPoints": [0, 0, 0, 1, 5, 1, 1, 0]})");
+    const auto refused = [&](std::vector<std::string> more) {
+        const RunResult run = isotet(command("e.png", with(std::move(more))));
+        return std::to_string(run.status) + run.err;
+    };
+    EXPECT_NE(refused({"--opacity", "@" + path("none.json")}).find("no Points of opacity"), std::string::npos);
+    EXPECT_NE(refused({"--opacity", "@" + path("map.json:two")}).find("no colour map 'two', but 'one'"),
+              std::string::npos);
+    EXPECT_NE(refused({"--colormap", "@" + path("points.txt")}).find("is not JSON"), std::string::npos);
+    EXPECT_NE(refused({"--colormap", "@" + path("gone.json")}).find("cannot be read"), std::string::npos);
+    EXPECT_EQ(refused({"--colormap", "@" + path("gone.json")})[0], '3');
+    EXPECT_NE(refused({"--colormap", "jet"}).find("--colormap got 'jet'"), std::string::npos);
+    const RunResult over = isotet(
+        {"render", "make:kuhn:4:gyroid", "--volume", "--colormap", "@" + path("map.json"), "-o", path("map.json")});
+    EXPECT_NE(over.status, 0) << "what is read is not written over";
+}
+
 TEST_F(RenderOnCpu, RefusesWhatDoesNotGoWithAVolume) {
     const auto says = [&](std::vector<std::string> more, const char* text) {
         more.insert(more.begin(), {"-f", "gyroid"});

@@ -73,6 +73,23 @@ def test_a_volume_is_drawn_with_surfaces_inside(sphere):
         isotet.render(volume=packed, opacity_length=-1)
 
 
+def test_colours_and_opacity_may_come_from_files(tmp_path):
+    packed = isotet.make("kuhn", 8, ["sphere"]).pack("sphere")
+    file = tmp_path / "map.json"
+    file.write_text('[{"Name": "a", "RGBPoints": [0, 0, 0, 1, 5, 1, 1, 0], "Points": [0.3, 0, 0.5, 0, 0.5, 0.8, 0.5, 0]},'
+                    ' {"Name": "b", "RGBPoints": [0, 1, 0, 0, 5, 1, 1, 0]}]')
+    points = isotet.render(volume=packed, volume_opacity=[(0.3, 0), (0.5, 0.8)], size=(80, 60))
+    assert np.array_equal(points, isotet.render(volume=packed, volume_opacity=f"@{file}:a", size=(80, 60)))
+    blue, red = (isotet.render(volume=packed, color_map=f"@{file}:{name}", size=(80, 60)) for name in "ab")
+    assert not np.array_equal(blue, red)
+    with pytest.raises(ValueError, match="no Points of opacity"):
+        isotet.render(volume=packed, volume_opacity=f"@{file}:b")
+    with pytest.raises(ValueError, match="2 colour maps"):
+        isotet.render(volume=packed, color_map=f"@{file}")
+    with pytest.raises(FileNotFoundError):
+        isotet.render(volume=packed, color_map="@none.json")
+
+
 def test_backgrounds_may_be_transparent(sphere):
     picture = isotet.render(sphere, size=(120, 120), background="transparent")
     assert picture[0, 0, 3] == 0 and picture[60, 60, 3] == 255

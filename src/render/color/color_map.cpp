@@ -54,6 +54,18 @@ Color color_at(ColorMap map, double place) noexcept {
     return {mixed(0), mixed(1), mixed(2), 1};
 }
 
+Color color_at(const std::vector<Color>& colors, ColorMap map, double place) noexcept {
+    if (colors.empty()) return color_at(map, place);
+    const double entry = std::clamp(place, 0.0, 1.0) * static_cast<double>(colors.size() - 1);
+    const auto below = static_cast<std::size_t>(entry);
+    const Color &a = colors[below], &b = colors[std::min(below + 1, colors.size() - 1)];
+    const auto part = static_cast<float>(entry - static_cast<double>(below));
+    const auto mixed = [&](float from, float to) { return from * (1 - part) + to * part; };
+    return {mixed(a.red, b.red), mixed(a.green, b.green), mixed(a.blue, b.blue), 1};
+}
+
+Color ColorScale::color_at(double place) const noexcept { return isotet::color_at(colors, map, place); }
+
 double ColorScale::place_of(double value) const noexcept {
     if (!logarithmic || std::isnan(value)) return (value - lower) / (upper - lower);
     if (value <= 0) return -std::numeric_limits<double>::infinity();

@@ -17,7 +17,7 @@ core::Buffer<float> color_table(const ColorScale& scale) {
     for (std::uint32_t i = 0; i < entries_per_map; ++i) {
         const std::size_t which = i * scale.classes.size() / entries_per_map;
         const Light color =
-            linear_light(scale.classes.empty() ? color_at(scale.map, static_cast<double>(i) / (entries_per_map - 1))
+            linear_light(scale.classes.empty() ? scale.color_at(static_cast<double>(i) / (entries_per_map - 1))
                                                : scale.classes[which]);
         for (std::size_t part = 0; part < 3; ++part) table[3 * i + part] = color[part];
     }

@@ -26,7 +26,7 @@ double depth_between(double a, double b, double at_a, double at_b) {
 
 Light color_of(const ColorScale& scale, double value) {
     const double place = std::min(std::max(scale.place_of(value), 0.0), 1.0);
-    if (scale.classes.empty()) return linear_light(color_at(scale.map, place));
+    if (scale.classes.empty()) return linear_light(scale.color_at(place));
     const auto which = static_cast<std::size_t>(place * static_cast<double>(scale.classes.size()));
     return linear_light(scale.classes[std::min(which, scale.classes.size() - 1)]);
 }
