@@ -242,6 +242,8 @@ void add_opacity(const Command& command, RenderCommand& render) {
         },
         "LENGTH",
         "Length over which one value of a volume has its opacity; default: a tenth of the diagonal of the grid's box");
+    command.add_flag("--volume-shading", render.volume_shading,
+                     "Light the colours of a volume as those of isosurfaces, by the gradient of the field in each tet");
     command.add_numbers("--dirac", render.dirac, "V[,W...]",
                         "Draw isosurfaces, at numbers or shares such as 50%v or p95, by rays through the volume, opaque, "
                         "without extracting them; its opacity is only drawn where --opacity is given",

@@ -47,6 +47,7 @@ Json volume_json(const DrawInput& input, const PictureNumbers& picture) {
         opacity.push_back(Json::array({point.value, point.opacity}));
     return {{"opacity", std::move(opacity)},
             {"opacity_length", input.scene->report().opacity_length},
+            {"shading", input.volume->shaded},
             {"isovalues", input.volume->isosurfaces},
             {"clusters", picture.volume.clusters},
             {"tets", picture.volume.tets},

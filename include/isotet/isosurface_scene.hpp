@@ -46,11 +46,13 @@ enum class SolidSide : std::uint8_t { above, below };
 /// `opacity`          without points: nothing but the isosurfaces that rays meet
 /// `opacity_length`   that the opacity is of; nothing: a tenth of the diagonal of the box around the grid
 /// `isosurfaces`      isovalues of surfaces that rays meet, opaque, with the colours of isosurfaces
+/// `shaded`           as DrawnVolume::shaded
 struct VolumeLook {
     ColorScale scale;
     OpacityCurve opacity;
     std::optional<double> opacity_length = {};
     std::vector<double> isosurfaces = {};
+    bool shaded = false;
 };
 
 /// How a scene looks.

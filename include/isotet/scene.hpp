@@ -273,6 +273,7 @@ struct DrawnVolume {
     double opacity_length = 1;                ///< that `opacity` is of, in the unit of coordinates; above 0
     std::vector<DrawnIsosurface> isosurfaces; ///< shaded by the gradient of the field in each tet
     std::vector<Plane> clips;                 ///< only normal . p <= offset is seen; rays are cut, not cells
+    bool shaded = false; ///< colours are lit as those of isosurfaces are, by the gradient of the field in each tet
 };
 
 /// The length that opacity is of where none is given: a tenth of the diagonal.

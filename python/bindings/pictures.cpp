@@ -43,6 +43,7 @@ struct RenderRequest {
     OpacityText volume_opacity;
     std::optional<double> opacity_length;
     std::vector<double> volume_isovalues; ///< of surfaces that rays meet
+    bool volume_shading = false;
     bool legend = true;
     bool smooth = true; ///< by the normals of vertices; else every triangle is flat
 };
@@ -97,6 +98,7 @@ void add_volume(Scene& scene, RenderRequest& request, const ColorScale& scale) {
     drawn.scale = scale;
     drawn.opacity = opacity_of(request.volume_opacity, {field.lower, field.upper});
     drawn.opacity_length = request.opacity_length.value_or(default_opacity_length(box));
+    drawn.shaded = request.volume_shading;
     for (const double isovalue : request.volume_isovalues)
         drawn.isosurfaces.push_back({isovalue, scale.color_at(scale.place_of(isovalue))});
     scene.bounds.add(box);
@@ -182,9 +184,9 @@ void add_pictures(nb::module_& module) {
            const std::optional<std::pair<double, double>>& range, double opacity, const Camera& camera, bool fitted,
            double zoom, std::pair<std::uint32_t, std::uint32_t> size, std::uint32_t samples,
            const std::string& background, const std::string& title, bool legend, bool smooth,
-           const std::optional<PackedGrid>& volume, const std::string& volume_opacity,
-           std::optional<double> opacity_length, const std::vector<double>& volume_isovalues, double occlusion,
-           const CallOptions& how) {
+           const std::optional<PackedGrid>& volume, const std::variant<std::string, NamedText>& volume_opacity,
+           std::optional<double> opacity_length, const std::vector<double>& volume_isovalues, bool volume_shading,
+           double occlusion, const CallOptions& how) {
             RenderRequest request;
             request.picture.occlusion = occlusion;
             request.volume = volume;
@@ -195,6 +197,7 @@ void add_pictures(nb::module_& module) {
                 request.volume_opacity = call(how, [&](const Run&) { return parse_opacity(text); });
             request.opacity_length = opacity_length;
             request.volume_isovalues = volume_isovalues;
+            request.volume_shading = volume_shading;
             for (const Surface* surface : surfaces) request.surfaces.push_back(*surface);
             request.smooth = smooth;
             for (const std::string& color : colors) request.colors.push_back(parsed("color", color, color_of));
@@ -223,8 +226,8 @@ void add_pictures(nb::module_& module) {
         },
         "surfaces"_a, "colors"_a, "values"_a, "of_triangles"_a, "color_map"_a, "range"_a.none(), "opacity"_a,
         "camera"_a, "fitted"_a, "zoom"_a, "size"_a, "samples"_a, "background"_a, "title"_a, "legend"_a, "smooth"_a,
-        "volume"_a.none(), "volume_opacity"_a, "opacity_length"_a.none(), "volume_isovalues"_a, "occlusion"_a,
-        "call"_a);
+        "volume"_a.none(), "volume_opacity"_a, "opacity_length"_a.none(), "volume_isovalues"_a, "volume_shading"_a,
+        "occlusion"_a, "call"_a);
 }
 
 } // namespace isotet::python

@@ -75,8 +75,8 @@ def render(surfaces: Surface | Sequence[Surface] = (), *, color_by: str | None =
            size: tuple[int, int] = (1200, 900), samples: int = 3, background: str = "white", title: str = "",
            legend: bool = True, smooth: bool = True, volume: PackedGrid | None = None,
            volume_opacity: str | Sequence[tuple[float, float]] = "ramp", opacity_length: float | None = None,
-           volume_isovalues: Sequence[float] = (), occlusion: float = 0.8, threads: int = 0,
-           progress: Progress | None = None) -> np.ndarray:  # fmt: skip
+           volume_isovalues: Sequence[float] = (), volume_shading: bool = False, occlusion: float = 0.8,
+           threads: int = 0, progress: Progress | None = None) -> np.ndarray:  # fmt: skip
     """A picture of surfaces, of a volume, or of both: height x width x 4 numbers from 0 to 255, red, green, blue and opacity.
     No graphics card or window is needed; the same surfaces give the same bytes on every machine.
 
@@ -104,6 +104,8 @@ def render(surfaces: Surface | Sequence[Surface] = (), *, color_by: str | None =
         ParaView with its opacity; that length, or a tenth of the diagonal of the grid's box. The scale is then the volume's.
     volume_isovalues
         Isosurfaces of the volume that its rays meet, opaque, without being extracted.
+    volume_shading
+        Light the colours of the volume by the gradient of the field in each tet.
     occlusion
         How dark folds and hollows of opaque surfaces become, 0 to 1.
 
@@ -128,6 +130,6 @@ def render(surfaces: Surface | Sequence[Surface] = (), *, color_by: str | None =
                             float(opacity), camera, fitted, float(zoom), (width, height), samples, background,
                             title or color_by or (str(volume.field_report["name"]) if volume is not None else ""), legend, smooth,
                             None if volume is None else volume._packed, _opacity(volume_opacity), opacity_length,
-                            [float(isovalue) for isovalue in volume_isovalues], float(occlusion),
+                            [float(isovalue) for isovalue in volume_isovalues], volume_shading, float(occlusion),
                             call_options(threads, progress))  # fmt: skip
     return pixels.reshape(height, width, 4)

@@ -172,6 +172,7 @@ Result<void> check_volume(const DrawJob& job) {
     if (!draws_volume(job)) {
         if (job.volume_opacity) return refusal("`opacity` by values of the field is that of a volume: `volume`");
         if (job.opacity_length) return refusal("`opacity_length` is that of a volume: `volume`");
+        if (job.volume_shading) return refusal("`volume_shading` is that of a volume: `volume`");
         return {};
     }
     if (job.method.draw)

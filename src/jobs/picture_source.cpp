@@ -518,7 +518,7 @@ Result<void> PictureSource::take_volume(Contents& contents, Caller& caller) {
     if (!options) return options.error();
     const Result<ColorScale> scale = color_scale(std::span(&field.values, 1), *options, caller.run());
     if (!scale) return scale.error();
-    VolumeLook look{*scale, {}, job_.opacity_length, job_.dirac};
+    VolumeLook look{*scale, {}, job_.opacity_length, job_.dirac, job_.volume_shading};
     if (!job_.dirac_shares.empty()) {
         const auto found = isovalues_at(contents.grid, field, job_.dirac_shares, caller.run());
         if (!found) return found.error();

@@ -73,6 +73,7 @@ void IsosurfaceScene::Data::add_volume() {
     drawn.opacity = volume.opacity;
     drawn.opacity_length = report.opacity_length = volume.opacity_length.value_or(default_opacity_length(bounds));
     drawn.clips = look.clips;
+    drawn.shaded = volume.shaded;
     const auto value_at = [&](std::size_t at) { return std::optional(volume.isosurfaces[at]); };
     for (std::size_t i = 0; i < volume.isosurfaces.size(); ++i)
         drawn.isosurfaces.push_back({volume.isosurfaces[i], color_among(volume.isosurfaces.size(), i, value_at, look)});

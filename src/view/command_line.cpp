@@ -25,6 +25,7 @@ void add_volume(std::vector<std::string>& words, const VolumeState& volume) {
     words.emplace_back("--volume");
     add_option(words, "--opacity", volume.opacity);
     if (volume.length) add_option(words, "--opacity-length", fmt::format("{}", *volume.length));
+    if (volume.shaded) words.emplace_back("--volume-shading");
 }
 
 /// Opacity of the boundary where isotet render is told nothing of it.

@@ -318,6 +318,7 @@ bool set_flag(Pasting& pasting, std::string_view word) {
         volume_in(state);
         return true;
     }
+    if (word == "--volume-shading") return volume_in(state).shaded = true;
     return false;
 }
 

@@ -98,7 +98,7 @@ Result<void> GridView::show_volume(const ViewState& state, const ColorScale& sca
     Result<OpacityCurve> opacity = opacity_of_volume(state, run);
     if (!opacity) return opacity.error();
     scene_opacity_ = *std::move(opacity);
-    scene_->set_volume({scale, scene_opacity_, state.volume->length});
+    scene_->set_volume({scale, scene_opacity_, state.volume->length, {}, state.volume->shaded});
     return {};
 }
 

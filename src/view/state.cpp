@@ -81,6 +81,7 @@ Result<VolumeState> volume_of(const Json& json) {
     StateReader reader(json);
     reader.read_text("opacity", volume.opacity);
     reader.read_flag("surfaces", volume.surfaces);
+    reader.read_flag("shaded", volume.shaded);
     reader.read("length", "a number above 0", [&](const Json& value) {
         volume.length = finite_number(value);
         return volume.length && *volume.length > 0;
@@ -167,6 +168,7 @@ Json to_json(const ViewState& state) {
     if (state.volume) {
         json["volume"] = {{"opacity", state.volume->opacity}, {"surfaces", state.volume->surfaces}};
         if (state.volume->length) json["volume"]["length"] = *state.volume->length;
+        if (state.volume->shaded) json["volume"]["shaded"] = true;
     }
     return json;
 }

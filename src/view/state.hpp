@@ -30,6 +30,7 @@ struct VolumeState {
     std::string opacity = "ramp";        ///< as parse_opacity() takes it
     std::optional<double> length = {};   ///< that the opacity is of, above 0; nothing: default_opacity_length()
     bool surfaces = true;                ///< isosurfaces are drawn with it
+    bool shaded = false;                 ///< as DrawnVolume::shaded
 
     friend bool operator==(const VolumeState&, const VolumeState&) = default;
 };

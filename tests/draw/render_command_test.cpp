@@ -166,6 +166,7 @@ TEST_F(RenderOnCpu, DrawsAVolumeWithWhatIsInIt) {
     EXPECT_GT(unlike(picture("b.png", with({"--opacity-length", "9"})), ramp), 0.01);
     EXPECT_GT(unlike(picture("b.png", with({"-i", "0.5", "--opacity", "0.9"})), ramp), 0.01) << "a surface inside";
     EXPECT_GT(unlike(picture("b.png", with({"--clip", "x=0"})), ramp), 0.01);
+    EXPECT_GT(unlike(picture("b.png", with({"--volume-shading"})), ramp), 0.01);
     EXPECT_GT(unlike(picture("b.png", with({"--log", "--range", "0.1,1"})), ramp), 0.01);
     auto words = command("c.png", with({"--dirac", "0.2,0.5"}));
     const auto report = json_of(words)["volume"];
@@ -223,6 +224,7 @@ TEST_F(RenderOnCpu, RefusesWhatDoesNotGoWithAVolume) {
     };
     says({"--opacity", "ramp"}, "that of a volume: --volume");
     says({"--opacity-length", "1"}, "that of a volume: --volume");
+    says({"--volume-shading"}, "that of a volume: --volume");
     says({"--volume", "--opacity-length", "0"}, "a number above 0");
     says({"--volume", "--opacity", "0:0,1:3"}, "point 2 of the opacity has 3");
     says({"--volume", "--opacity", "2"}, "a number from 0 to 1");

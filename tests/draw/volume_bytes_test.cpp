@@ -65,12 +65,15 @@ TEST(VolumeBytes, AreTheSameHoweverPointsAndCellsAreNumbered) {
         for (VolumeCase* const both : {&one, &two})
             if (projection == Projection::parallel) both->volume().isosurfaces = {{0.1, {}}, {-0.2, {1, 0, 0, 1}}};
         EXPECT_TRUE(picture_of(one).pixels == picture_of(two).pixels);
+        one.volume().shaded = two.volume().shaded = true;
+        EXPECT_TRUE(picture_of(one).pixels == picture_of(two).pixels);
     }
 }
 
 TEST(VolumeBytes, AreTheSameOnAnyThreadsAndWithLists) {
     for (const char* shape : {"kuhn", "mixed"}) {
         VolumeCase one = made_volume(shape, 8, "gyroid", two_peaks);
+        one.volume().shaded = true;
         one.picture.samples = 1;
         const Surface inside = sheet_at(0.1, 0.3);
         DrawnSurface& drawn = one.scene.surfaces.emplace_back();

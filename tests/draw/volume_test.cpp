@@ -154,6 +154,39 @@ double depth_of_ramp(double a, double b, double lower, double upper, double top)
                                   : (up_to(b) - up_to(a)) / (b - a);
 }
 
+TEST(Volume, ShadingLightsColoursByTheGradientAndNothingElse) {
+    const std::array<double, 3> normal{1 / std::sqrt(14.0), 2 / std::sqrt(14.0), 3 / std::sqrt(14.0)};
+    const auto dot = [](const std::array<double, 3>& a, const std::array<double, 3>& b) {
+        return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    };
+    for (const char* shape : {"perturbed", "hex"})
+        for (const Projection projection : {Projection::perspective, Projection::parallel}) {
+            VolumeCase one = made_volume(shape, 5, "plane", half_opaque);
+            one.look_from(120, 23, projection);
+            const RayValues plain = rays_of(one.scene, one.picture);
+            one.volume().shaded = true;
+            const RayValues shaded = rays_of(one.scene, one.picture);
+            std::size_t seen = 0;
+            for (std::uint32_t i = 0; i < plain.slabs.size(); ++i) {
+                const render::Slab &a = plain.slabs[i], &b = shaded.slabs[i];
+                ASSERT_EQ(a.through, b.through);
+                if (a.through > 0.9F) continue;
+                ++seen;
+                const double along = dot(normal, user_ray(one.picture, i % 96, i / 96).along), facing = std::abs(along),
+                             up = (along > 0 ? -1 : 1) * dot(normal, one.picture.camera.up);
+                const double light = 0.16 + 0.84 * facing + 0.22 * (0.5 + 0.5 * up) * (1 - facing);
+                for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(b.light[k], a.light[k] * light, 2e-3 * a.light[k]);
+            }
+            EXPECT_GT(seen, 1000U);
+        }
+    // A constant field has no side that could be lit.
+    const Grid grid = made_grid("kuhn", 3, {});
+    VolumeCase one = volume_of(grid, field_of(std::vector<float>(grid.points.tuples(), 1)), half_opaque);
+    const Picture plain = draw(one.scene, one.picture).value();
+    one.volume().shaded = true;
+    EXPECT_TRUE(draw(one.scene, one.picture).value().pixels == plain.pixels);
+}
+
 TEST(Volume, ALinearFieldIsIntegratedExactly) {
     for (const char* shape : {"kuhn", "perturbed", "layer", "hex"}) {
         const Grid grid = made_grid(shape, 6, {"plane"});

@@ -65,7 +65,8 @@ def test_a_volume_is_drawn_with_surfaces_inside(sphere):
     shell = isotet.render(volume=packed, volume_opacity=[(0.4, 0), (0.5, 0.9), (0.6, 0)], opacity_length=0.1, size=(160, 120))
     both = isotet.render(sphere, volume=packed, colors="red", size=(160, 120))
     met = isotet.render(volume=packed, volume_opacity="", volume_isovalues=[0.5], size=(160, 120))
-    pictures = [fog, shell, both, met]
+    lit = isotet.render(volume=packed, volume_shading=True, size=(160, 120))
+    pictures = [fog, shell, both, met, lit]
     assert not any(np.array_equal(a, b) for i, a in enumerate(pictures) for b in pictures[:i])
     with pytest.raises(ValueError, match="must ascend"):
         isotet.render(volume=packed, volume_opacity=[(1, 0), (0, 1)])

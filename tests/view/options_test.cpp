@@ -33,6 +33,7 @@ void expect_same_volume(const cli::RenderCommand& render, const std::optional<vi
     EXPECT_EQ(render.volume_opacity->preset, opacity.preset);
     EXPECT_EQ(render.volume_opacity->peaks, opacity.peaks);
     EXPECT_EQ(render.opacity_length, volume->length);
+    EXPECT_EQ(render.volume_shading, volume->shaded);
 }
 
 /// Names without their dashes in front, but --help.

@@ -66,6 +66,7 @@ inline view::ViewState random_state(unsigned seed) {
         view::VolumeState& volume = state.volume.emplace();
         state.solid.reset(); // does not go with it
         volume.opacity = texts[std::uniform_int_distribution<std::size_t>(0, texts.size() - 1)(random)];
+        volume.shaded = chance(0.3);
         if (chance(0.5)) volume.length = std::abs(number()) + 1e-9;
         if (chance(0.5)) state.isovalues.clear(); // a command line without isovalues has no surfaces
         volume.surfaces = !state.isovalues.empty();

@@ -69,6 +69,7 @@ struct DrawJob {
     bool volume = false;                     ///< the field as a volume; isosurfaces only where isovalues are given
     std::optional<OpacityText> volume_opacity; ///< nothing: a ramp, and with `dirac` none
     std::optional<double> opacity_length;      ///< that it is of; nothing: a tenth of the diagonal of the grid's box
+    bool volume_shading = false;               ///< VolumeLook::shaded
     std::vector<double> dirac;                 ///< isovalues of surfaces that rays meet; asks for a volume, too
     std::vector<IsovalueShare> dirac_shares;   ///< more of these: of each time step its own
     bool plain = false;                      ///< no text

@@ -83,7 +83,8 @@ Sides sides_of(const PlacedPoints& points, const Rays& rays) {
 
 PlacedVolume::PlacedVolume(const DrawnVolume& volume, const Space& space, const Rays& rays, Seek seek, bool skips,
                            const Progress& progress)
-    : packed_(&volume.grid->data()), rays_(&rays), seek_(seek), skips_(skips), lengths_(1 / space.scale()) {
+    : packed_(&volume.grid->data()), rays_(&rays), seek_(seek), skips_(skips), shaded_(volume.shaded),
+      lengths_(1 / space.scale()) {
     const FieldReport& field = volume.grid->field();
     const core::Storage& storage = packed_->storage;
     if (seek == Seek::medium) transfer_.emplace(volume, field.lower, field.upper, storage);

@@ -39,7 +39,7 @@ struct PlacedPoints {
     Numbers x, y;            ///< place in the picture, of points before the eye
     Numbers near;            ///< 1 / w; in parallel pictures minus the depth
     std::array<float, core::max_cluster_points> value; ///< place in the transfer table, or height above an isovalue
-    std::array<std::array<double, 3>, core::max_cluster_points> position; ///< as stored; where isosurfaces are sought
+    std::array<std::array<double, 3>, core::max_cluster_points> position; ///< as stored
     std::array<std::uint64_t, core::max_cluster_points> points;           ///< packed
     std::size_t count = 0;
 };
@@ -65,6 +65,7 @@ public:
     double lengths() const { return lengths_; } ///< of the user, for 1 in the scene
     const std::vector<Plane>& clips() const { return clips_; } ///< in the scene
     const std::vector<PlacedIsosurface>& isosurfaces() const { return isosurfaces_; }
+    bool shaded() const { return shaded_; }
 
     /// The place of clusters; `nearest` is the distance before which none of its points is.
     struct ClusterPlace {
@@ -107,7 +108,7 @@ private:
     const core::Packed* packed_;
     const Rays* rays_;
     Seek seek_;
-    bool skips_;
+    bool skips_, shaded_;
     std::optional<Transfer> transfer_;
     std::vector<PlacedIsosurface> isosurfaces_;
     double first_isovalue_ = 0; ///< stored

@@ -23,31 +23,32 @@ float hidden_by(float depth) {
     return 1 - power_of_2(std::max(depth * -1.44269504F, -126.0F));
 }
 
-void add_piece(const Extinction& mean, float depth, Slab& slab, RayState& ray) {
+void add_piece(const Extinction& mean, float depth, float light, Slab& slab, RayState& ray) {
     const float hidden = hidden_by(depth), part = slab.through * hidden;
     const double of_mean = mean[0] > 0 ? static_cast<double>(part) / mean[0] : 0;
-    for (std::size_t i = 0; i < 3; ++i) slab.light[i] += static_cast<float>(of_mean * mean[i + 1]);
+    for (std::size_t i = 0; i < 3; ++i) slab.light[i] += static_cast<float>(of_mean * mean[i + 1]) * light;
     slab.through -= part;
     ray.through -= ray.through * hidden;
     ray.done = ray.through < least_through;
 }
 
 /// Adds a segment between two sheets, the nearer half of what is too deep first.
-void add_to_slab(float length, float from, float to, const Transfer& transfer, Slab& slab, RayState& ray,
+void add_to_slab(float length, float from, float to, float light, const Transfer& transfer, Slab& slab, RayState& ray,
                  int halvings) {
     const Extinction mean = transfer.mean(from, to);
     const float depth = static_cast<float>(mean[0]) * length;
-    if (!(depth > deepest_piece) || halvings == most_halvings) return add_piece(mean, depth, slab, ray);
+    if (!(depth > deepest_piece) || halvings == most_halvings) return add_piece(mean, depth, light, slab, ray);
     const float middle = 0.5F * (from + to);
-    add_to_slab(0.5F * length, from, middle, transfer, slab, ray, halvings + 1);
-    if (!ray.done) add_to_slab(0.5F * length, middle, to, transfer, slab, ray, halvings + 1);
+    add_to_slab(0.5F * length, from, middle, light, transfer, slab, ray, halvings + 1);
+    if (!ray.done) add_to_slab(0.5F * length, middle, to, light, transfer, slab, ray, halvings + 1);
 }
 
 /// Adds a segment, cut by the ends of the ray and by sheets.
 void add_segment(const Segment& segment, const Medium& medium, RayState& ray) {
+    const float light = static_cast<float>(segment.light) / Segment::full_light;
     if (segment.enter >= medium.enter && segment.leave <= medium.end && ray.stops.empty())
-        return add_to_slab((segment.leave - segment.enter) * ray.lengths, segment.from, segment.to, *medium.transfer,
-                           ray.slabs[0], ray, 0);
+        return add_to_slab((segment.leave - segment.enter) * ray.lengths, segment.from, segment.to, light,
+                           *medium.transfer, ray.slabs[0], ray, 0);
     const float begin = std::max(segment.enter, medium.enter), end = std::min(segment.leave, medium.end);
     if (!(begin < end)) return;
     const float slope = (segment.to - segment.from) / (segment.leave - segment.enter);
@@ -57,7 +58,7 @@ void add_segment(const Segment& segment, const Medium& medium, RayState& ray) {
         const float next = slab < ray.stops.size() ? std::min(ray.stops[slab], end) : end;
         const float from = at == segment.enter ? segment.from : value_at(at),
                     to = next == segment.leave ? segment.to : value_at(next);
-        add_to_slab((next - at) * ray.lengths, from, to, *medium.transfer, ray.slabs[slab], ray, 0);
+        add_to_slab((next - at) * ray.lengths, from, to, light, *medium.transfer, ray.slabs[slab], ray, 0);
         at = next;
     }
 }

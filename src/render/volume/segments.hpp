@@ -17,11 +17,13 @@ namespace isotet::render {
 /// The way of a ray through a tet: its ends, as distances, and places in the transfer table there.
 struct Segment {
     float enter, leave, from, to;
-    std::uint32_t volume;
+    std::uint16_t light = full_light; ///< of the colour
+    std::uint16_t volume = 0;
 
-    friend bool operator<(const Segment& a, const Segment& b) {
-        return std::tie(a.enter, a.leave, a.from, a.to, a.volume) < std::tie(b.enter, b.leave, b.from, b.to, b.volume);
-    }
+    static constexpr std::uint16_t full_light = 65535;
+
+    auto key() const { return std::tie(enter, leave, from, to, light, volume); }
+    friend bool operator<(const Segment& a, const Segment& b) { return a.key() < b.key(); }
 };
 
 /// How lists are kept; tests change it.
@@ -81,6 +83,9 @@ struct RayState {
     std::span<const float> stops; ///< distances of sheets, ascending
     std::span<Slab> slabs;        ///< one more than stops
 };
+
+/// A scene has no more volumes.
+inline constexpr std::size_t most_volumes = 65536;
 
 inline constexpr float least_through = 0.002F; ///< less is nothing
 

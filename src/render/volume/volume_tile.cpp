@@ -139,17 +139,20 @@ void VolumeTile::find_hits() {
 RayHit VolumeTile::hit(std::size_t pixel) const {
     const FoundHit& found = hits_[index_of(pixel)];
     if (!(found.distance < INFINITY)) return {};
-    const Ray& ray = rays_[index_of(pixel)];
-    const double backwards = -1 / ray.stretch;
-    const std::array<float, 3> to_eye = in_float(plus({}, ray.along, backwards));
-    std::array<float, 3> normal = found.normal;
+    RayHit hit{found.distance, scene_.surfaces[found.volume].isosurfaces()[found.isosurface].color};
+    const float light = light_along(index_of(pixel), found.normal);
+    for (float& part : hit.color) part *= light;
+    return hit;
+}
+
+/// How much light a ray gets from what lies across a gradient, lit on both sides.
+float VolumeTile::light_along(std::size_t index, std::array<float, 3> normal) const {
+    const Ray& ray = rays_[index];
+    const std::array<float, 3> to_eye = in_float(plus({}, ray.along, -1 / ray.stretch));
     const float facing = normal[0] * to_eye[0] + normal[1] * to_eye[1] + normal[2] * to_eye[2];
     if (facing < 0)
         for (float& part : normal) part = -part;
-    RayHit hit{found.distance, scene_.surfaces[found.volume].isosurfaces()[found.isosurface].color};
-    const float light = light_on(normal, to_eye, scene_.rays.sight());
-    for (float& part : hit.color) part *= light;
-    return hit;
+    return light_on(normal, to_eye, scene_.rays.sight());
 }
 
 void VolumeTile::add_stops(std::span<const float> stops) {
@@ -275,7 +278,7 @@ void VolumeTile::draw_blocks(const PlacedVolume& volume, std::uint32_t number,
             for (std::uint32_t i = 0; i < 16; ++i) mask |= static_cast<std::uint32_t>(lanes.inside[i]) << i;
             if (mask == 0) continue;
             const auto block = static_cast<std::size_t>(y / 4 * 8 + x / 4);
-            if (seek_ == Seek::medium) add_segments(lanes, mask, block, number);
+            if (seek_ == Seek::medium) add_segments(lanes, mask, block, volume, number, corners);
             else add_hits(lanes, mask, block, volume, number, corners);
         }
 }
@@ -313,11 +316,20 @@ void VolumeTile::find_lanes(std::int32_t x, std::int32_t y, Lanes& out) const {
                         static_cast<std::int32_t>(at_y[i] <= bottom);
 }
 
-void VolumeTile::add_segments(const Lanes& lanes, std::uint32_t mask, std::size_t block, std::uint32_t volume) {
+void VolumeTile::add_segments(const Lanes& lanes, std::uint32_t mask, std::size_t block, const PlacedVolume& volume,
+                              std::uint32_t number, const std::array<TetCorner, 4>& corners) {
     work_.segments += static_cast<std::uint64_t>(std::popcount(mask));
+    std::array<float, 3> normal{};
+    if (volume.shaded()) normal = gradient_direction(points_, corners);
+    const bool lit = normal != std::array<float, 3>{}; // a constant field has no side
     for (; mask; mask &= mask - 1) {
         const auto i = static_cast<std::size_t>(std::countr_zero(mask));
-        lists_.add(16 * block + i, {lanes.enter[i], lanes.leave[i], lanes.from[i], lanes.to[i], volume});
+        const std::size_t index = 16 * block + i;
+        std::uint16_t light = Segment::full_light;
+        if (lit)
+            light = static_cast<std::uint16_t>(std::min(light_along(index, normal), 1.0F) * Segment::full_light + 0.5F);
+        lists_.add(index, {lanes.enter[i], lanes.leave[i], lanes.from[i], lanes.to[i], light,
+                           static_cast<std::uint16_t>(number)});
     }
 }
 

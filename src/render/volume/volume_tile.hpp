@@ -103,7 +103,9 @@ private:
     void draw_blocks(const PlacedVolume& volume, std::uint32_t number, const std::array<TetCorner, 4>& corners);
     template <bool parallel, std::size_t faces>
     void find_lanes(std::int32_t x, std::int32_t y, Lanes& out) const;
-    void add_segments(const Lanes& lanes, std::uint32_t mask, std::size_t block, std::uint32_t volume);
+    void add_segments(const Lanes& lanes, std::uint32_t mask, std::size_t block, const PlacedVolume& volume,
+                      std::uint32_t number, const std::array<TetCorner, 4>& corners);
+    float light_along(std::size_t index, std::array<float, 3> normal) const;
     void add_hits(const Lanes& lanes, std::uint32_t mask, std::size_t block, const PlacedVolume& volume,
                   std::uint32_t number, const std::array<TetCorner, 4>& corners);
 

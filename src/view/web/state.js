@@ -9,7 +9,7 @@ export const firstState = () => ({
   solid: '', // 'above' or 'below' in place of isosurfaces
   keep: '', // connected parts, as --keep takes them; all
   planes: [], step: null, drawn: '', // 'server': pictures, 'browser': never
-  volume: null, // {opacity, length, surfaces}: as isotet render --volume draws it
+  volume: null, // {opacity, length, surfaces, shaded}: as isotet render --volume draws it
   hidden: [], // names of classes of colorBy: their cells are left out
   cells: [], // as --cells takes them: only these cells
   up: 'z', stretch: null, // the axis that points upwards; [x, y, z], factors of the axes
@@ -55,6 +55,7 @@ export function toAddress(state) {
   if (state.volume) parts.set('volume', state.volume.opacity);
   if (state.volume?.length) parts.set('length', state.volume.length);
   if (state.volume?.surfaces) parts.set('surfaces', 1);
+  if (state.volume?.shaded) parts.set('shaded', 1);
   for (const name of state.hidden) parts.append('hidden', name);
   for (const cells of state.cells) parts.append('cells', cells);
   if (state.up !== 'z') parts.set('up', state.up);
@@ -103,7 +104,7 @@ export function fromAddress(text) {
   if (['log', 'share'].includes(parts.get('scale'))) state.scale = parts.get('scale');
   if (parts.get('volume')) {
     const length = number(parts.get('length'));
-    state.volume = {opacity: parts.get('volume').slice(0, 4096), length: length > 0 ? length : null, surfaces: parts.get('surfaces') === '1'};
+    state.volume = {opacity: parts.get('volume').slice(0, 4096), length: length > 0 ? length : null, surfaces: parts.get('surfaces') === '1', shaded: parts.get('shaded') === '1'};
   }
   state.hidden = parts.getAll('hidden').slice(0, 12);
   state.cells = parts.getAll('cells').slice(0, 7);
@@ -148,8 +149,8 @@ export function toMessage(state) {
   if (state.camera) message.camera = state.camera;
   if (state.stretch) message.stretch = state.stretch;
   if (state.volume) {
-    const {opacity, length, surfaces} = state.volume;
-    message.volume = length ? {opacity, length, surfaces} : {opacity, surfaces};
+    const {opacity, length, surfaces, shaded} = state.volume;
+    message.volume = length ? {opacity, length, surfaces, shaded} : {opacity, surfaces, shaded};
     if (state.colorBy !== state.field) message.color_by = '';
   }
   const opacities = [state.opacity, ...state.pins.map((pin) => pin.opacity)];
@@ -165,6 +166,6 @@ export function fromMessage(message) {
     edges: message.edges, boundary: message.boundary, isosurfaces: message.isosurfaces ?? true, coloredBoundary: message.colored_boundary ?? false,
     solid: message.solid ?? '', keep: message.keep ?? '', step: message.step ?? null, cells: message.cells ?? [],
     planes: ['clip', 'slice'].flatMap((kind) => message[kind + 's'].map((plane) => ({kind, normal: plane.slice(0, 3), offset: plane[3]}))),
-    volume: message.volume ? {length: null, ...message.volume} : null,
+    volume: message.volume ? {length: null, shaded: false, ...message.volume} : null,
     range: message.range ?? null, camera: message.camera ?? null, stretch: message.stretch ?? null};
 }

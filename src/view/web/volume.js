@@ -38,6 +38,7 @@ export function showVolume() {
   id('color-by').disabled = !!volume; // a picture has one colour scale
   if (!volume) return;
   id('volume-surfaces').checked = volume.surfaces;
+  id('volume-shaded').checked = volume.shaded;
   id('opacity-preset').value = presetOf(volume.opacity);
   if (document.activeElement !== id('opacity-text')) id('opacity-text').value = volume.opacity;
   const length = volume.length ?? app.frame?.opacity_length;
@@ -125,18 +126,19 @@ id('opacity-curve').addEventListener('dblclick', (event) => {
 
 id('volume').addEventListener('change', () => {
   const {state} = app;
-  state.volume = id('volume').checked ? {opacity: 'ramp', length: null, surfaces: false} : null;
+  state.volume = id('volume').checked ? {opacity: 'ramp', length: null, surfaces: false, shaded: false} : null;
   app.sent = null;
   closePicked();
   showVolume();
   colorsChanged();
   commit();
 });
-id('volume-surfaces').addEventListener('change', () => {
-  app.state.volume.surfaces = id('volume-surfaces').checked;
-  wishSoon();
-  commit();
-});
+for (const part of ['surfaces', 'shaded'])
+  id(`volume-${part}`).addEventListener('change', (event) => {
+    app.state.volume[part] = event.target.checked;
+    wishSoon();
+    commit();
+  });
 id('opacity-preset').addEventListener('change', () => changeOpacity(id('opacity-preset').value || textOfPoints(opacityPoints())));
 id('opacity-text').addEventListener('change', () => changeOpacity(id('opacity-text').value.trim() || 'ramp'));
 id('opacity-length').addEventListener('change', () => {
