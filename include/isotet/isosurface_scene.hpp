@@ -159,7 +159,7 @@ struct IsosurfaceOptions {
     std::function<Result<Grid>(const Run& run)> all_cells = {};
     std::vector<double> expected_isovalues = {}; ///< these
     Box bounds = {};                             ///< of the points that any cell has; with `packed`, too
-    /// In place of `grid` and `field`. The CPU extracts; there are no slices, solids and volumes, and cells colour isosurfaces
+    /// In place of `grid` and `field`. The CPU extracts; there are no slices and solids, and cells colour isosurfaces
     /// only, of a grid that was packed with source cells.
     std::optional<PackedScene> packed = {};
     std::shared_ptr<KnownBoundary> known_boundary = {}; ///< of scenes before, whose grids may have the same cells; or null

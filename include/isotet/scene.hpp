@@ -267,7 +267,7 @@ struct DrawnIsosurface {
 /// tets of PackOptions::split_cells. Cells with a corner whose value is NaN or infinite are empty; where cells overlap
 /// each is seen. On a logarithmic scale the logarithm is linear in each tet, and values below 0 are far below the scale.
 struct DrawnVolume {
-    const PackedGrid* grid = nullptr; ///< borrowed; with its field. Of a packed file all of it is read
+    const PackedGrid* grid = nullptr; ///< borrowed; with its field. Of a packed file what is not transparent is read
     ColorScale scale;
     OpacityCurve opacity;                     ///< without points: only `isosurfaces` are seen
     double opacity_length = 1;                ///< that `opacity` is of, in the unit of coordinates; above 0

@@ -431,7 +431,9 @@ Result<void> PictureSource::take_packed(const FoundField& contoured, const Found
         if (points.step <= step) contents.bounds = {points.lower, points.upper};
     if (contours) {
         contents.field = PointField{contoured.name, {}, false, {}};
-        if (job_.isovalues.empty()) {
+        const bool chooses_isovalues =
+            job_.isovalues.empty() && (!draws_volume(job_) || (names_isovalues(job_) && job_.sweep.empty()));
+        if (chooses_isovalues || needs_range_of_volume()) {
             Result<PointField> values = field_at(step, contoured.name, caller);
             if (!values) return values.error();
             contents.field = *std::move(values);
@@ -478,6 +480,8 @@ Result<PictureSource::Contents> PictureSource::read_contents(std::size_t step, b
     }
     if (is_packed(step, contoured, colored)) {
         if (auto taken = take_packed(contoured, colored, step, contents, caller); !taken) return taken.error();
+        if (draws_volume(job_))
+            if (auto taken = take_volume(step, contents, caller); !taken) return taken.error();
         return contents;
     }
     if (source_->info().format == "isotet" && !std::exchange(told_of_cells_, true))
@@ -501,12 +505,30 @@ Result<PictureSource::Contents> PictureSource::read_contents(std::size_t step, b
         contents.colors = *std::move(colors);
     }
     if (draws_volume(job_))
-        if (auto taken = take_volume(contents, caller); !taken) return taken.error();
+        if (auto taken = take_volume(step, contents, caller); !taken) return taken.error();
     return contents;
 }
 
+/// Whether the opacity follows from values of the field.
+bool PictureSource::needs_range_of_volume() const {
+    if (!draws_volume(job_) || volume_opacity_) return false;
+    return job_.volume_opacity ? job_.volume_opacity->preset.has_value() : !draws_dirac(job_);
+}
+
+/// Of a packed field only the range is read.
+Result<ColorScale> PictureSource::scale_of_volume(std::size_t step, const Contents& contents, Caller& caller) {
+    const PointField& field = *contents.field;
+    if (contents.packed) {
+        const Result<ColorField> colors = colors_at(step, field.name, caller);
+        return colors ? Result<ColorScale>(colors->scale) : colors.error();
+    }
+    const Result<ColorOptions> options = color_options(job_.scale, job_.range);
+    if (!options) return options.error();
+    return color_scale(std::span(&field.values, 1), *options, caller.run());
+}
+
 /// The colours and the opacity of a volume. All steps have those of the first, by the range of all.
-Result<void> PictureSource::take_volume(Contents& contents, Caller& caller) {
+Result<void> PictureSource::take_volume(std::size_t step, Contents& contents, Caller& caller) {
     const PointField& field = *contents.field;
     for (const std::string* name : {&job_.color_by, &job_.boundary_color_by})
         if (!name->empty() && *name != field.name)
@@ -514,9 +536,7 @@ Result<void> PictureSource::take_volume(Contents& contents, Caller& caller) {
                 "colours are those of '{}', but the volume is one of '{}', and a picture has one colour scale", *name,
                 field.name);
     if (auto widened = widen_range(field.name, caller); !widened) return widened;
-    Result<ColorOptions> options = color_options(job_.scale, job_.range);
-    if (!options) return options.error();
-    const Result<ColorScale> scale = color_scale(std::span(&field.values, 1), *options, caller.run());
+    Result<ColorScale> scale = scale_of_volume(step, contents, caller);
     if (!scale) return scale.error();
     VolumeLook look{*scale, {}, job_.opacity_length, job_.dirac, job_.volume_shading};
     if (!job_.dirac_shares.empty()) {
@@ -525,7 +545,9 @@ Result<void> PictureSource::take_volume(Contents& contents, Caller& caller) {
         look.isosurfaces.insert(look.isosurfaces.end(), found->begin(), found->end());
     }
     if (volume_opacity_) look.opacity = *volume_opacity_;
-    else if (job_.volume_opacity || !draws_dirac(job_)) {
+    else if (!needs_range_of_volume()) {
+        if (job_.volume_opacity) look.opacity = job_.volume_opacity->curve;
+    } else {
         const Result<ValueRange> range = typical_range_of_steps(field, caller);
         if (!range) return range.error();
         if (!(range->lower <= range->upper))

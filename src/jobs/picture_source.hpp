@@ -62,7 +62,9 @@ private:
     Result<Grid> read_for(const FoundField& field, std::size_t step, Caller& caller);
     Result<ColorField> colors_at(std::size_t step, const std::string& name, Caller& caller);
     Result<PointField> field_at(std::size_t step, const std::string& name, Caller& caller);
-    Result<void> take_volume(Contents& contents, Caller& caller);
+    bool needs_range_of_volume() const;
+    Result<ColorScale> scale_of_volume(std::size_t step, const Contents& contents, Caller& caller);
+    Result<void> take_volume(std::size_t step, Contents& contents, Caller& caller);
     Result<void> find_sweep(const Contents& contents, Caller& caller);
     Result<void> choose_isovalues(const Contents& contents, DrawInput& input, Caller& caller);
     Result<void> widen_range(const std::string& color, Caller& caller);

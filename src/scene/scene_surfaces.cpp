@@ -92,15 +92,22 @@ Result<void> IsosurfaceScene::Data::start_packed(const IsosurfaceOptions& wanted
     const auto by_cells = [](const std::optional<ColorField>& field) {
         return field && field->association == Association::cell;
     };
-    const bool reworks = look.volume || look.solid || !look.slices.empty() || wanted.draw ||
-                         by_cells(look.boundary_colors) || wanted.where == ExtractOn::device;
+    const bool reworks = look.solid || !look.slices.empty() || wanted.draw || by_cells(look.boundary_colors) ||
+                         wanted.where == ExtractOn::device;
     const bool by_points = (look.colors && !by_cells(look.colors)) || look.boundary_colors;
     if (reworks || (by_points && !wanted.packed->colors))
         return invalid_argument("a packed grid is given, of which the CPU draws isosurfaces, and the boundary coloured by "
                                 "packed fields, and nothing else");
     bounds = wanted.bounds;
     if (auto looked = look_around_packed(wanted, run); !looked) return looked;
+    if (look.volume && (device || !wanted.packed->contours))
+        return invalid_argument(device ? "a volume on a device, but the CPU draws volumes"
+                                       : "a volume without a field");
     if (!wanted.packed->contours) return {};
+    if (look.volume) {
+        volume_grid = wanted.packed->grid;
+        report.field = volume_grid->field();
+    }
     ContourInput input;
     input.packed = wanted.packed->grid;
     if (by_cells(look.colors)) input.cell_fields = {{look.colors->name, look.colors->values}};

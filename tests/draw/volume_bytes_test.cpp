@@ -8,12 +8,15 @@
 
 #include <gtest/gtest.h>
 
+#include <isotet/packed_file.hpp>
 #include <isotet/render.hpp>
 
 #include "draw/volumes.hpp"
+#include "numbers/level.hpp"
 #include "render/cpu/encode.hpp"
 #include "support/random_grid.hpp"
 #include "support/seeds.hpp"
+#include "support/temporary_folder.hpp"
 #include "support/small_grid.hpp"
 
 namespace isotet::test {
@@ -95,6 +98,67 @@ TEST(VolumeBytes, AreTheSameOnAnyThreadsAndWithLists) {
     }
 }
 
+TEST(VolumeBytes, OfOtherCellsAreThoseOfTheirTets) {
+    for (const char* shape : {"hex", "mixed"}) {
+        const Grid grid = made_grid(shape, 7, {"gyroid"});
+        VolumeCase one = volume_of(grid, point_field(grid), two_peaks);
+        one.volume().shaded = true;
+        const Picture picture = picture_of(one);
+        EXPECT_TRUE(picture_of(volume_of(grid, point_field(grid), two_peaks, {.split_cells = true})).pixels !=
+                    picture.pixels)
+            << "without shading";
+        VolumeCase tets = volume_of(grid, point_field(grid), two_peaks, {.split_cells = true});
+        tets.volume().shaded = true;
+        EXPECT_TRUE(picture_of(tets).pixels == picture.pixels) << shape;
+    }
+}
+
+TEST(VolumeBytes, AreTheSameAtEveryLevel) {
+    VolumeCase one = made_volume("perturbed", 8, "gyroid", two_peaks);
+    one.volume().shaded = true;
+    one.volume().isosurfaces = {{-0.1, {}}};
+    const Picture picture = picture_of(one);
+    for (const core::Level level : {core::Level::portable, core::Level::avx2, core::Level::avx512}) {
+        if (level > core::best_level()) continue;
+        core::force_level(level);
+        EXPECT_TRUE(picture_of(one).pixels == picture.pixels) << core::name_of(level);
+    }
+    core::force_level({});
+}
+
+TEST(VolumeBytes, AreThoseOfAFileOfWhichLittleIsInMemory) {
+    const TemporaryFolder folder;
+    for (const char* shape : {"kuhn", "mixed"}) {
+        VolumeCase one = made_volume(shape, 10, "gyroid", two_peaks);
+        one.volume().isosurfaces = {{-0.1, {}}};
+        const Picture expected = picture_of(one);
+        const std::string path = folder.file(std::string(shape) + ".isotet");
+        save_packed(*one.grid, path, {.more_fields = {}, .time = {}, .chunk_bytes = 2'000}).value();
+        for (const std::uint64_t memory : {std::uint64_t{1}, std::uint64_t{100'000}, std::uint64_t{1} << 30})
+            for (const int threads : {1, 7}) {
+                const PackedFile file = PackedFile::open(path, {memory}).value();
+                const PackedGrid grid = file.grid().value();
+                one.volume().grid = &grid;
+                EXPECT_TRUE(picture_of(one, threads).pixels == expected.pixels) << shape << memory << " " << threads;
+            }
+    }
+}
+
+TEST(VolumeBytes, OfAFileThatAreTransparentAreNotRead) {
+    const TemporaryFolder folder;
+    VolumeCase one = made_volume("kuhn", 20, "plane", {});
+    save_packed(*one.grid, folder.file("plane.isotet"), {.more_fields = {}, .time = {}, .chunk_bytes = 2'000}).value();
+    const auto bytes_read = [&](const OpacityCurve& opacity) {
+        const PackedFile file = PackedFile::open(folder.file("plane.isotet")).value();
+        const PackedGrid grid = file.grid().value();
+        one.volume().grid = &grid;
+        one.volume().opacity = opacity;
+        picture_of(one);
+        return file.residency().bytes_read;
+    };
+    EXPECT_LT(bytes_read({{{1.2, 0}, {1.3, 0.9}}}), bytes_read({{{-2, 0.1}, {2, 0.9}}}) / 2);
+}
+
 TEST(VolumeBytes, OfATransparentVolumeAreThoseOfTheBackground) {
     VolumeCase one = made_volume("kuhn", 4, "gyroid", {{{-2, 0}, {2, 0}}});
     one.picture.background = {0.2F, 0.4F, 0.6F, 0.5F};
@@ -135,8 +199,8 @@ public:
     /// Light and what comes through.
     std::array<double, 4> follow(const UserRay& ray) const {
         std::vector<Part> parts;
-        for (const Tet& tet : tets_) add(tet, ray, parts);
-        std::ranges::sort(parts, {}, &Part::from);
+        for (const Tet& tet : tets_) add(tet, ray, volume_.clips, parts);
+        std::ranges::sort(parts, {}, &Part::begin);
         std::array<double, 4> out{0, 0, 0, 1};
         for (const Part& part : parts) {
             constexpr int steps = 24;
@@ -160,10 +224,11 @@ private:
     };
     struct Part {
         double from, to, a, b;
+        double begin; ///< of the tet, also where it is cut
     };
 
     /// Barycentric coordinates are linear along the ray.
-    static void add(const Tet& tet, const UserRay& ray, std::vector<Part>& parts) {
+    static void add(const Tet& tet, const UserRay& ray, const std::vector<Plane>& clips, std::vector<Part>& parts) {
         const auto weights = [&](const std::array<double, 3>& p) {
             std::array<double, 4> out{};
             for (std::size_t k = 0; k < 4; ++k) {
@@ -176,12 +241,21 @@ private:
         const double whole = volume_of_corners(tet.points);
         if (std::abs(whole) < 1e-9) return;
         const auto at_0 = weights(ray.at(0)), at_1 = weights(ray.at(1));
-        Part part{1e-3, INFINITY, 0, 0};
+        Part part{1e-3, INFINITY, 0, 0, 0};
         for (std::size_t k = 0; k < 4; ++k) {
             const double begin = at_0[k] / whole, slope = (at_1[k] - at_0[k]) / whole;
             if (slope == 0 && begin < 0) return;
             if (slope > 0) part.from = std::max(part.from, -begin / slope);
             if (slope < 0) part.to = std::min(part.to, -begin / slope);
+        }
+        part.begin = part.from;
+        for (const Plane& plane : clips) {
+            const auto height = [&](double t) {
+                const std::array<double, 3> p = ray.at(t);
+                return plane.normal[0] * p[0] + plane.normal[1] * p[1] + plane.normal[2] * p[2] - plane.offset;
+            };
+            const double slope = height(1) - height(0), end = -height(0) / slope;
+            (slope > 0 ? part.to : part.from) = slope > 0 ? std::min(part.to, end) : std::max(part.from, end);
         }
         if (!(part.from < part.to)) return;
         for (std::size_t k = 0; k < 4; ++k) {
@@ -217,6 +291,7 @@ TEST(VolumeBytes, AreThoseOfEveryTetAgainstEveryRay) {
         one.picture.width = 12;
         one.picture.height = 9;
         one.look_from(seed * 37.0, 20, seed % 5 == 0 ? Projection::parallel : Projection::perspective);
+        if (seed % 3 == 1) one.volume().clips = {{{1, 0.3, 0}, 0.4}, {{0, -1, 2}, 0.8}};
         const RayValues rays = rays_of(one.scene, one.picture);
         const SlowRay slow(nasty.grid, nasty.field, one.volume());
         for (std::uint32_t y = 0; y < 9; ++y)
@@ -336,6 +411,8 @@ TEST(VolumeErrors, AreTold) {
               ErrorCode::cancelled);
     one.volume().grid = nullptr;
     EXPECT_EQ(message(), "a volume without a grid");
+    one.scene.volumes.resize(65537);
+    EXPECT_NE(message().find("65537 volumes, but at most 65536"), std::string::npos);
 }
 
 } // namespace

@@ -63,7 +63,8 @@ inline RayValues rays_of(const Scene& scene, const PictureOptions& picture, cons
     const render::Space space(scene.bounds);
     const render::Tiling tiling{picture.width, picture.height, 1, 32};
     const auto sight = space.look(picture.camera, picture.width, picture.height);
-    const auto volumes = std::make_unique<render::VolumeScene>(scene, space, sight, tiling, tuning, Progress());
+    const auto volumes = std::make_unique<render::VolumeScene>(scene, space, sight, tiling, tuning);
+    volumes->place(tiling, Progress()).value();
     const auto tile = std::make_unique<render::VolumeTile>(*volumes);
     RayValues out;
     out.slabs.resize(std::size_t{picture.width} * picture.height);

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <isotet/make.hpp>
+#include <isotet/packed_file.hpp>
 #include <isotet/picture.hpp>
 #include <isotet/write.hpp>
 
@@ -103,6 +104,32 @@ std::string packed_file(const test::TemporaryFolder& folder) {
     return pack.out;
 }
 
+TEST(DrawFiles, PointsOfPackedFilesThatMoveAreWhereTheyAreAtAStep) {
+    const test::TemporaryFolder folder;
+    const Grid grid = make_grid({.shape = "kuhn", .side = 5, .fields = {"sphere"}}).value();
+    std::vector<float> moved(3 * grid.points.tuples());
+    for (std::size_t i = 0; i < moved.size(); ++i)
+        moved[i] = static_cast<float>(grid.points.at(i / 3, i % 3) * (i % 3 == 0 ? 5 : 2));
+    const PackedGrid packed = pack(grid, find_field(grid, "sphere").value()).value();
+    PackedWriter writer = PackedWriter::create(packed, folder.file("moved.isotet")).value();
+    writer.add_step(packed.with_points(Array::own(std::move(moved), 3)).value(), 1.0).value();
+    writer.commit().value();
+    for (const bool volume : {false, true}) {
+        DrawJob job = small_picture(folder.file("moved.isotet"), folder.file("a.png"));
+        job.grid.step = 1;
+        job.field.name = "sphere";
+        job.volume = volume;
+        if (!volume) job.isovalues = {0.5};
+        job.boundary = 0;
+        Listener listener;
+        draw_files(job, listener).value();
+        job.stretch = {1, 1, 1};
+        job.reference = job.out;
+        job.out = folder.file("b.png");
+        EXPECT_EQ(draw_files(job, listener).value().pictures.differs, 0) << volume;
+    }
+}
+
 /// Axes that are stretched by 1 need the cells, so that all is unpacked.
 TEST(DrawFiles, DrawsThePictureOfTheGridFromAPackedFile) {
     const test::TemporaryFolder folder;
@@ -122,7 +149,14 @@ TEST(DrawFiles, DrawsThePictureOfTheGridFromAPackedFile) {
     logarithmic.isovalues = {0.1};
     logarithmic.color_by = "gyroid";
     logarithmic.scale.logarithmic = true;
-    for (DrawJob job : {plain, one, colored, by_boundary, clipped, logarithmic}) {
+    DrawJob ramp = plain, points = plain, rays = plain;
+    for (DrawJob* const job : {&ramp, &points, &rays}) job->volume = true;
+    ramp.isovalues = {0.1};
+    ramp.boundary = 0.2;
+    points.volume_opacity = parse_opacity("0:0,0.1:0.5,0.2:0").value();
+    points.volume_shading = true;
+    rays.dirac = {0.1, -0.4};
+    for (DrawJob job : {plain, one, colored, by_boundary, clipped, logarithmic, ramp, points, rays}) {
         Listener from_file, from_grid;
         const DrawReport report = draw_files(job, from_file).value();
         job.stretch = {1, 1, 1};

@@ -14,7 +14,6 @@
 #include "base/errors.hpp"
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
-#include "packed/residency.hpp"
 #include "render/check_drawing.hpp"
 #include "render/cpu/bins.hpp"
 #include "render/cpu/draw_tuned.hpp"
@@ -66,27 +65,25 @@ Result<std::unique_ptr<render::VolumeScene>> volumes_of(const Scene& scene, cons
                                                         const render::Sight& sight, const render::Tiling& tiling,
                                                         const render::VolumeTuning& tuning, const Progress& progress) {
     std::uint64_t bytes = 0;
+    if (scene.volumes.size() > render::most_volumes)
+        return invalid_argument(fmt::format("a scene with {} volumes, but at most {} are drawn together",
+                                            scene.volumes.size(), render::most_volumes));
     Scene known;
-    std::vector<PackedGrid> grids; // all in memory
-    grids.reserve(scene.volumes.size());
     for (const DrawnVolume& volume : scene.volumes) {
         if (Result<void> right = check_volume(volume); !right) return right.error();
         if (!(volume.grid->field().lower <= volume.grid->field().upper)) continue;
-        Result<std::shared_ptr<const core::Packed>> whole = core::whole_of(volume.grid->shared_data(), progress);
-        if (!whole) return whole.error();
-        const core::Packed& packed = *grids.emplace_back(*std::move(whole)).shared_data();
+        const core::Packed& packed = volume.grid->data();
         bytes +=
             packed.groups() * sizeof(render::TileBox) + packed.clusters() * sizeof(render::PlacedVolume::ClusterPlace);
         known.volumes.push_back(volume);
-        known.volumes.back().grid = &grids.back();
     }
     if (known.volumes.empty()) return std::unique_ptr<render::VolumeScene>();
     const auto threads = static_cast<std::uint64_t>(core::threads_here());
     if (Result<void> enough = core::require_memory("drawing a volume", bytes + threads * volume_bytes_per_thread);
         !enough)
         return enough.error();
-    auto placed = std::make_unique<render::VolumeScene>(known, space, sight, tiling, tuning, progress);
-    placed->grids = std::move(grids);
+    auto placed = std::make_unique<render::VolumeScene>(known, space, sight, tiling, tuning);
+    if (Result<void> found = placed->place(tiling, progress); !found) return found.error();
     return placed;
 }
 
@@ -126,16 +123,22 @@ Result<Picture> draw_on_cpu(const Scene& scene, const PictureOptions& options, c
     std::atomic<std::size_t> done = 0;
     std::mutex mutex;
     work = {};
-    core::parallel_pieces(tiling.tiles(), 4, progress, [&](std::size_t begin, std::size_t end) {
-        render::Tile tile(shared);
-        for (std::size_t i = begin; i < end && !progress.cancelled(); ++i) tile.draw(i, bins.of(i), picture);
-        progress("draw", static_cast<double>(done += end - begin) / static_cast<double>(tiling.tiles()));
-        const VolumeWork part = tile.volume_work();
-        const std::lock_guard lock(mutex);
-        work.tets += part.tets;
-        work.segments += part.segments;
-        work.bytes = std::max(work.bytes, part.bytes);
-    });
+    const auto draw_tiles = [&](std::size_t first, std::size_t last) {
+        core::parallel_pieces(last - first, 4, progress, [&](std::size_t begin, std::size_t end) {
+            render::Tile tile(shared);
+            for (std::size_t i = first + begin; i < first + end && !progress.cancelled(); ++i)
+                tile.draw(i, bins.of(i), picture);
+            progress("draw", static_cast<double>(done += end - begin) / static_cast<double>(tiling.tiles()));
+            const VolumeWork part = tile.volume_work();
+            const std::lock_guard lock(mutex);
+            work.tets += part.tets;
+            work.segments += part.segments;
+            work.bytes = std::max(work.bytes, part.bytes);
+        });
+    };
+    if (!*volumes) draw_tiles(0, tiling.tiles());
+    else if (Result<void> drawn = (*volumes)->for_tiles(tiling.tiles(), progress, draw_tiles); !drawn)
+        return drawn.error();
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "drawing was cancelled"};
     if (*volumes) {
         work.bytes = work.bytes * static_cast<std::uint64_t>(core::threads_here()) + (*volumes)->bytes();

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "base/parallel.hpp"
 #include "numbers/at_level.hpp"
+#include "packed/residency.hpp"
 
 namespace isotet::render {
 
@@ -81,9 +83,12 @@ Sides sides_of(const PlacedPoints& points, const Rays& rays) {
 
 } // namespace
 
-PlacedVolume::PlacedVolume(const DrawnVolume& volume, const Space& space, const Rays& rays, Seek seek, bool skips,
-                           const Progress& progress)
-    : packed_(&volume.grid->data()), rays_(&rays), seek_(seek), skips_(skips), shaded_(volume.shaded),
+PlacedVolume::PlacedVolume(const DrawnVolume& volume, const Space& space, const Rays& rays, Seek seek, bool skips)
+    : packed_(&volume.grid->data()),
+      rays_(&rays),
+      seek_(seek),
+      skips_(skips),
+      shaded_(volume.shaded),
       lengths_(1 / space.scale()) {
     const FieldReport& field = volume.grid->field();
     const core::Storage& storage = packed_->storage;
@@ -109,7 +114,6 @@ PlacedVolume::PlacedVolume(const DrawnVolume& volume, const Space& space, const 
         clips_.push_back(moved_plane(plane, [&](const Vector& p) { return space.place(p); }));
         stored_clips_.push_back(moved_plane(plane, [&](const Vector& p) { return minus(p, packed_->origin); }));
     }
-    find_places(progress);
 }
 
 /// A row of the scene for stored positions.
@@ -181,11 +185,6 @@ bool PlacedVolume::is_clipped(const PlacedPoints& points) const {
 }
 
 void PlacedVolume::find_cluster(std::size_t cluster, PlacedPoints& points) {
-    const core::ClusterHeader& header = packed_->headers[cluster];
-    const std::size_t groups = header.groups();
-    std::fill_n(groups_.data() + header.first_group, groups, TileBox{});
-    clusters_[cluster] = {};
-    if (!(packed_->single() ? may_be_seen<float>(cluster) : may_be_seen<double>(cluster))) return;
     place(cluster, 0, 0, points);
     if (is_clipped(points)) return;
     const Sides sides = sides_of(points, *rays_);
@@ -214,15 +213,25 @@ void PlacedVolume::find_cluster(std::size_t cluster, PlacedPoints& points) {
                });
 }
 
-void PlacedVolume::find_places(const Progress& progress) {
+Result<void> PlacedVolume::find_places(const Progress& progress) {
     clusters_ = core::Buffer<ClusterPlace>(packed_->clusters());
     groups_ = core::Buffer<TileBox>(packed_->groups());
-    core::parallel_pieces(packed_->clusters(), 64, progress, [&](std::size_t begin, std::size_t end) {
-        core::at_level([&] {
-            PlacedPoints points;
-            for (std::size_t cluster = begin; cluster < end; ++cluster) find_cluster(cluster, points);
+    std::ranges::fill(std::span(clusters_.data(), clusters_.size()), ClusterPlace{});
+    std::ranges::fill(std::span(groups_.data(), groups_.size()), TileBox{});
+    std::vector<std::uint32_t> seen;
+    for (std::size_t cluster = 0; cluster < packed_->clusters(); ++cluster)
+        if (packed_->single() ? may_be_seen<float>(cluster) : may_be_seen<double>(cluster))
+            seen.push_back(static_cast<std::uint32_t>(cluster));
+    return core::in_memory(
+        *packed_, seen, core::Parts::all, progress, [&](std::size_t first, std::size_t last) -> Result<void> {
+            core::parallel_pieces(last - first, 64, progress, [&](std::size_t begin, std::size_t end) {
+                core::at_level([&] {
+                    PlacedPoints points;
+                    for (std::size_t i = first + begin; i < first + end; ++i) find_cluster(seen[i], points);
+                });
+            });
+            return {};
         });
-    });
 }
 
 } // namespace isotet::render

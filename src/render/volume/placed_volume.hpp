@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <isotet/progress.hpp>
+#include <isotet/result.hpp>
 #include <isotet/scene.hpp>
 
 #include "base/buffer.hpp"
@@ -54,10 +55,12 @@ struct PlacedIsosurface {
 
 class PlacedVolume {
 public:
-    /// Finds what is seen of clusters and groups.
     /// `skips`   false, in tests: what is transparent is placed, too
-    PlacedVolume(const DrawnVolume& volume, const Space& space, const Rays& rays, Seek seek, bool skips,
-                 const Progress& progress);
+    PlacedVolume(const DrawnVolume& volume, const Space& space, const Rays& rays, Seek seek, bool skips);
+
+    /// Finds what is seen of clusters and groups. Of a grid that lies in a file those are read that are not transparent.
+    /// Errors   as Residency::bring()
+    Result<void> find_places(const Progress& progress);
 
     const core::Packed& packed() const { return *packed_; }
     Seek seeks() const { return seek_; }
@@ -98,7 +101,6 @@ private:
     PictureRow row_of(const Row& row, const Space& space) const;
     template <class Real>
     void place_as(std::size_t cluster, double x, double y, PlacedPoints& out) const;
-    void find_places(const Progress& progress);
     void find_cluster(std::size_t cluster, PlacedPoints& points);
     bool is_clipped(const PlacedPoints& points) const;
     template <class Real>

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <tuple>
 
 #include "numbers/at_level.hpp"
 #include "packed/stored_cells.hpp"
@@ -73,17 +74,62 @@ void find_distances(const TetPlanes& p, std::array<float, 16>& near, std::array<
 } // namespace
 
 VolumeScene::VolumeScene(const Scene& scene, const Space& space, const Sight& sight, const Tiling& tiling,
-                         const VolumeTuning& how, const Progress& progress)
+                         const VolumeTuning& how)
     : rays(sight, tiling.width, tiling.height), tuning(how) {
     for (const DrawnVolume& volume : scene.volumes) {
-        if (!volume.opacity.is_transparent())
-            media.emplace_back(volume, space, rays, Seek::medium, how.skips, progress);
-        if (!volume.isosurfaces.empty())
-            surfaces.emplace_back(volume, space, rays, Seek::isosurfaces, how.skips, progress);
+        if (!volume.opacity.is_transparent()) media.emplace_back(volume, space, rays, Seek::medium, how.skips);
+        if (!volume.isosurfaces.empty()) surfaces.emplace_back(volume, space, rays, Seek::isosurfaces, how.skips);
     }
-    if (progress.cancelled()) return;
+}
+
+Result<void> VolumeScene::place(const Tiling& tiling, const Progress& progress) {
+    for (std::vector<PlacedVolume>* volumes : {&media, &surfaces})
+        for (PlacedVolume& volume : *volumes)
+            if (Result<void> placed = volume.find_places(progress); !placed) return placed;
+    if (progress.cancelled()) return {};
     if (!media.empty()) media_bins.emplace(media, tiling, progress);
     if (!surfaces.empty()) surface_bins.emplace(surfaces, tiling, progress);
+    return {};
+}
+
+Result<void> VolumeScene::for_tiles(std::size_t tiles, const Progress& progress,
+                                    const std::function<void(std::size_t, std::size_t)>& work) const {
+    using Amount = core::Residency::Amount;
+    std::size_t count = tiles;
+    for (std::size_t first = 0; first < tiles && !progress.cancelled(); first += count, count *= 2) {
+        count = std::min(count, tiles - first);
+        std::vector<core::Brought> brought;
+        for (;; count /= 2) {
+            Result<bool> fits =
+                bring(first, first + count, progress, count > 1 ? Amount::fitting : Amount::all, brought);
+            if (!fits) return fits.error();
+            if (*fits || count == 1) break;
+        }
+        work(first, first + count);
+    }
+    return {};
+}
+
+/// False where what tiles show is more than may be kept in memory.
+Result<bool> VolumeScene::bring(std::size_t first, std::size_t last, const Progress& progress,
+                                core::Residency::Amount amount, std::vector<core::Brought>& brought) const {
+    brought.clear();
+    for (const auto& [volumes, bins] : {std::tie(media, media_bins), std::tie(surfaces, surface_bins)})
+        for (std::size_t volume = 0; volume < volumes.size(); ++volume) {
+            const core::Packed& packed = volumes[volume].packed();
+            if (!packed.residency) continue;
+            std::vector<std::uint32_t> clusters;
+            for (std::size_t tile = first; tile < last; ++tile)
+                for (const ClusterEntry& entry : bins->of(tile))
+                    if (entry.volume == volume) clusters.push_back(entry.cluster);
+            std::ranges::sort(clusters);
+            clusters.erase(std::ranges::unique(clusters).begin(), clusters.end());
+            Result<core::Brought> some = packed.residency->bring(clusters, core::Parts::all, amount, progress);
+            if (!some) return some.error();
+            if (some->count < clusters.size()) return false;
+            brought.push_back(*std::move(some));
+        }
+    return true;
 }
 
 std::uint64_t VolumeScene::bytes() const {

@@ -4,12 +4,14 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include <isotet/render.hpp>
 
+#include "packed/residency.hpp"
 #include "render/volume/segments.hpp"
 #include "render/volume/tet_planes.hpp"
 #include "render/volume/volume_bins.hpp"
@@ -27,15 +29,27 @@ struct VolumeScene {
     Rays rays;
     VolumeTuning tuning;
     std::vector<PlacedVolume> media, surfaces;
-    std::vector<PackedGrid> grids; ///< kept for them
     std::optional<VolumeBins> media_bins, surface_bins;
 
+    /// Borrows the grids of the scene.
     VolumeScene(const Scene& scene, const Space& space, const Sight& sight, const Tiling& tiling,
-                const VolumeTuning& tuning, const Progress& progress);
+                const VolumeTuning& tuning);
+    /// Finds which tiles may show what, before anything is drawn.
+    /// Errors   as Residency::bring()
+    Result<void> place(const Tiling& tiling, const Progress& progress);
+
+    /// Calls work(first, last) for ranges of tiles, one after another, while what they show of grids in files is in memory.
+    /// Errors   as Residency::bring()
+    Result<void> for_tiles(std::size_t tiles, const Progress& progress,
+                           const std::function<void(std::size_t, std::size_t)>& work) const;
     std::uint64_t bytes() const;
     std::uint64_t clusters() const { ///< that some tile may show
         return (media_bins ? media_bins->clusters() : 0) + (surface_bins ? surface_bins->clusters() : 0);
     }
+
+private:
+    Result<bool> bring(std::size_t first, std::size_t last, const Progress& progress, core::Residency::Amount amount,
+                       std::vector<core::Brought>& brought) const;
 };
 
 /// Where a ray meets the nearest isosurface.
