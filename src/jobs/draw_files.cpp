@@ -62,6 +62,7 @@ Result<Picture> draw_frames(const std::vector<Frame>& frames, const DrawJob& job
     std::shared_ptr<const Picture> last;
     FrameDrawer frame_drawer(job, drawer, caller);
     PictureWriter writer(files, frames.size() > 1 && caller.run().threads != 1);
+    bool sees_volume = false;
     for (std::size_t i = 0; i < frames.size(); ++i) {
         if (caller.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
         if (frames.size() > 1) caller.detail(fmt::format("picture {} of {}", i + 1, frames.size()));
@@ -82,6 +83,7 @@ Result<Picture> draw_frames(const std::vector<Frame>& frames, const DrawJob& job
         Result<Picture> picture = frame_drawer.draw(input, frames[i].azimuth);
         if (!picture) return picture;
         last = std::make_shared<const Picture>(*std::move(picture));
+        sees_volume = sees_volume || drawer.volume_work().segments > 0;
         numbers.draw_seconds += drawing.seconds();
         const core::Stopwatch writing;
         if (Result<void> added = writer.add(last); !added) return added.error();
@@ -96,6 +98,9 @@ Result<Picture> draw_frames(const std::vector<Frame>& frames, const DrawJob& job
     numbers.peak_memory = peak_resident_memory();
     numbers.camera = to_text(frame_drawer.camera());
     caller.detail("`camera` " + numbers.camera);
+    if (input.volume && !sees_volume && input.volume->isosurfaces.empty())
+        caller.note(fmt::format(
+            "nothing of the volume is seen: in view no cell has a value of '{}' that is not transparent", input.field));
     if (const std::string film = files.film_command(job.frames_per_second); !film.empty())
         caller.note("a film of them: " + film);
     return *last;

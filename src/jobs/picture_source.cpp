@@ -553,7 +553,9 @@ Result<void> PictureSource::take_volume(std::size_t step, Contents& contents, Ca
         if (!(range->lower <= range->upper))
             return Error{ErrorCode::invalid_data,
                          fmt::format("field '{}' has no finite value: there is nothing to draw", field.name)};
-        look.opacity = opacity_of(job_.volume_opacity.value_or(OpacityText{{}, OpacityPreset::ramp, 0}), *range);
+        OpacityText opacity = job_.volume_opacity.value_or(OpacityText{{}, OpacityPreset::ramp, 0});
+        if (opacity.preset == OpacityPreset::peaks && opacity.peaks == 0) opacity.peaks = job_.levels;
+        look.opacity = opacity_of(opacity, *range);
     }
     volume_opacity_ = look.opacity;
     contents.volume_colors = ColorField{field.name, field.values, Association::point, *scale};

@@ -164,6 +164,11 @@ TEST_F(RenderOnCpu, DrawsAVolumeWithWhatIsInIt) {
     for (const char* opacity : {"peaks", "peaks:1", "shell", "-1:0,0:0.5,1:0"})
         EXPECT_GT(unlike(picture("b.png", with({std::string("--opacity=") + opacity})), ramp), 0.01) << opacity;
     EXPECT_GT(unlike(picture("b.png", with({"--opacity-length", "9"})), ramp), 0.01);
+    const auto curve = [&](std::vector<std::string> more) {
+        auto words = command("b.png", with(std::move(more)));
+        return json_of(words)["volume"]["opacity"];
+    };
+    EXPECT_EQ(curve({"--opacity", "peaks", "--levels", "2"}), curve({"--opacity", "peaks:2"}));
     EXPECT_GT(unlike(picture("b.png", with({"-i", "0.5", "--opacity", "0.9"})), ramp), 0.01) << "a surface inside";
     EXPECT_GT(unlike(picture("b.png", with({"--clip", "x=0"})), ramp), 0.01);
     EXPECT_GT(unlike(picture("b.png", with({"--volume-shading"})), ramp), 0.01);
@@ -174,6 +179,9 @@ TEST_F(RenderOnCpu, DrawsAVolumeWithWhatIsInIt) {
     EXPECT_EQ(report["opacity"].size(), 0u) << "the surfaces alone";
     for (const char* number : {"clusters", "tets", "segments", "bytes", "opacity_length"})
         EXPECT_GT(report[number], 0) << number;
+    EXPECT_NE(isotet(command("n.png", with({"--opacity", "5:0,6:1,7:0"}))).err.find("nothing of the volume is seen"),
+              std::string::npos);
+    EXPECT_EQ(isotet(command("n.png", with({"--dirac", "0.2"}))).err.find("is seen"), std::string::npos);
     const RunResult film = isotet({"render", "make:kuhn:6:gyroid", "--volume", "--sweep=-0.5,0.5,3", "-o",
                                    path("v{frame}.png"), "--size", "60x40"});
     EXPECT_EQ(film.status, 0) << film.err;

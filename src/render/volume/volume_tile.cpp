@@ -35,6 +35,8 @@ std::array<float, 3> in_float(const Vector& v) {
 /// A number for each of 4 x 4 pixels.
 struct alignas(64) Lane : std::array<float, 16> {};
 
+constexpr Lane no_ends{{INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY,
+                        INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY}};
 constexpr Lane lane_x{{0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3}},
     lane_y{{0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3}};
 
@@ -317,16 +319,34 @@ void VolumeTile::draw_blocks(const PlacedVolume& volume, std::uint32_t number,
                              const std::array<TetCorner, 4>& corners) {
     ++work_.tets;
     Lanes lanes;
-    for (std::int32_t y = planes_.top & ~3; y <= planes_.bottom; y += 4)
-        for (std::int32_t x = planes_.left & ~3; x <= planes_.right; x += 4) {
+    // A tet that fits into 4 x 4 pixels takes one square of them wherever it begins, others those that are together in
+    // memory.
+    const bool small = planes_.right - planes_.left < 4 && planes_.bottom - planes_.top < 4 &&
+                       ((planes_.left ^ planes_.right) | (planes_.top ^ planes_.bottom)) > 3;
+    const std::int32_t last = volume_tile_side - 4;
+    const std::int32_t left = small ? std::min(planes_.left, last) : planes_.left & ~3,
+                       top = small ? std::min(planes_.top, last) : planes_.top & ~3;
+    for (std::int32_t y = top; y <= planes_.bottom; y += 4)
+        for (std::int32_t x = left; x <= planes_.right; x += 4) {
             find_lanes<parallel, faces>(x, y, lanes);
             std::uint32_t mask = 0;
             for (std::uint32_t i = 0; i < 16; ++i) mask |= static_cast<std::uint32_t>(lanes.inside[i]) << i;
             if (mask == 0) continue;
-            const auto block = static_cast<std::size_t>(y / 4 * 8 + x / 4);
-            if (seek_ == Seek::medium) add_segments(lanes, mask, block, volume, number, corners);
-            else add_hits(lanes, mask, block, volume, number, corners);
+            const auto corner = static_cast<std::size_t>(32 * y + x);
+            if (small) mask = before_ends(lanes, mask, corner);
+            if (seek_ == Seek::medium) add_segments(lanes, mask, corner, volume, number, corners);
+            else add_hits(lanes, mask, corner, volume, number, corners);
         }
+}
+
+/// Of a square of pixels those whose rays have not ended.
+std::uint32_t VolumeTile::before_ends(const Lanes& lanes, std::uint32_t mask, std::size_t corner) const {
+    std::uint32_t out = 0;
+    for (; mask; mask &= mask - 1) {
+        const auto i = static_cast<std::uint32_t>(std::countr_zero(mask));
+        out |= static_cast<std::uint32_t>(lanes.enter[i] < ends_[index_in(corner, i)]) << i;
+    }
+    return out;
 }
 
 /// Where the rays of 4 x 4 pixels enter the tet and leave it, and its values there. Short loops without branches.
@@ -352,7 +372,10 @@ void VolumeTile::find_lanes(std::int32_t x, std::int32_t y, Lanes& out) const {
     }
     find_distances<parallel>(p, out.enter, out.from);
     find_distances<parallel>(p, out.leave, out.to);
-    const float* const ends = ends_.data() + static_cast<std::size_t>(y / 4 * 8 + x / 4) * 16;
+    // Of squares that begin elsewhere before_ends() looks at the ends.
+    const bool aligned = ((x | y) & 3) == 0;
+    const float* const ends =
+        aligned ? ends_.data() + static_cast<std::size_t>(y / 4 * 8 + x / 4) * 16 : no_ends.data();
     const auto left = static_cast<float>(p.left), right = static_cast<float>(p.right), top = static_cast<float>(p.top),
                bottom = static_cast<float>(p.bottom);
     for (std::size_t i = 0; i < 16; ++i)
@@ -362,32 +385,35 @@ void VolumeTile::find_lanes(std::int32_t x, std::int32_t y, Lanes& out) const {
                         static_cast<std::int32_t>(at_y[i] <= bottom);
 }
 
-void VolumeTile::add_segments(const Lanes& lanes, std::uint32_t mask, std::size_t block, const PlacedVolume& volume,
+void VolumeTile::add_segments(const Lanes& lanes, std::uint32_t mask, std::size_t corner, const PlacedVolume& volume,
                               std::uint32_t number, const std::array<TetCorner, 4>& corners) {
     work_.segments += static_cast<std::uint64_t>(std::popcount(mask));
     std::array<float, 3> normal{};
     if (volume.shaded()) normal = gradient_direction(points_, corners);
     const bool lit = normal != std::array<float, 3>{}; // a constant field has no side
-    for (; mask; mask &= mask - 1) {
-        const auto i = static_cast<std::size_t>(std::countr_zero(mask));
-        const std::size_t index = 16 * block + i;
+    const auto add = [&](std::size_t i, std::size_t index) {
         std::uint16_t light = Segment::full_light;
         if (lit)
             light = static_cast<std::uint16_t>(std::min(light_along(index, normal), 1.0F) * Segment::full_light + 0.5F);
         lists_.add(index, {lanes.enter[i], lanes.leave[i], lanes.from[i], lanes.to[i], light,
                            static_cast<std::uint16_t>(number)});
-    }
+    };
+    const auto lane = [&] { return static_cast<std::size_t>(std::countr_zero(mask)); };
+    if ((corner & 0x63) == 0) // together in memory
+        for (const std::size_t first = index_of(corner); mask; mask &= mask - 1) add(lane(), first + lane());
+    else
+        for (; mask; mask &= mask - 1) add(lane(), index_in(corner, lane()));
 }
 
 /// A value that equals an isovalue counts as above it, as in extraction.
-void VolumeTile::add_hits(const Lanes& lanes, std::uint32_t mask, std::size_t block, const PlacedVolume& volume,
+void VolumeTile::add_hits(const Lanes& lanes, std::uint32_t mask, std::size_t corner, const PlacedVolume& volume,
                           std::uint32_t number, const std::array<TetCorner, 4>& corners) {
     work_.segments += static_cast<std::uint64_t>(std::popcount(mask));
     std::array<float, 3> normal{};
     bool has_normal = false;
     for (; mask; mask &= mask - 1) {
         const auto i = static_cast<std::size_t>(std::countr_zero(mask));
-        const std::size_t index = 16 * block + i;
+        const std::size_t index = index_in(corner, i);
         for (std::uint32_t which = 0; which < volume.isosurfaces().size(); ++which) {
             const float height = volume.isosurfaces()[which].height, from = lanes.from[i], to = lanes.to[i];
             if ((from < height) == (to < height)) continue;

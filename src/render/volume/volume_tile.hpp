@@ -88,6 +88,10 @@ public:
         const std::size_t x = pixel % 32, y = pixel / 32;
         return (y / 4 * 8 + x / 4) * 16 + y % 4 * 4 + x % 4;
     }
+    /// Of the pixel `lane` of the 4 x 4 ones that begin with `corner`.
+    static std::size_t index_in(std::size_t corner, std::size_t lane) {
+        return index_of(corner + lane / 4 * 32 + lane % 4);
+    }
 
 private:
     static constexpr std::size_t pixels = SegmentLists::pixels;
@@ -117,10 +121,11 @@ private:
     void draw_blocks(const PlacedVolume& volume, std::uint32_t number, const std::array<TetCorner, 4>& corners);
     template <bool parallel, std::size_t faces>
     void find_lanes(std::int32_t x, std::int32_t y, Lanes& out) const;
-    void add_segments(const Lanes& lanes, std::uint32_t mask, std::size_t block, const PlacedVolume& volume,
+    void add_segments(const Lanes& lanes, std::uint32_t mask, std::size_t corner, const PlacedVolume& volume,
                       std::uint32_t number, const std::array<TetCorner, 4>& corners);
+    std::uint32_t before_ends(const Lanes& lanes, std::uint32_t mask, std::size_t corner) const;
     float light_along(std::size_t index, std::array<float, 3> normal) const;
-    void add_hits(const Lanes& lanes, std::uint32_t mask, std::size_t block, const PlacedVolume& volume,
+    void add_hits(const Lanes& lanes, std::uint32_t mask, std::size_t corner, const PlacedVolume& volume,
                   std::uint32_t number, const std::array<TetCorner, 4>& corners);
 
     const VolumeScene& scene_;
