@@ -254,6 +254,7 @@ private:
     std::optional<std::vector<double>> scene_isovalues_; ///< that scene_ draws; nothing: it draws nothing yet
     std::optional<VolumeState> scene_volume_;            ///< the same
     OpacityCurve scene_opacity_;              ///< that scene_volume_ became
+    std::uint32_t volume_part_ = 3; ///< pictures of a moving volume have this part of the width and height
     ValueRange volume_range_;                 ///< that presets of opacity are over, of volume_field_: that of the step
     std::string volume_field_;                ///< which was shown first, so that steps can be compared
     std::mutex boundary_mutex_;

@@ -137,7 +137,7 @@ Result<Frame> GridView::picture_frame(const ShowMessage& message, double wait_se
     facts.extract_seconds = picture_seconds(start);
     const auto drawing = std::chrono::steady_clock::now();
     PictureOptions options;
-    const std::uint32_t part = !message.moving ? 1 : message.state.volume ? 3 : 2;
+    const std::uint32_t part = !message.moving ? 1 : message.state.volume ? volume_part_ : 2;
     options.width = std::max(1U, (*message.picture)[0] / part);
     options.height = std::max(1U, (*message.picture)[1] / part);
     if (message.moving) options.samples = 1;
@@ -149,6 +149,11 @@ Result<Frame> GridView::picture_frame(const ShowMessage& message, double wait_se
     if (!encoded) return encoded.error();
     facts.picture = *std::move(encoded);
     facts.mesh_seconds = picture_seconds(drawing);
+    if (message.moving && message.state.volume) { // about five pictures a second
+        constexpr double slow = 0.2, fast = 0.06;
+        if (facts.mesh_seconds > slow) volume_part_ = std::min(volume_part_ + 1, 4U);
+        if (facts.mesh_seconds < fast) volume_part_ = std::max(volume_part_ - 1, 2U);
+    }
     if (message.state.volume) {
         facts.opacity = scene_opacity_.points;
         facts.opacity_length = scene_->report().opacity_length;
