@@ -1,5 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Long lists in OpenFOAM's text files, parts of which are parsed side by side: the same as in order, and the same errors.
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <random>
@@ -81,6 +83,18 @@ TEST(FoamLists, ThatAreLongAreReadWhole) {
             EXPECT_TRUE(read->points == made.points);
             EXPECT_EQ(faces.token(), ";");
         }
+}
+
+TEST(FoamLists, OfFacesThatAreAlikeKeepNoBegins) {
+    const auto alike = scanner_of("2\n(\n3(0 1 2)\n3(2 1 3)\n)\n").faces();
+    ASSERT_TRUE(alike) << alike.error().message;
+    EXPECT_TRUE(alike->begins.empty());
+    EXPECT_EQ(alike->count(), 2u);
+    EXPECT_TRUE(std::ranges::equal(alike->of(1), std::array{2, 1, 3}));
+    const auto others = scanner_of("2\n(\n3(0 1 2)\n4(2 1 3 4)\n)\n").faces();
+    ASSERT_TRUE(others) << others.error().message;
+    EXPECT_EQ(others->count(), 2u);
+    EXPECT_TRUE(std::ranges::equal(others->of(1), std::array{2, 1, 3, 4}));
 }
 
 TEST(FoamLists, ThatAreLongAndWrongAreErrorsWithTheirPlace) {

@@ -1,8 +1,12 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <optional>
 #include <span>
+#include <utility>
 
+#include "base/buffer.hpp"
 #include "base/parallel.hpp"
 #include "io/foam/mesh.hpp"
 
@@ -13,7 +17,7 @@ namespace {
 constexpr std::size_t cells_per_task = 1 << 14;
 constexpr std::uint8_t polyhedron = 42;
 
-/// The faces of each cell.
+/// The faces of each cell; ~face where the cell is the neighbour, not the owner.
 struct CellFaces {
     std::vector<std::uint64_t> begins;
     std::vector<std::int32_t> faces;
@@ -22,7 +26,7 @@ struct CellFaces {
         const auto each = [&](const auto& put) {
             for (std::size_t face = 0; face < mesh.owner.size(); ++face) {
                 put(mesh.owner[face], face);
-                if (mesh.neighbour[face] >= 0) put(mesh.neighbour[face], face);
+                if (mesh.neighbour[face] >= 0) put(mesh.neighbour[face], ~face);
             }
         };
         each([&](std::int32_t cell, std::size_t) { ++begins[static_cast<std::size_t>(cell) + 1]; });
@@ -106,7 +110,7 @@ public:
         if (!shape) return {};
         std::array<ShortLoop, 6> loops, unwound; // outward; and canonical
         for (std::size_t i = 0; i < faces.size(); ++i) {
-            loops[i] = outward(cell, faces[i]);
+            loops[i] = outward(faces[i]);
             unwound[i] = loops[i].unwound();
         }
         BuiltCell built{shape->type, {}};
@@ -130,9 +134,7 @@ public:
         return points;
     }
     std::span<const std::int32_t> loop_of(std::int32_t face) const {
-        const auto at = static_cast<std::size_t>(face);
-        return {mesh_.faces.points.data() + mesh_.faces.begins[at],
-                static_cast<std::size_t>(mesh_.faces.begins[at + 1] - mesh_.faces.begins[at])};
+        return mesh_.faces.of(static_cast<std::size_t>(face < 0 ? ~face : face));
     }
     std::span<const std::int32_t> faces_of(std::size_t cell) const { return faces_.of(cell); }
 
@@ -150,10 +152,10 @@ private:
         return triangles == 0 ? &cell_shapes[3] : nullptr;
     }
 
-    ShortLoop outward(std::size_t cell, std::int32_t face) const {
+    ShortLoop outward(std::int32_t face) const {
         ShortLoop loop;
         for (const std::int32_t point : loop_of(face)) loop.points[loop.count++] = point;
-        if (mesh_.owner[static_cast<std::size_t>(face)] != static_cast<std::int32_t>(cell)) loop.reverse();
+        if (face < 0) loop.reverse();
         return loop;
     }
 
@@ -217,11 +219,40 @@ std::vector<std::int64_t> sums_of(const std::vector<std::int64_t>& counts) {
     return sums;
 }
 
+/// The cells, where all are of one kind: most meshes are, and need no memory beside the corners. Else nothing, after a look
+/// at a few cells in most cases.
+std::optional<Cells> cells_of_one_kind(const Mesh& mesh, const CellBuilder& builder) {
+    constexpr std::size_t looked_at = 64;
+    if (mesh.cells == 0) return std::nullopt;
+    const std::uint8_t type = builder.build(0).type;
+    const auto is_other = [&](std::size_t cell) { return builder.build(cell).type != type; };
+    if (type == polyhedron) return std::nullopt;
+    for (std::size_t i = 1; i <= looked_at; ++i)
+        if (is_other((mesh.cells - 1) / looked_at * i)) return std::nullopt;
+    const std::size_t corners = corner_count(type);
+    core::Buffer<std::int32_t> connectivity(corners * mesh.cells);
+    std::atomic<bool> are_alike = true;
+    core::parallel_each(mesh.cells, cells_per_task, [&](std::size_t cell) {
+        if (!are_alike.load(std::memory_order_relaxed)) return;
+        const BuiltCell built = builder.build(cell);
+        if (built.type != type) are_alike = false;
+        std::copy_n(built.corners.begin(), corners, connectivity.data() + corners * cell);
+    });
+    if (!are_alike) return std::nullopt;
+    Cells cells;
+    cells.connectivity = std::move(connectivity).to_array();
+    cells.uniform_type = static_cast<CellType>(type);
+    return cells;
+}
+
 } // namespace
 
-Cells cells_of(const Mesh& mesh) {
+Cells cells_of(Mesh& mesh) {
     const CellFaces faces(mesh);
+    mesh.owner = std::vector<std::int32_t>();
+    mesh.neighbour = std::vector<std::int32_t>(); // {} would keep the memory
     const CellBuilder builder(mesh, faces);
+    if (auto cells = cells_of_one_kind(mesh, builder)) return *std::move(cells);
     std::vector<std::uint8_t> types(mesh.cells);
     std::vector<std::int64_t> corners(mesh.cells), stream(mesh.cells);
     std::vector<std::array<std::int32_t, 8>> built(mesh.cells);
@@ -237,7 +268,8 @@ Cells cells_of(const Mesh& mesh) {
             stream[cell] += static_cast<std::int64_t>(1 + builder.loop_of(face).size());
     });
     std::vector<std::int64_t> offsets = sums_of(corners), face_offsets = sums_of(stream);
-    corners = stream = {};
+    corners = std::vector<std::int64_t>();
+    stream = std::vector<std::int64_t>();
     std::vector<std::int32_t> connectivity(static_cast<std::size_t>(offsets.back()));
     std::vector<std::int32_t> face_stream(static_cast<std::size_t>(face_offsets.back()));
     core::parallel_each(mesh.cells, cells_per_task, [&](std::size_t cell) {
@@ -257,11 +289,6 @@ Cells cells_of(const Mesh& mesh) {
     });
     Cells cells;
     cells.connectivity = Array::own(std::move(connectivity));
-    if (mesh.cells > 0 && types[0] != polyhedron &&
-        std::ranges::all_of(types, [&](std::uint8_t type) { return type == types[0]; })) {
-        cells.uniform_type = static_cast<CellType>(types[0]);
-        return cells;
-    }
     if (!face_stream.empty()) {
         cells.faces = Array::own(std::move(face_stream));
         cells.face_offsets = Array::own(std::move(face_offsets));

@@ -152,17 +152,16 @@ private:
             for (std::size_t i = 0; i < patch->count; ++i) {
                 const std::size_t face = patch->first + i;
                 const double* tuple = values.values.data() + (values.uniform ? 0 : i * components_);
-                if (all.begins[face] == all.begins[face + 1] || has_nan(tuple, components_)) continue;
-                const auto [low, high] =
-                    std::minmax_element(all.points.data() + all.begins[face], all.points.data() + all.begins[face + 1]);
-                faces.push_back({{*low, *high}, face, tuple});
+                const auto points = all.of(face);
+                if (points.empty() || has_nan(tuple, components_)) continue;
+                const auto [low, high] = std::ranges::minmax(points);
+                faces.push_back({{low, high}, face, tuple});
             }
         // Faces of a decomposed case come in another order, and sums depend on it.
         std::ranges::stable_sort(faces, {}, &FaceValue::key);
         PointMeans means(whole_.mesh.point_count(), components_);
         for (const FaceValue& value : faces)
-            for (std::uint64_t k = all.begins[value.face]; k < all.begins[value.face + 1]; ++k)
-                means.add(all.points[k], value.tuple);
+            for (const std::int32_t point : all.of(value.face)) means.add(point, value.tuple);
         return means;
     }
 

@@ -121,7 +121,7 @@ void append_mesh(Mesh from, Part& part, Mesh& whole) {
         std::copy_n(from.points.data() + 3 * i, 3,
                     whole.points.data() + 3 * static_cast<std::size_t>(part.point_numbers[i]));
     for (std::size_t face = 0; face < from.faces.count(); ++face) {
-        whole.faces.begins.push_back(first_corner + from.faces.begins[face + 1]);
+        whole.faces.begins.push_back(first_corner + from.faces.begin(face + 1));
         whole.owner.push_back(cell(from.owner[face]));
         whole.neighbour.push_back(cell(from.neighbour[face]));
     }
@@ -185,6 +185,7 @@ Result<WholeMesh> join_meshes(const CaseFiles& files, std::vector<Mesh> meshes, 
         append_mesh(std::move(meshes[p]), part, out.mesh);
         meshes[p] = Mesh();
     }
+    out.mesh.faces.drop_regular_begins();
     return out;
 }
 

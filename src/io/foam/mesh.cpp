@@ -8,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include "base/block.hpp"
 #include "base/parallel.hpp"
 #include "io/files/text_scanner.hpp"
 #include "io/pieces/loaded.hpp"
@@ -24,32 +25,32 @@ Result<Scanner> scanner_of(const CaseFiles& files, const std::string& name) {
     return scanner;
 }
 
-/// Texts are opened one after another, and parsed side by side.
-Result<void> read_points_and_faces(const CaseFiles& files, const MeshPlace& place, Mesh& mesh) {
-    auto of_points = scanner_of(files, place.points + "/points");
-    if (!of_points) return of_points.error();
-    auto of_faces = scanner_of(files, place.faces + "/faces");
-    if (!of_faces) return of_faces.error();
-    Result<std::vector<double>> points = std::vector<double>();
-    Result<Faces> faces = Faces();
-    core::parallel_each(2, 1, [&](std::size_t which) {
-        if (which == 0) points = of_points->tuples(3, "the points", 0);
-        else faces = of_faces->faces();
-    });
+/// One after another, so that the text of one is freed before the other's is read.
+Result<void> read_points(const CaseFiles& files, const MeshPlace& place, Mesh& mesh) {
+    auto scanner = scanner_of(files, place.points + "/points");
+    if (!scanner) return scanner.error();
+    auto points = scanner->tuples(3, "the points", 0);
     if (!points) return points.error();
     if (points->size() / 3 > std::numeric_limits<std::int32_t>::max())
-        return of_points->fail(fmt::format("has {} points, but below 2^31 are read", points->size() / 3));
+        return scanner->fail(fmt::format("has {} points, but below 2^31 are read", points->size() / 3));
     mesh.points = std::move(*points);
-    mesh.single = of_points->format().single;
+    mesh.single = scanner->format().single;
+    return {};
+}
+
+Result<void> read_faces(const CaseFiles& files, const MeshPlace& place, Mesh& mesh) {
+    auto scanner = scanner_of(files, place.faces + "/faces");
+    if (!scanner) return scanner.error();
+    auto faces = scanner->faces();
     if (!faces) return faces.error();
     if (faces->count() > std::numeric_limits<std::int32_t>::max())
-        return of_faces->fail(fmt::format("has {} faces, but below 2^31 are read", faces->count()));
+        return scanner->fail(fmt::format("has {} faces, but below 2^31 are read", faces->count()));
     const auto count = static_cast<std::int64_t>(mesh.point_count());
     for (std::size_t face = 0; face < faces->count(); ++face)
-        for (std::uint64_t k = faces->begins[face]; k < faces->begins[face + 1]; ++k)
-            if (faces->points[k] < 0 || faces->points[k] >= count)
-                return broken(of_faces->file().path, fmt::format("face {} has point {}, but there are {} points", face,
-                                                                 faces->points[k], count));
+        for (const std::int32_t point : faces->of(face))
+            if (point < 0 || point >= count)
+                return broken(scanner->file().path,
+                              fmt::format("face {} has point {}, but there are {} points", face, point, count));
     mesh.faces = std::move(*faces);
     return {};
 }
@@ -145,8 +146,12 @@ Result<void> read_patches(const CaseFiles& files, const std::string& folder, Mes
 
 Result<Mesh> read_mesh(const CaseFiles& files, const MeshPlace& place) {
     Mesh mesh;
-    if (auto read = read_points_and_faces(files, place, mesh); !read) return read.error();
+    if (auto read = read_points(files, place, mesh); !read) return read.error();
+    core::drop_kept_blocks(); // of the text
+    if (auto read = read_faces(files, place, mesh); !read) return read.error();
+    core::drop_kept_blocks();
     if (auto read = read_cells(files, place.faces, mesh); !read) return read.error();
+    core::drop_kept_blocks();
     if (auto read = read_patches(files, place.faces, mesh); !read) return read.error();
     return mesh;
 }

@@ -61,7 +61,7 @@ Result<WholeMesh> join_meshes(const CaseFiles& files, std::vector<Mesh> meshes, 
                               const std::vector<std::string>& prefixes, bool by_coordinates);
 
 /// Tetrahedra, pyramids, wedges and hexahedra where the faces are theirs, in an order of corners that depends on point
-/// numbers alone; polyhedra with their faces else.
-Cells cells_of(const Mesh& mesh);
+/// numbers alone; polyhedra with their faces else. Frees owners and neighbours before cells take memory.
+Cells cells_of(Mesh& mesh);
 
 } // namespace isotet::io::foam

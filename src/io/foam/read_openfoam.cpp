@@ -256,7 +256,7 @@ Array point_array(foam::Mesh& mesh) {
     if (!mesh.single) return Array::own(std::move(mesh.points), 3);
     std::vector<float> narrow(mesh.points.size());
     std::ranges::transform(mesh.points, narrow.begin(), [](double value) { return static_cast<float>(value); });
-    mesh.points = {};
+    mesh.points = std::vector<double>();
     return Array::own(std::move(narrow), 3);
 }
 
@@ -271,7 +271,7 @@ void add_patches(const foam::WholeMesh& whole, const std::string& prefix, core::
             list.name(number, name);
             const foam::Faces& faces = whole.mesh.faces;
             for (std::size_t face = patch.first; face < patch.first + patch.count; ++face) {
-                for (std::uint64_t i = faces.begins[face]; i < faces.begins[face + 1]; ++i) list.point(faces.points[i]);
+                for (const std::int32_t point : faces.of(face)) list.point(point);
                 list.end_face(number);
             }
         }

@@ -52,6 +52,11 @@ std::vector<Number> joined(const std::vector<std::vector<Number>>& parts) {
     return out;
 }
 
+Faces with_few_begins(Faces faces) {
+    faces.drop_regular_begins();
+    return faces;
+}
+
 Faces joined(const std::vector<Faces>& parts) {
     std::size_t faces = 0, points = 0;
     for (const Faces& part : parts) {
@@ -63,7 +68,7 @@ Faces joined(const std::vector<Faces>& parts) {
     out.points.reserve(points);
     for (const Faces& part : parts) {
         for (std::size_t face = 0; face < part.count(); ++face)
-            out.begins.push_back(out.points.size() + part.begins[face + 1]);
+            out.begins.push_back(out.points.size() + part.begin(face + 1));
         out.points.insert(out.points.end(), part.points.begin(), part.points.end());
     }
     return out;
@@ -490,20 +495,34 @@ Result<void> Scanner::face_here(Faces& faces) {
     return {};
 }
 
+void Faces::drop_regular_begins() {
+    if (begins.size() < 2 || begins[1] == 0) return;
+    const std::uint64_t first = begins[1];
+    for (std::size_t face = 0; face < begins.size(); ++face)
+        if (begins[face] != face * first) return;
+    each = first;
+    begins = std::vector<std::uint64_t>(); // {} would keep the memory
+}
+
 Result<Faces> Scanner::compact_faces() {
     auto begins = labels("where faces begin", 0);
     if (!begins) return begins.error();
+    Faces out;
+    const std::size_t count = begins->empty() ? 0 : begins->size() - 1;
+    const bool rise = !begins->empty() && begins->front() == 0 && std::ranges::is_sorted(*begins);
+    if (rise) {
+        out.begins.assign(begins->begin(), begins->end());
+        begins->clear();
+        begins->shrink_to_fit();
+        out.drop_regular_begins();
+    }
     auto points = labels("the points of faces", 0);
     if (!points) return points.error();
-    Faces out;
     out.points = std::move(*points);
-    out.begins.assign(begins->begin(), begins->end());
-    const bool sound = !begins->empty() && begins->front() == 0 && std::ranges::is_sorted(*begins) &&
-                       out.begins.back() == out.points.size();
-    if (begins->empty() && out.points.empty()) return Faces{};
-    if (!sound)
-        return fail(fmt::format("the beginnings of {} faces do not rise from 0 to their {} points",
-                                begins->empty() ? 0 : begins->size() - 1, out.points.size()));
+    if (count == 0 && !rise && out.points.empty()) return Faces{};
+    if (!rise || (out.each > 0 ? count * out.each : out.begins.back()) != out.points.size())
+        return fail(
+            fmt::format("the beginnings of {} faces do not rise from 0 to their {} points", count, out.points.size()));
     return out;
 }
 
@@ -517,12 +536,12 @@ Result<Faces> Scanner::faces() {
         return fail(fmt::format("the faces: {} are stated, but there is no room for them", *stated));
     if (auto parts = parts_of_list<Faces>(
             *stated, ')', [](Scanner& scanner, Faces& part) { return static_cast<bool>(scanner.face_here(part)); }))
-        return joined(*parts);
+        return with_few_begins(joined(*parts));
     out.begins.reserve(static_cast<std::size_t>(*stated) + 1);
     for (std::uint64_t face = 0; face < *stated; ++face)
         if (auto read = face_here(out); !read) return read.error();
     if (auto end = expect(')', "the faces"); !end) return end.error();
-    return out;
+    return with_few_begins(std::move(out));
 }
 
 } // namespace isotet::io::foam

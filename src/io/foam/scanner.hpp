@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,10 +26,20 @@ struct Header {
 
 /// Lists of point numbers, one after another.
 struct Faces {
-    std::vector<std::uint64_t> begins{0}; ///< one more than there are faces
+    std::vector<std::uint64_t> begins{0}; ///< one more than there are faces; empty where all have `each` points
     std::vector<std::int32_t> points;
+    std::uint64_t each = 0;
 
-    std::size_t count() const noexcept { return begins.size() - 1; }
+    std::size_t count() const noexcept {
+        return each > 0 ? static_cast<std::size_t>(points.size() / each) : begins.size() - 1;
+    }
+    std::uint64_t begin(std::size_t face) const noexcept { return each > 0 ? face * each : begins[face]; }
+    std::span<const std::int32_t> of(std::size_t face) const noexcept {
+        return {points.data() + begin(face), points.data() + begin(face + 1)};
+    }
+
+    /// Frees `begins` where all have as many points.
+    void drop_regular_begins();
 };
 
 /// A cursor over a file. Every error says which file, what was read, and where.
