@@ -98,14 +98,27 @@ def warm(path):
                 pass
 
 
+def peak_of(number):
+    """Of a process that runs, in bytes; isotet resets it between steps, so it is looked at all the time."""
+    try:
+        lines = pathlib.Path(f"/proc/{number}/status").read_text().splitlines()
+    except OSError:
+        return 0
+    return max((int(line.split()[1]) * 1024 for line in lines if line.startswith("VmHWM")), default=0)
+
+
 def run(command):
     """Wall seconds, processor seconds and peak bytes of a process and its children; nothing where it fails."""
     begin = time.perf_counter()
     process = subprocess.Popen([str(word) for word in command], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    _, status, usage = os.wait4(process.pid, 0)
+    peak, number = 0, 0
+    while number == 0:
+        peak = max(peak, peak_of(process.pid))
+        time.sleep(0.005)
+        number, status, usage = os.wait4(process.pid, os.WNOHANG)
     if status != 0:
         return None
-    return time.perf_counter() - begin, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024
+    return time.perf_counter() - begin, usage.ru_utime + usage.ru_stime, max(peak, usage.ru_maxrss * 1024)
 
 
 def ours(options, isotet, path, name):
