@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Steps of a packed file: points that move, and grids between two steps.
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -8,6 +9,7 @@
 #include <isotet/boundary.hpp>
 #include <isotet/contour.hpp>
 #include <isotet/packed_file.hpp>
+#include <isotet/read.hpp>
 
 #include "packed/packed_samples.hpp"
 #include "packed/packed.hpp"
@@ -98,6 +100,22 @@ TEST(MovingPoints, AreThoseOfTheirStep) {
             ASSERT_EQ(file.info().moved_points.size(), 1u) << "the third step has those of the second";
             EXPECT_EQ(file.info().moved_points[0].step, 1u);
             EXPECT_GT(file.info().moved_points[0].upper[0], file.info().upper[0]);
+        }
+    }
+}
+
+TEST(MovingPoints, AreThoseOfTheirStepWithoutAField) {
+    for (const MovingGrid& grid : moving_grids()) {
+        const TemporaryFolder folder;
+        const std::string path = grid.saved_in(folder);
+        for (std::size_t step = 0; step < grid.steps.size(); ++step) {
+            ReadOptions options;
+            options.step = step;
+            options.point_fields.emplace();
+            const Array points = read(path, options).value().grid.points;
+            const Array expected = unpack(grid.steps[step]).value().points;
+            ASSERT_EQ(points.bytes(), expected.bytes());
+            EXPECT_EQ(std::memcmp(points.data(), expected.data(), points.bytes()), 0) << step;
         }
     }
 }

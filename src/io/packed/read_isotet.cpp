@@ -177,7 +177,8 @@ Result<ReadResult> read_isotet(const std::string& path, const ReadOptions& optio
         fields.push_back(*std::move(whole));
     }
     if (!cells) { // no field is wanted
-        const auto packed = (*load)(directory.fields.front());
+        const auto here = std::ranges::find(directory.fields, *step, &FieldEntry::step);
+        const auto packed = (*load)(here == directory.fields.end() ? directory.fields.front() : *here);
         if (!packed) return packed.error();
         cells = *packed;
     }
