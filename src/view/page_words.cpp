@@ -27,11 +27,11 @@ constexpr std::array controls = std::to_array<std::pair<std::string_view, std::s
 
 /// Options of isotet view that the page has no control for.
 constexpr std::array view_options{
-    "allow_host"sv,     "allow_outside"sv, "beside"sv,      "block"sv,  "cell_field"sv,
-    "cells"sv,          "displace"sv,      "distance"sv,    "format"sv, "geometry_tolerance"sv,
-    "hanging_points"sv, "json"sv,          "keep_pieces"sv, "listen"sv, "merge_points"sv,
-    "merge_values"sv,   "no_browser"sv,    "out"sv,         "pages"sv,  "port"sv,
-    "quiet"sv,          "threads"sv,       "tolerance"sv,   "verbose"sv};
+    "allow_host"sv,     "allow_outside"sv, "beside"sv,      "block"sv,     "cell_field"sv,
+    "cells"sv,          "displace"sv,      "distance"sv,    "format"sv,    "geometry_tolerance"sv,
+    "hanging_points"sv, "json"sv,          "keep_pieces"sv, "listen"sv,    "memory"sv,
+    "merge_points"sv,   "merge_values"sv,  "no_browser"sv,  "out"sv,       "pages"sv,
+    "port"sv,           "quiet"sv,         "threads"sv,     "tolerance"sv, "verbose"sv};
 
 /// `marked`   the option with its backquotes
 std::string control_of(std::string_view option, std::string_view marked) {
