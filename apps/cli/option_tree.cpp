@@ -2,6 +2,7 @@
 #include "option_tree.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <optional>
@@ -321,8 +322,10 @@ Command::NamedText Command::text_of_file(const std::string& given) const {
         out.file.resize(colon);
         file.open(out.file);
     }
-    out.text.assign(std::istreambuf_iterator<char>(file), {});
-    if (!file) refuse_file(ErrorCode::file, fmt::format("the file '{}' cannot be read", out.file));
+    std::array<char, 4096> bytes; // read() throws at no folder
+    while (file.read(bytes.data(), bytes.size()) || file.gcount() > 0)
+        out.text.append(bytes.data(), static_cast<std::size_t>(file.gcount()));
+    if (!file.eof()) refuse_file(ErrorCode::file, fmt::format("the file '{}' cannot be read", out.file));
     number_files_->push_back(out.file);
     return out;
 }

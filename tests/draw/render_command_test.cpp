@@ -218,6 +218,7 @@ TEST_F(RenderOnCpu, TakesColoursAndOpacityFromFiles) {
     EXPECT_NE(refused({"--colormap", "@" + path("points.txt")}).find("is not JSON"), std::string::npos);
     EXPECT_NE(refused({"--colormap", "@" + path("gone.json")}).find("cannot be read"), std::string::npos);
     EXPECT_EQ(refused({"--colormap", "@" + path("gone.json")})[0], '3');
+    EXPECT_NE(refused({"--opacity", "@" + path("")}).find("cannot be read"), std::string::npos) << "a folder";
     EXPECT_NE(refused({"--colormap", "jet"}).find("--colormap got 'jet'"), std::string::npos);
     const RunResult over = isotet(
         {"render", "make:kuhn:4:gyroid", "--volume", "--colormap", "@" + path("map.json"), "-o", path("map.json")});
