@@ -27,7 +27,7 @@ reader.SetFileName(sys.argv[1])
 contour = vtk.vtkContourFilter()
 contour.SetInputConnection(reader.GetOutputPort())
 contour.SetInputArrayToProcess(0, 0, 0, 0, "sphere")
-contour.SetValue(0, 0.7)
+contour.SetValue(0, 0.5)
 contour.Update()
 """
 
@@ -106,8 +106,8 @@ class Table:
         return statistics.median(one["pack"] for one in seconds)
 
     def first_surfaces(self):
-        surface = ("extract", self.packed, "-f", "sphere", "-i", "0.7", "-q")
-        raw = ("extract", self.vtu, "-f", "sphere", "-i", "0.7", "-q")
+        surface = ("extract", self.packed, "-f", "sphere", "-i", "0.5", "-q")
+        raw = ("extract", self.vtu, "-f", "sphere", "-i", "0.5", "-q")
         pack = self.packing()
         warm = statistics.median(self.program(*surface).wall for _ in range(self.options.rounds))
         self.row("open and first surface warm, beside packing", "1/60", "1/120", f"1/{pack / warm:.0f} ({warm:.3f} beside {pack:.2f} s)")
@@ -178,11 +178,11 @@ class Table:
         next_steps, direct = [], []
         for _ in range(self.options.rounds):
             file = isotet.open(steps)
-            file.contour(0.7, step=0)
+            file.contour(0.5, step=0)
             drop_pages(steps)
-            next_steps.append(timed(lambda file=file: file.contour(0.7, step=1)))
+            next_steps.append(timed(lambda file=file: file.contour(0.5, step=1)))
             drop_pages(self.vtu)
-            direct.append(self.program("extract", self.vtu, "-f", "sphere", "-i", "0.7", "--method", "direct", "-q").processors)
+            direct.append(self.program("extract", self.vtu, "-f", "sphere", "-i", "0.5", "--method", "direct", "-q").processors)
         a, b = statistics.median(next_steps), statistics.median(direct)
         self.row("next step cold, beside its VTU and direct", "1/10", "1/20", f"1/{b / a:.0f} ({a:.3f} beside {b:.2f} s)")
 
