@@ -16,6 +16,7 @@
 
 #include <isotet/first_view.hpp>
 #include <isotet/isosurface_scene.hpp>
+#include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/first_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
 #include <isotet/jobs/number_text.hpp>
@@ -29,6 +30,7 @@
 #include "json_output.hpp"
 #include "report.hpp"
 #include "text.hpp"
+#include "view_input.hpp"
 #include "view/greeting.hpp"
 #include "view/saved_grid.hpp"
 
@@ -321,6 +323,16 @@ Result<std::optional<ExitCode>> run_export_grid(const ExportCommand& command, Co
     if (!must_be && source->info().cells > max_bytes / least_bytes_a_cell)
         return instead(
             fmt::format("the grid would make the page larger than {} (--max-size)", format_bytes(max_bytes)));
+    if (Result<void> found = check_view_fields(*source, command.field, command.color_by); !found) return found.error();
+    if (!command.color_by.empty()) {
+        const Result<FoundField> color = choose_field(*source, {command.color_by, false});
+        if (!color) return color.error();
+        if (!color->cell.empty()) {
+            const std::string why = fmt::format("'{}', of cells, colours surfaces", command.color_by);
+            if (!must_be) return instead(why);
+            return usage_error("{}, but a page with the grid has fields of points only: --as surfaces", why);
+        }
+    }
     const ChoiceWish wish{Steps::one, command.field, {}, command.field.name.empty()};
     Silent silent(console.run());
     Caller& told = command.all_steps ? static_cast<Caller&>(silent) : console;
@@ -335,6 +347,11 @@ Result<std::optional<ExitCode>> run_export_grid(const ExportCommand& command, Co
     if (folder.path().empty()) return Error{ErrorCode::cannot_write, "no folder could be made for the packed grid"};
     const Result<GridPage> page = GridPageMaker(command, folder.path(), *choice, console).make(max_bytes);
     if (!page) return page.error();
+    if (page->packed.curved_cells > 0) {
+        const std::string cells = fmt::format("{} curved cells", grouped(page->packed.curved_cells));
+        if (!must_be) return instead(cells + " are refined for isosurfaces alone");
+        console.note(cells + " are split at their nodes in a page with the grid: --as surfaces refines them");
+    }
     if (page->html.size() > max_bytes) {
         const std::string size = format_bytes(page->html.size()), largest = format_bytes(max_bytes);
         if (!must_be)

@@ -262,6 +262,12 @@ Result<GridSource> GridSource::open(const GridOptions& options, Caller& caller) 
     read_options.step = options.step;
     read_options.kept = keep_files();
     if (auto steps = check_steps(options, read_options, caller.run()); !steps) return steps.error();
+    if (options.time && !options.blocks.empty()) { // which may be in that step alone
+        ReadOptions whole = read_options;
+        whole.blocks.clear();
+        if (const Result<FileInfo> all = inspect(options.file, whole, caller.run()); all && all->times.size() > 1)
+            if (const Result<std::size_t> step = step_at(all->times, *options.time)) read_options.step = *step;
+    }
     Result<FileInfo> info = inspect(options.file, read_options, caller.run());
     if (!info && options.step) { // choose_steps() refuses a step that is not there
         read_options.step.reset();

@@ -239,6 +239,7 @@ Result<PackedGrid> PackRun::packed_with(const Grid& grid, PointField field, std:
         Result<Contour> started = Contour::create(std::move(input), options, caller_.run());
         if (!started) return started.error();
         contour_ = *std::move(started);
+        if (const auto linear = contour_->linear_grid()) numbers_.curved_cells = linear->refinement.curved_cells;
         if (contour_->linear_grid() && job_.source_cells)
             return refusal(
                 "`source_cells` of polyhedra and quadratic cells are not kept in packed files: these cells are "
@@ -271,18 +272,22 @@ Result<double> round_values(PointField& field, int bits, const Run& run) {
     const double range = statistics->front().upper - statistics->front().lower;
     const double unit = std::exp2(std::ceil(std::log2(range)) - bits);
     if (!(unit > 0 && std::isfinite(unit))) return 0.0;
-    std::vector<float> rounded(field.values.size());
-    double change = 0;
-    field.values.visit([&](auto values) {
-        for (std::size_t i = 0; i < rounded.size(); ++i) {
-            const auto value = static_cast<double>(values[i]);
-            const double nearest = std::nearbyint(value / unit) * unit;
-            rounded[i] = static_cast<float>(std::isfinite(nearest) ? nearest : value);
-            if (std::isfinite(nearest)) change = std::max(change, std::abs(static_cast<double>(rounded[i]) - value));
-        }
-    });
-    field.values = Array::own(std::move(rounded));
-    return change;
+    const auto round = [&]<class Real>(Real) { // float64 may have an offset, which packing takes off
+        std::vector<Real> rounded(field.values.size());
+        double change = 0;
+        field.values.visit([&](auto values) {
+            for (std::size_t i = 0; i < rounded.size(); ++i) {
+                const auto value = static_cast<double>(values[i]);
+                const double nearest = std::nearbyint(value / unit) * unit;
+                rounded[i] = static_cast<Real>(std::isfinite(nearest) ? nearest : value);
+                if (std::isfinite(nearest))
+                    change = std::max(change, std::abs(static_cast<double>(rounded[i]) - value));
+            }
+        });
+        field.values = Array::own(std::move(rounded));
+        return change;
+    };
+    return field.values.type() == ScalarType::float32 ? round(float{}) : round(double{});
 }
 
 /// The grid of a step that is added, packed with the first points of the file, and moved then: other points would be packed in

@@ -258,7 +258,7 @@ Result<void> GridView::show_grid(std::optional<std::uint64_t> wanted, const std:
     return {};
 }
 
-/// Whether a choice that failed is right, and what it leaves out is all.
+/// Whether a choice is right, and what it leaves out is all.
 bool GridView::leaves_no_cell(std::optional<std::uint64_t> wanted, const std::vector<std::string>& cells,
                               const Run& run) {
     if (!options_.only_cells || cells.empty()) return false;
@@ -268,7 +268,9 @@ bool GridView::leaves_no_cell(std::optional<std::uint64_t> wanted, const std::ve
     for (const std::string& choice : cells)
         if (!choice.starts_with('!')) shown.push_back(choice);
         else if (!options_.only_cells(*grid, {choice.substr(1)})) return false;
-    return shown.size() < cells.size() && (shown.empty() || options_.only_cells(*grid, shown));
+    if (shown.size() == cells.size() || !(shown.empty() || options_.only_cells(*grid, shown))) return false;
+    const auto left = options_.only_cells(*grid, cells);
+    return !left && left.error().code == ErrorCode::invalid_argument;
 }
 
 void GridView::read_ahead(const ShowMessage& message) {

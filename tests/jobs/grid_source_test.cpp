@@ -40,6 +40,35 @@ TEST(GridSource, ReadsOnlyTheFieldsAskedFor) {
     EXPECT_EQ(source.read({}, 0, listener).value().point_fields.size(), 2u);
 }
 
+/// Two steps of blocks, of which the second has one more.
+std::string growing(const test::TemporaryFolder& folder) {
+    for (const char* name : {"solid", "fluid"})
+        write_grid(make_grid({.shape = "kuhn", .side = 3, .fields = {"sphere"}}).value(),
+                   folder.file(std::string(name) + ".vtu"))
+            .value();
+    const auto blocks = [&](const char* file, const std::string& sets) {
+        folder.write(file, "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\"><vtkMultiBlockDataSet>" + sets +
+                               "</vtkMultiBlockDataSet></VTKFile>");
+    };
+    const std::string solid = "<DataSet index=\"0\" name=\"solid\" file=\"solid.vtu\"/>";
+    blocks("0.vtm", solid);
+    blocks("1.vtm", solid + "<DataSet index=\"1\" name=\"fluid\" file=\"fluid.vtu\"/>");
+    return folder.write("run.pvd", R"(<VTKFile type="Collection"><Collection>
+<DataSet timestep="0" file="0.vtm"/><DataSet timestep="0.5" file="1.vtm"/></Collection></VTKFile>)");
+}
+
+TEST(GridSource, FindsABlockInTheStepOfATime) {
+    const test::TemporaryFolder folder;
+    GridOptions options;
+    options.file = growing(folder);
+    options.blocks = {"fluid"};
+    options.time = 0.5;
+    Listener listener;
+    EXPECT_EQ(open(options, listener).read({}, 1, listener).value().cells.count(), 162u);
+    options.time = 0;
+    EXPECT_FALSE(GridSource::open(options, listener)) << "it is not there yet";
+}
+
 /// Two tets with a face in common, whose points are there twice.
 std::string torn(const test::TemporaryFolder& folder) {
     return folder.write("torn.vtk", R"(# vtk DataFile Version 3.0

@@ -122,6 +122,26 @@ TEST(PackFile, ValuesAreRoundedToBitsOfTheirRange) {
     EXPECT_LE(change, (upper - lower) / (1 << 16));
 }
 
+TEST(PackFile, RoundedValuesKeepTheirOffset) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    Grid grid = make_grid({.shape = "kuhn", .side = 5, .fields = {"gyroid"}}).value();
+    Array& values = grid.point_fields[0].values;
+    std::vector<double> pressure(values.size());
+    for (std::size_t i = 0; i < pressure.size(); ++i) pressure[i] = 101325 + 1e-3 * values.at(i);
+    values = Array::own(std::move(pressure));
+    PackJob job;
+    job.grid.file = folder.file("pressure.vtu");
+    write_grid(grid, job.grid.file).value();
+    job.fields = {"gyroid"};
+    job.out = folder.file("rounded.isotet");
+    job.value_bits = 16;
+    const PackNumbers numbers = pack_file(job, listener).value();
+    EXPECT_LT(numbers.rounded_by.at(0), 4e-8);
+    const Array rounded = isotet::read(job.out).value().grid.point_fields[0].values;
+    for (std::size_t i = 0; i < rounded.size(); ++i) ASSERT_NEAR(rounded.at(i), values.at(i), 1e-7);
+}
+
 /// Of which the step is what a file says it is, and not the first file's.
 TEST(PackFile, SeveralFilesAreTimeSteps) {
     const test::TemporaryFolder folder;

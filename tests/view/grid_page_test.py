@@ -123,9 +123,15 @@ def test_chooses_what_fits(browser, path):
     page, model = path.replace('grid.html', 'chosen.html'), os.path.join(DATA, 'gocad/geomodel3d_tsolid.so')
     for words, kind, told in [([GRID], 'grid', 'has the grid'), ([GRID, '--max-size', '500kB'], 'surfaces', 'in place of the grid'),
                               ([GRID, '--surfaces', '2'], 'surfaces', ''), ([GRID, '-i', '0.5'], 'surfaces', ''),
-                              ([GRID, '--between', '0.3,0.5'], 'surfaces', ''), ([model], 'surfaces', 'colours the boundary')]:
+                              ([GRID, '--between', '0.3,0.5'], 'surfaces', ''), ([model], 'surfaces', 'colours the boundary'),
+                              (['make:tet10:4:sphere'], 'surfaces', 'curved cells are refined')]:
         report = isotet('export', words[0], page, *words[1:])
         check(report['kind'] == kind and any(told in note for note in report['notes'] + ['']), f'{words}: {report["kind"]}, {report["notes"]}')
+    report = isotet('export', 'make:tet10:4:sphere', page, '--as', 'grid')
+    check(any('curved cells are split at their nodes' in note for note in report['notes']), f'{report["notes"]}')
+    for words in ([], ['--as', 'grid'], ['-f', 'sphere']):
+        refused = subprocess.run([os.environ['ISOTET_PROGRAM'], 'export', GRID, page, '--color-by', 'typo', *words], capture_output=True, text=True)
+        check(refused.returncode == 2 and "'typo'" in refused.stderr, f'{words}: {refused.stderr}')
 
 
 def test_begins_as_the_viewer_does(browser, path):

@@ -32,8 +32,8 @@ struct PackJob {
     bool gradients = false;
     bool split_cells = false;
     std::optional<int>
-        value_bits; ///< 1 to 24: values are rounded to a power of two, of which the range of a step's field
-                    ///< has at most so many bits; files compress better then
+        value_bits; ///< 1 to 24: values are rounded to multiples of the smallest power of two that is at least the
+                    ///< range of the step's field over 2^value_bits; files compress better then
     std::optional<std::uint64_t> memory; ///< of the program while packing: what needs more lies in files
                                          ///< (scratch_memory.hpp). Nothing: half of what is free where a scratch
                                          ///< folder is named, else no limit
@@ -48,7 +48,8 @@ struct PackNumbers {
     std::vector<FieldReport> fields; ///< of the last step
     std::vector<double> rounded_by;  ///< with `value_bits`, of each field: the largest change of a value
     std::size_t steps = 1;
-    std::uint64_t bytes = 0; ///< of the file
+    std::uint64_t curved_cells = 0; ///< that were split at their nodes
+    std::uint64_t bytes = 0;        ///< of the file
     std::uint64_t scratch_bytes = 0; ///< at most in scratch files
     double read_seconds = 0, pack_seconds = 0, write_seconds = 0;
 };
