@@ -46,6 +46,8 @@ for (const path of ['vtu/artery_flow_tet_wedge.vtu', 'vtu/all_dims_tets_lzma.vtu
 await compare(contentsOf(data('tetgen/ellipsoid_16k.node'), data('tetgen/ellipsoid_16k.ele')), data('tetgen/ellipsoid_16k.node'));
 const pieces = readdirSync(data('pvtu/monodomain'), {recursive: true}).map((name) => join(data('pvtu/monodomain'), name)).filter((path) => /vtu$/.test(path));
 await compare(contentsOf(...pieces), pieces.find((path) => path.endsWith('.pvtu'))); // without their folders
+await compare(Object.fromEntries(Object.entries(contentsOf(...pieces)).map(([name, bytes]) => [`dropped/${name}`, bytes])),
+  pieces.find((path) => path.endsWith('.pvtu'))); // in another folder than they say
 
 // A case of OpenFOAM: its folder, what is in it, its files packed, and files without folders.
 const foam = join(data('.'), '../tests/corruption/samples/openfoam');

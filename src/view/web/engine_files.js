@@ -47,12 +47,24 @@ export function blobAsFile(blob) {
   };
 }
 
+/** Files by their names, where one alone has the name. In a case of OpenFOAM a name is that of a field, in each step. */
+function onlyOnesOf(files) {
+  const found = new Map();
+  for (const [path, file] of files) {
+    if (path.includes('polyMesh/')) return new Map();
+    const name = path.split('/').pop();
+    found.set(name, found.has(name) ? undefined : file);
+  }
+  return found;
+}
+
 /** What WASI must have: files that are read, by their paths. */
 export class Files {
   /** @param files  {path: {size, read(at, count)}} */
   constructor(files) {
     this.files = new Map(Object.entries(files).map(([path, file]) => [plainPath(path), file]));
     this.folders = foldersOf(this.files.keys());
+    this.byName = onlyOnesOf(this.files);
     this.opened = new Map(); // by descriptor
     this.next = folder + 1;
   }
@@ -61,8 +73,11 @@ export class Files {
 
   path(at, length) { return plainPath(new TextDecoder().decode(new Uint8Array(this.memory.buffer, at, length))); }
 
-  /** A file that was given without its folder is found by its name. */
-  find(path) { return this.files.get(path) ?? this.files.get(path.split('/').pop()); }
+  /** A file that was given without its folder, or in another one, is found by its name. */
+  find(path) {
+    const name = path.split('/').pop();
+    return this.files.get(path) ?? this.files.get(name) ?? this.byName.get(name);
+  }
 
   /** The names of a folder from a place on, as WASI has them; returns how many bytes. */
   list(names, from, to, room) {
