@@ -61,6 +61,14 @@ nb::dict info_out(const PackedFileInfo& info) {
         cell_fields.append(one);
     }
     out["cell_fields"] = cell_fields;
+    nb::list moved_points;
+    for (const PackedPointsInfo& points : info.moved_points) {
+        nb::dict one;
+        one["step"] = points.step;
+        one["bounds"] = std::pair(points.lower, points.upper);
+        moved_points.append(one);
+    }
+    out["moved_points"] = moved_points;
     return out;
 }
 

@@ -82,7 +82,8 @@ class PackedFile:
             raise ValueError("origin and offsets were given, but one of them says where the plane is")
         info = self._file.info()
         if offsets is None:
-            lower, upper = info["bounds"]
+            moved = [points["bounds"] for points in info["moved_points"] if points["step"] <= step]
+            lower, upper = moved[-1] if moved else info["bounds"]
             point = place_in("origin", [(a + b) / 2 for a, b in zip(lower, upper)] if origin is None else origin)
             offsets = [sum(a * b for a, b in zip(direction, point))]
         if fields is None:
@@ -102,8 +103,8 @@ class PackedFile:
 
     @property
     def info(self) -> dict[str, Any]:
-        """What the file holds: points and cells of the grid that was packed, bounds, and for each field and step a dict in
-        "fields", as opening the file tells it."""
+        """What the file holds: points and cells of the grid that was packed, bounds, those of steps whose points move in
+        "moved_points", and for each field and step a dict in "fields", as opening the file tells it."""
         return self._file.info()
 
     @property

@@ -87,6 +87,8 @@ def test_the_carried_cell_fields_and_fractions_of_steps(series, program):
     assert file.contour(0.1, "p", fraction=1).area == file.contour(0.1, "p", step=1).area
     with pytest.raises(ValueError, match="fraction"):
         file.contour(0.1, "p", fraction=2)
+    assert [points["step"] for points in file.info["moved_points"]] == [1]
+    assert file.slice("x", step=1).area == pytest.approx(16), "in the middle of the points of that step"
 
 
 def test_what_is_wrong_is_told(saved, tmp_path):
