@@ -166,6 +166,9 @@ public:
     /// once as values are stored; points likewise where they move. A point without data in either step has none. Cell fields
     /// are those of the steps. There are no gradients; the range in its report is that of both steps.
     ///
+    /// Cells may turn over between two steps that move far, as in half a turn: they are not looked at. Where values of a step
+    /// are stored with a larger factor, since they are tiny, the smaller one counts.
+    ///
     /// `fraction`   0 to 1; at the ends grid() of that step
     /// Guarantees   surfaces are the same bytes as those of the grid in memory with such values
     /// Cost         two tables; surfaces read values of both steps

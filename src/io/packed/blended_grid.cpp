@@ -51,17 +51,21 @@ public:
     core::Range<Real> range(core::Range<Real> a, core::Range<Real> b) const {
         if (a.lower > a.upper || b.lower > b.upper) // no value has data
             return {std::numeric_limits<Real>::max(), std::numeric_limits<Real>::lowest()};
-        const Real lower = std::min(a.lower * rescale_a_, b.lower * rescale_b_);
-        const Real upper = std::max(a.upper * rescale_a_, b.upper * rescale_b_);
+        const Real lower = std::min(rescaled_a(a.lower), rescaled_b(b.lower));
+        const Real upper = std::max(rescaled_a(a.upper), rescaled_b(b.upper));
         const Real margin =
             std::max({std::abs(lower), std::abs(upper), Real(core::tiny)}) * 4 * std::numeric_limits<Real>::epsilon();
         return {lower - margin, upper + margin};
     }
 
-    Real rescaled_a(Real a) const { return a * rescale_a_; }
-    Real rescaled_b(Real b) const { return b * rescale_b_; }
+    Real rescaled_a(Real a) const { return rescaled(a, rescale_a_); }
+    Real rescaled_b(Real b) const { return rescaled(b, rescale_b_); }
 
 private:
+    static Real rescaled(Real value, Real scale) {
+        return std::abs(value) >= static_cast<Real>(core::stored_infinity) ? value : value * scale;
+    }
+
     Real a_, b_, rescale_a_, rescale_b_;
 };
 
