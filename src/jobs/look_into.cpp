@@ -157,9 +157,22 @@ Result<std::optional<FieldChart>> make_chart(const InfoJob& job, const Grid& gri
         return Error{
             ErrorCode::invalid_data,
             "no field has two different values: there is nothing to chart; `field` x, y or z charts a coordinate"};
-    const Result<PointField> field = find_chosen(grid, name, job.field, caller);
+    Result<PointField> field = find_chosen(grid, name, job.field, caller);
     if (!field) return field.error();
-    Result<ContourSpectrum> spectrum = contour_spectrum_over_range(grid, *field, *job.chart, caller.run());
+    Grid cells = grid;
+    const HangingChoice choice = job.grid.hanging_points;
+    if (choice == HangingChoice::close || choice == HangingChoice::interpolate) { // as extraction does
+        const Result<ClosedGrid> closed = close_hanging_points(grid, caller.run());
+        if (!closed) return closed.error();
+        caller.notes(closed->report.notes());
+        if (choice == HangingChoice::interpolate) {
+            Result<Array> values = closed->interpolated(field->values, caller.run());
+            if (!values) return values.error();
+            field->values = *std::move(values);
+        }
+        cells = closed->grid;
+    }
+    Result<ContourSpectrum> spectrum = contour_spectrum_over_range(cells, *field, *job.chart, caller.run());
     if (!spectrum) return spectrum.error();
     return std::optional(FieldChart{name, *std::move(spectrum)});
 }

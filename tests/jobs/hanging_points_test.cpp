@@ -10,10 +10,12 @@
 
 #include <gtest/gtest.h>
 
-#include <isotet/linear_cells.hpp>
+#include <isotet/check.hpp>
+#include <isotet/contour.hpp>
 #include <isotet/jobs/check_files.hpp>
 #include <isotet/jobs/extract_files.hpp>
 #include <isotet/jobs/look_into.hpp>
+#include <isotet/linear_cells.hpp>
 #include <isotet/read.hpp>
 #include <isotet/write.hpp>
 
@@ -253,6 +255,31 @@ TEST(HangingPointJobs, NeverCallSurfacesSoundThatCurvedCellsLeaveOpen) {
         EXPECT_EQ(found.report.sound, choice == HangingChoice::leave);
         EXPECT_EQ(found.passed, choice == HangingChoice::leave);
     }
+}
+
+TEST(HangingPointJobs, ChartTheAreaOfTheClosedSurface) {
+    InfoJob job;
+    job.grid.file = "make:octree-random:4:sphere";
+    job.chart = 2;
+    job.field.name = "sphere";
+    std::vector<double> areas;
+    for (const HangingChoice choice : {HangingChoice::close, HangingChoice::leave}) {
+        job.grid.hanging_points = choice;
+        test::Listener heard;
+        const ContourSpectrum chart = look_into(job, heard).value().chart.value().spectrum;
+        EXPECT_NEAR(chart.volume, 8, 1e-6);
+        areas.push_back(chart.area.at(1));
+        if (choice == HangingChoice::leave) continue;
+        const Grid grid = close_hanging_points(test::made_grid("octree-random", 4, {"sphere"})).value().grid;
+        const Surface surface = Contour::create({grid, test::point_field(grid), {}, {}}, {.split_cells = true})
+                                    .value()
+                                    .extract(chart.isovalues.at(1))
+                                    .value()
+                                    .surfaces[0]
+                                    .surface;
+        EXPECT_NEAR(check(surface).value().area, chart.area.at(1), 1e-4);
+    }
+    EXPECT_NE(areas[0], areas[1]);
 }
 
 TEST(HangingPointJobs, SaysNothingOfGridsWithoutThem) {
