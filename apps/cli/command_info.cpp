@@ -106,7 +106,8 @@ std::string grid_table(const GridSummary& found, const std::string& path) {
                                       "surface may be open there; --split-cells"},
           {found.hanging_points, "hanging points, in a face or edge of a larger cell"},
           {found.hanging.cells, "cells that list them for extraction"},
-          {found.hanging.curved_points, "of these where cells are above degree 1: the surface is open there"},
+          {found.hanging.curved_cells, "of these above degree 1: they are linear between their points"},
+          {found.hanging.curved_points, "of these where cells are above degree 2: the surface is open there"},
           {found.hanging.open_faces, "faces on smaller ones that do not cover them: the surface may be open there"}}) {
         if (count > 0) table.row({"", fmt::format("{} {}", grouped(count), what)});
     }
@@ -339,11 +340,15 @@ Json json_of(const GridSummary& found, const std::string& path) {
         report["boundary_faces"] = grid.boundary_faces;
         report["quads_on_triangles"] = grid.quads_on_triangles;
         report["hanging_points"] = found.hanging_points;
-        report["hanging"] = {
-            {"points", found.hanging.points},         {"levels", found.hanging.levels},
-            {"cells", found.hanging.cells},           {"faces", found.hanging.faces},
-            {"near_faces", found.hanging.near_faces}, {"largest_distance", found.hanging.largest_distance},
-            {"open_faces", found.hanging.open_faces}, {"curved_points", found.hanging.curved_points}};
+        report["hanging"] = {{"points", found.hanging.points},
+                             {"levels", found.hanging.levels},
+                             {"cells", found.hanging.cells},
+                             {"faces", found.hanging.faces},
+                             {"near_faces", found.hanging.near_faces},
+                             {"largest_distance", found.hanging.largest_distance},
+                             {"open_faces", found.hanging.open_faces},
+                             {"curved_points", found.hanging.curved_points},
+                             {"curved_cells", found.hanging.curved_cells}};
     }
     report["bounds"] = {{"lower", grid.lower}, {"upper", grid.upper}};
     report["times"] = found.file.times;

@@ -245,7 +245,10 @@ struct HangingReport {
     std::uint64_t levels = 0;     ///< n: an edge meets up to 2^n smaller ones
     std::uint64_t cells = 0;      ///< that list hanging points now
     std::uint64_t open_faces = 0; ///< on smaller ones that do not cover them: the surface stays open there
-    /// That hang in a grid with cells above degree 1, which cannot list them: the surface stays open there.
+    /// Of the cells that list hanging points: those above degree 1. As polyhedra they are linear between their points, and
+    /// the bounds of refine() are not against their own functions.
+    std::uint64_t curved_cells = 0;
+    /// That hang in a grid with cells above degree 2 or Bezier cells, which cannot list them: the surface stays open there.
     std::uint64_t curved_points = 0;
 
     /// Sentences for the user.
@@ -281,7 +284,9 @@ struct ISOTET_API ClosedGrid {
 /// count. Faces may be warped, cells of any kinds, and several levels meet in one face. Points that coincide must be
 /// one (merge_points()).
 ///
-/// Grids with curved cells are returned as they are; only curved_points of the report is set.
+/// Quadratic cells that list hanging points become polyhedra of their corners and of their nodes on edges that no other
+/// quadratic cell has; points that hang on these have no parents. Grids with cells above degree 2 or Bezier cells are
+/// returned as they are; only curved_points of the report is set.
 ///
 /// Guarantees   the same bytes for any thread count; a face that has a neighbour of its own is never looked at, but for
 ///              hashes that are equal by chance: 2^-64 a face

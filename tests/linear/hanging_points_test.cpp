@@ -8,6 +8,7 @@
 #include <map>
 #include <random>
 #include <set>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -22,6 +23,7 @@
 #include <isotet/make.hpp>
 #include <isotet/solid.hpp>
 
+#include "linear/quadratic_cells.hpp"
 #include "linear/refined_cells.hpp"
 #include "support/quadratic_grid.hpp"
 #include "support/small_grid.hpp"
@@ -320,34 +322,130 @@ TEST(CloseHangingPoints, InterpolatesFromLargerCells) {
 }
 
 TEST(CloseHangingPoints, ConvergesToTheSphereAtSecondOrder) {
-    std::vector<double> errors;
-    for (const std::uint64_t side : {3u, 6u, 12u}) {
-        const Grid grid = made_grid("octree-random", side, {});
-        const ClosedGrid found = closed(grid);
-        const PointField field = field_at(grid, [](Place p) { return std::hypot(p[0], p[1], p[2]); });
-        const Surface surface = surface_of(found.grid, field, 0.7);
-        double largest = 0;
-        for (std::size_t v = 0; v < surface.vertex_count(); ++v) {
-            const double radius =
-                std::hypot(surface.positions.at(v, 0), surface.positions.at(v, 1), surface.positions.at(v, 2));
-            largest = std::max(largest, std::abs(radius - 0.7));
+    for (const bool quadratic : {false, true}) {
+        SCOPED_TRACE(quadratic);
+        std::vector<double> errors;
+        for (const std::uint64_t side : {3u, 6u, 12u}) {
+            const Grid linear = made_grid("octree-random", quadratic ? side / 2 + 1 : side, {});
+            const ClosedGrid found = closed(quadratic ? quadratic_cells(linear) : linear);
+            const PointField field = field_at(found.grid, [](Place p) { return std::hypot(p[0], p[1], p[2]); });
+            const Surface surface = surface_of(found.grid, field, 0.7);
+            double largest = 0;
+            for (std::size_t v = 0; v < surface.vertex_count(); ++v) {
+                const double radius =
+                    std::hypot(surface.positions.at(v, 0), surface.positions.at(v, 1), surface.positions.at(v, 2));
+                largest = std::max(largest, std::abs(radius - 0.7));
+            }
+            errors.push_back(largest);
         }
-        errors.push_back(largest);
+        const double rate = quadratic ? 2.2 : 2.8; // 2, 4 and 7 cells along an edge; 3, 6 and 12
+        EXPECT_GT(errors[0] / errors[1], rate);
+        EXPECT_GT(errors[1] / errors[2], rate);
     }
-    EXPECT_GT(errors[0] / errors[1], 2.8);
-    EXPECT_GT(errors[1] / errors[2], 2.8);
 }
 
-TEST(CloseHangingPoints, CountsThoseOfCurvedCellsAndLeavesThemOpen) {
-    const Grid grid = quadratic_hexahedra(boxes(coarse_beside(2)));
+double squared(Place p) { return p[0] * p[0] + p[1] * p[1] + p[2] * p[2]; }
+double bumpy(Place p) { return std::sin(5 * p[0]) + std::cos(4 * p[1] + p[0]) * std::sin(3 * p[2]); }
+
+/// Quadratic cells of all kinds, cut at random or by octrees.
+std::vector<std::pair<std::string, Grid>> quadratic_levels(NodesOn on) {
+    std::vector<std::pair<std::string, Grid>> out;
+    for (const char* shape : {"octree-random", "octree-tets"})
+        out.emplace_back(shape, quadratic_cells(made_grid(shape, 2, {}), on));
+    for (const char* shape : {"hex", "wedge", "pyramid", "mixed"}) {
+        RefinedCells cells(made_grid(shape, shape == std::string("mixed") ? 3 : 2, {}));
+        std::mt19937 random(1);
+        for (const double probability : {0.3, 0.2}) cells.refine(probability, random);
+        out.emplace_back(shape, quadratic_cells(cells.grid(), on));
+    }
+    return out;
+}
+
+TEST(CloseHangingPoints, ClosesQuadraticCells) {
+    for (const NodesOn on : {NodesOn::edges, NodesOn::faces})
+        for (const auto& [shape, grid] : quadratic_levels(on)) {
+            SCOPED_TRACE(shape + (on == NodesOn::faces ? ", nodes on faces" : ""));
+            const ClosedGrid found = closed(grid);
+            EXPECT_GT(found.report.curved_cells, 0u);
+            EXPECT_EQ(found.report.curved_cells, found.report.cells);
+            EXPECT_EQ(found.report.curved_points + found.report.open_faces, 0u);
+            EXPECT_EQ(found.points.tuples(), 0u) << "values are their own";
+            EXPECT_EQ(closed(found.grid).report.points, 0u) << "nothing is left";
+            const SurfaceReport boundary = boundary_report(found.grid);
+            EXPECT_TRUE(boundary.closed);
+            EXPECT_NEAR(boundary.volume, 8, 1e-6);
+            EXPECT_NEAR(boundary.area, 24, 1e-5);
+            for (const auto& [name, at, isovalue] : {std::tuple("sphere", &squared, 0.37), {"bumpy", &bumpy, 0.31}}) {
+                const PointField field = field_at(found.grid, at);
+                for (const double tolerance : {0.0, 0.02}) {
+                    ContourOptions options{.precision = Precision::float64};
+                    if (tolerance > 0) options.refine.emplace().tolerance = tolerance;
+                    const Surface surface = Contour::create({found.grid, field, {}, {}}, options)
+                                                .value()
+                                                .extract(isovalue)
+                                                .value()
+                                                .surfaces[0]
+                                                .surface;
+                    ASSERT_GT(surface.triangle_count(), 0u);
+                    if (name == std::string("sphere")) {
+                        EXPECT_TRUE(check(surface).value().closed) << tolerance;
+                    }
+                }
+                auto solids = Solids::create({found.grid, field, {}, {}}, {}).value();
+                double volume = 0;
+                for (const SolidRange side : {SolidRange{-INFINITY, isovalue}, SolidRange{isovalue, INFINITY}}) {
+                    const SurfaceReport report = check(solids.extract(side).value().surface).value();
+                    EXPECT_TRUE(report.closed) << name;
+                    volume += report.volume;
+                }
+                EXPECT_NEAR(volume, 8, 1e-5) << name;
+            }
+        }
+}
+
+TEST(CloseHangingPoints, KeepsThePlaneOfALinearFieldInQuadraticCells) {
+    for (const auto& [shape, grid] : quadratic_levels(NodesOn::edges)) {
+        const Grid all = closed(grid).grid;
+        const Surface surface = surface_of(all, field_at(all, slanted), 0.123);
+        for (std::size_t v = 0; v < surface.vertex_count(); ++v)
+            ASSERT_NEAR(slanted(place_of(surface.positions, v)), 0.123, 1e-12) << shape;
+        EXPECT_NEAR(check(surface).value().area,
+                    check(surface_of(made_grid("kuhn", 2, {}), field_at(made_grid("kuhn", 2, {}), slanted), 0.123))
+                        .value()
+                        .area,
+                    1e-9)
+            << shape;
+    }
+}
+
+TEST(CloseHangingPoints, CountsThoseOfCellsAboveDegree2AndLeavesThemOpen) {
+    Grid grid = quadratic_hexahedra(boxes(coarse_beside(2)));
+    std::vector<std::int64_t> connectivity(grid.cells.connectivity.as<std::int64_t>().begin(),
+                                           grid.cells.connectivity.as<std::int64_t>().end());
+    std::vector<std::int64_t> offsets(grid.cells.offsets.as<std::int64_t>().begin(),
+                                      grid.cells.offsets.as<std::int64_t>().end());
+    std::vector<std::uint8_t> types(grid.cells.types.as<std::uint8_t>().begin(),
+                                    grid.cells.types.as<std::uint8_t>().end());
+    std::vector<double> points(grid.points.as<double>().begin(), grid.points.as<double>().end());
+    for (std::size_t node = 0; node < 20; ++node) { // a cubic tetrahedron beside them
+        connectivity.push_back(static_cast<std::int64_t>(points.size() / 3));
+        points.insert(points.end(), {9 + static_cast<double>(node), static_cast<double>(node % 3), 0.0});
+    }
+    offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
+    types.push_back(71);
+    grid.points = Array::own(std::move(points), 3);
+    grid.point_fields.clear();
+    grid.cells.connectivity = Array::own(std::move(connectivity));
+    grid.cells.offsets = Array::own(std::move(offsets));
+    grid.cells.types = Array::own(std::move(types));
     const ClosedGrid found = closed(grid);
     EXPECT_EQ(found.report.curved_points, 5u);
     EXPECT_EQ(found.report.points + found.report.cells, 0u);
     EXPECT_EQ(found.grid.cells.connectivity.data(), grid.cells.connectivity.data());
     ASSERT_EQ(found.report.notes().size(), 1u);
-    EXPECT_NE(found.report.notes()[0].find("above degree 1"), std::string::npos);
+    EXPECT_NE(found.report.notes()[0].find("above degree 2"), std::string::npos);
     const Grid even = quadratic_hexahedra(boxes({{{0, 0, 0}, 1, {2, 2, 2}}}));
-    EXPECT_EQ(closed(even).report.curved_points, 0u);
+    EXPECT_EQ(closed(even).report.points, 0u);
 }
 
 TEST(CloseHangingPoints, GivesTheSameBytesForAnyThreadCount) {

@@ -11,6 +11,8 @@
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
 #include "base/parallel.hpp"
+#include "linear/curved/curved_kinds.hpp"
+#include "linear/curved/high_degree.hpp"
 #include "linear/derived.hpp"
 #include "linear/hanging/checked_cells.hpp"
 #include "linear/hanging/corner_cells.hpp"
@@ -18,6 +20,7 @@
 #include "linear/hanging/hanging_rows.hpp"
 #include "linear/hanging/listed_cells.hpp"
 #include "linear/hanging/open_faces.hpp"
+#include "linear/hanging/own_nodes.hpp"
 
 namespace isotet {
 
@@ -48,23 +51,96 @@ Result<OpenGrid> open_faces_of_corners(const Grid& corners, const Progress& prog
     return open_faces_of(nothing, progress);
 }
 
-Result<ClosedGrid> find_on_curved_cells(const Grid& grid, const Progress& progress) {
+/// Whether all that the cells have is in the connectivity, at points that are there.
+bool can_be_copied(const core::CellReader& cells) {
+    for (std::size_t cell = 0; cell < cells.count(); ++cell) {
+        const std::uint64_t first = cells.first(cell), count = cells.corners(cell), size = cells.connectivity_size();
+        if (first > size || count > size - first) return false;
+        for (std::uint64_t i = first; i < first + count; ++i)
+            if (cells.corner(i) >= cells.points()) return false;
+    }
+    return true;
+}
+
+/// A curved cell that lists hanging points has values of its own at these: its neighbours' values are not looked at.
+void leave_out_points_of(const std::vector<std::uint8_t>& left_out, ClosedGrid& closed) {
+    if (closed.points.empty()) return;
+    const auto points = closed.points.as<std::uint64_t>(), corners = closed.parents.points.as<std::uint64_t>();
+    const auto first = closed.parents.first.as<std::uint64_t>();
+    const auto weights = closed.parents.weights.as<double>();
+    std::vector<std::uint64_t> kept, kept_first{0}, kept_corners;
+    std::vector<double> kept_weights;
+    for (std::size_t row = 0; row < points.size(); ++row) {
+        if (left_out[points[row]] != 0) continue;
+        kept.push_back(points[row]);
+        for (std::uint64_t i = first[row]; i < first[row + 1]; ++i) {
+            kept_corners.push_back(corners[i]);
+            kept_weights.push_back(weights[i]);
+        }
+        kept_first.push_back(kept_corners.size());
+    }
+    closed.points = Array::own(std::move(kept));
+    closed.parents = {Array::own(std::move(kept_first)), Array::own(std::move(kept_corners)),
+                      Array::own(std::move(kept_weights))};
+}
+
+/// Cells above degree 1 that list points become polyhedra of the grid's own nodes: their other curved neighbours and the
+/// smaller cells give nodes to their edges and faces when these are refined.
+Result<ClosedGrid> close_curved_cells(const Grid& grid, const Progress& progress) {
     ClosedGrid out{grid, {}, {}, {}};
-    const Grid corners = corner_cells(grid);
-    const auto all = open_faces_of_corners(corners, progress);
+    const CornerCells corners = corner_cells(grid);
+    const auto all = open_faces_of_corners(corners.grid, progress);
     if (!all) return all.error();
-    const core::PointReader points(corners.points);
-    const auto covers = find_covers(all->open, all->cells, points, progress);
+    progress("check", 0.6);
+    const core::PointReader points(grid.points);
+    auto covers = find_covers(all->open, all->cells, points, progress);
     if (!covers) return covers.error();
-    ClosedGrid found{corners, {}, {}, {}};
-    if (!covers->whole.empty()) describe_hanging(all->open, *covers, points, true, found);
-    out.report.curved_points = found.report.points;
+    if (covers->whole.empty() && covers->open.empty()) return out;
+    const auto cells = core::CellReader::open(grid);
+    const auto faces = core::FaceReader::open(grid.cells);
+    if (!cells || !faces || !can_be_copied(*cells)) return out; // refining tells what is wrong
+    ClosedGrid found{corners.grid, {}, {}, {}};
+    describe_hanging(all->open, *covers, points, grid.points.type() == ScalarType::float32, found);
+    if (has_high_degree(*cells)) { // their nodes on edges are made when they are refined, and cannot be listed
+        out.report.curved_points = found.report.points;
+        return out;
+    }
+    out.report = found.report;
+    out.report.open_faces = covers->open.size();
+    if (covers->whole.empty()) return out;
+    const auto list = [&] {
+        std::vector<ListedCell> listed = list_cells(all->cells, all->faces, all->open, *covers, progress);
+        for (ListedCell& cell : listed) cell.cell = corners.sources[cell.cell];
+        return listed;
+    };
+    std::vector<ListedCell> listed = list();
+    std::vector<std::uint64_t> numbers;
+    for (const ListedCell& cell : listed) numbers.push_back(cell.cell);
+    if (const auto nodes = own_nodes(*cells, numbers, covers->edges); !nodes.empty()) {
+        covers->edges.add(nodes);
+        listed = list();
+    }
+    out.report.cells = listed.size();
+    std::vector<std::uint8_t> of_curved(grid.points.tuples());
+    for (const ListedCell& cell : listed) {
+        if (!is_curved(cells->type(cell.cell))) continue;
+        ++out.report.curved_cells;
+        for (const std::uint64_t point : cell.points) of_curved[point] = 1;
+    }
+    out.points = found.points;
+    out.parents = found.parents;
+    leave_out_points_of(of_curved, out);
+    if (progress.cancelled()) return Error{ErrorCode::cancelled, "looking for hanging points was cancelled"};
+    progress("check", 0.8);
+    auto made = with_listed_cells(*cells, *faces, listed, progress);
+    if (!made) return made.error();
+    out.grid.cells = *std::move(made);
     progress("check", 1);
     return out;
 }
 
 Result<ClosedGrid> close_hanging(const Grid& grid, const Progress& progress) {
-    if (has_curved_cells(grid.cells)) return find_on_curved_cells(grid, progress);
+    if (has_curved_cells(grid.cells)) return close_curved_cells(grid, progress);
     ClosedGrid out{grid, {}, {}, {}};
     const auto all = open_faces_of(grid, progress);
     if (!all) return all.error();
@@ -145,10 +221,16 @@ std::vector<std::string> HangingReport::notes() const {
         out.push_back(fmt::format("{} points hang on faces or edges of larger cells: {} cells list them as polyhedra, "
                                   "so that the surface is closed there (docs/cells.md)",
                                   points, cells));
+    if (curved_cells > 0)
+        out.push_back(
+            fmt::format("{} of these are cells above degree 1: they are linear between their points, without a "
+                        "bound of the error, and hanging points have their own values",
+                        curved_cells));
     if (curved_points > 0)
-        out.push_back(fmt::format("{} points hang on faces or edges of larger cells, in a grid with cells above degree 1, "
-                                  "which cannot list them: the surface is open there (docs/cells.md)",
-                                  curved_points));
+        out.push_back(
+            fmt::format("{} points hang on faces or edges of larger cells, in a grid with cells above degree 2, "
+                        "which cannot list them: the surface is open there (docs/cells.md)",
+                        curved_points));
     if (near_faces > 0)
         out.push_back(fmt::format("hanging points of {} of {} faces are beside these, by up to {:.3g}: the surface "
                                   "follows the smaller cells",

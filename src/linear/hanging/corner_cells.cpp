@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "grid/cell_faces.hpp"
 #include "grid/cells.hpp"
 #include "linear/curved/curved_kinds.hpp"
 
@@ -34,24 +35,34 @@ std::optional<Corners> corners_of(std::uint8_t type, std::uint64_t nodes) {
 
 } // namespace
 
-Grid corner_cells(const Grid& grid) {
-    Grid out{grid.points, {}, {}, {}};
+CornerCells corner_cells(const Grid& grid) {
+    CornerCells out{{grid.points, {}, {}, {}}, {}};
     const auto cells = core::CellReader::open(grid);
-    if (!cells) return out;
-    std::vector<std::uint64_t> connectivity, offsets{0};
+    const auto listed = core::FaceReader::open(grid.cells);
+    if (!cells || !listed) return out;
+    std::vector<std::uint64_t> connectivity, offsets{0}, faces, face_offsets{0};
     std::vector<std::uint8_t> types;
     for (std::size_t cell = 0; cell < cells->count(); ++cell) {
         const std::uint64_t first = cells->first(cell), nodes = cells->corners(cell);
-        const auto corners = corners_of(cells->type(cell), nodes);
         const std::uint64_t size = cells->connectivity_size();
+        const bool is_polyhedron = core::is_polyhedron(*cells, *listed, cell);
+        const auto corners =
+            is_polyhedron ? std::optional(Corners{cells->type(cell), nodes}) : corners_of(cells->type(cell), nodes);
         if (!corners || nodes < corners->count || first > size || corners->count > size - first) continue;
         for (std::uint64_t i = first; i < first + corners->count; ++i) connectivity.push_back(cells->corner(i));
+        for (std::uint64_t i = listed->begin(cell); i < listed->end(cell); ++i) faces.push_back(listed->at(i));
         offsets.push_back(connectivity.size());
+        face_offsets.push_back(faces.size());
         types.push_back(corners->type);
+        out.sources.push_back(cell);
     }
-    out.cells.connectivity = Array::own(std::move(connectivity));
-    out.cells.offsets = Array::own(std::move(offsets));
-    out.cells.types = Array::own(std::move(types));
+    out.grid.cells.connectivity = Array::own(std::move(connectivity));
+    out.grid.cells.offsets = Array::own(std::move(offsets));
+    out.grid.cells.types = Array::own(std::move(types));
+    if (!faces.empty()) {
+        out.grid.cells.faces = Array::own(std::move(faces));
+        out.grid.cells.face_offsets = Array::own(std::move(face_offsets));
+    }
     return out;
 }
 

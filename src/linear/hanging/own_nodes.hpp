@@ -1,0 +1,22 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Nodes of quadratic cells on edges, where these cells list hanging points and so become polyhedra.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "grid/cells.hpp"
+#include "linear/hanging/split_edges.hpp"
+
+namespace isotet::linear {
+
+/// The nodes on edges of some cells, but for edges that another curved cell has, whose nodes all cells with the edge
+/// take when curved cells are refined, and for edges with points on them.
+///
+/// `cells`    of the grid, curved ones as they are
+/// `listed`   cells that become polyhedra, ascending
+/// Cost       a pass over the cells, a byte a point
+std::vector<PointOnEdge> own_nodes(const core::CellReader& cells, const std::vector<std::uint64_t>& listed,
+                                   const SplitEdges& split);
+
+} // namespace isotet::linear
