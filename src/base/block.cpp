@@ -2,6 +2,8 @@
 #include "base/block.hpp"
 #include "base/block_place.hpp"
 #include "base/block_reuse.hpp"
+#include "base/fresh_memory.hpp"
+#include "base/memory.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -73,6 +75,14 @@ Block map_block(std::size_t bytes) {
     return {data, size};
 }
 
+std::uint64_t left_for_blocks();
+
+/// No data also where the pages could not all be used.
+Block map_fresh(std::size_t bytes) {
+    static auto* const fresh = new FreshMemory(left_for_blocks);
+    return fresh->take(bytes) ? map_block(bytes) : Block{};
+}
+
 /// Blocks given back, waiting for the next one who wants about as much; and what is in use.
 class KeptBlocks {
 public:
@@ -102,8 +112,8 @@ public:
             while (reuses_ && old < blocks_.size() && in_use_ + bytes_ + bytes > peak_) release(blocks_[old++]);
             forget(old);
         }
-        Block block = map_block(bytes);
-        if (!block.data && drop() > 0) block = map_block(bytes);
+        Block block = map_fresh(bytes);
+        if (!block.data && drop() > 0) block = map_fresh(bytes);
         if (!block.data) throw std::bad_alloc();
         const std::lock_guard lock(mutex_);
         in_use_ += block.bytes;
@@ -214,6 +224,13 @@ private:
 KeptBlocks& kept_blocks() {
     static auto* const blocks = new KeptBlocks;
     return *blocks;
+}
+
+/// What the control group has, less what blocks will take of it once they are written.
+std::uint64_t left_for_blocks() {
+    const std::uint64_t left = control_group_free("/proc/self/cgroup", "/sys/fs/cgroup");
+    const std::uint64_t mapped = kept_blocks().in_use(), resident = resident_memory().value_or(mapped);
+    return left - std::min(left, mapped - std::min(mapped, resident));
 }
 
 std::atomic<BlockPlace*> other_place{nullptr};

@@ -15,11 +15,31 @@
 #include "base/block.hpp"
 #include "base/block_reuse.hpp"
 #include "base/buffer.hpp"
+#include "base/fresh_memory.hpp"
 
 namespace isotet::core {
 namespace {
 
 constexpr std::size_t megabyte = std::size_t{1} << 20;
+
+TEST(FreshMemory, IsRefusedBeforeMoreIsTakenThanThereIs) {
+    static std::uint64_t left = 0;
+    static int asked = 0;
+    FreshMemory fresh([] { return ++asked, left; });
+    left = 300 * megabyte;
+    EXPECT_TRUE(fresh.take(200 * megabyte));
+    EXPECT_EQ(asked, 1);
+    left = 100 * megabyte; // what was taken is in use
+    for (int i = 0; i < 6; ++i) EXPECT_TRUE(fresh.take(10 * megabyte));
+    EXPECT_EQ(asked, 1) << "small blocks are not worth asking for each";
+    left = 40 * megabyte;
+    EXPECT_FALSE(fresh.take(30 * megabyte)) << "the heap needs some, too";
+    EXPECT_FALSE(fresh.take(std::numeric_limits<std::size_t>::max()));
+    EXPECT_TRUE(fresh.take(20 * megabyte));
+    left = 0;
+    EXPECT_TRUE(fresh.take(4 * megabyte)) << "known to be there";
+    EXPECT_FALSE(fresh.take(8 * megabyte));
+}
 
 TEST(Block, OfAnySizeCanBeWrittenToItsEnd) {
     for (const std::size_t bytes :
