@@ -273,8 +273,8 @@ void add_surface_arrays(const Command& command, ExtractJob& extract) {
                                  {"gradient", Normals::gradient},
                                  {"face", Normals::face},
                                  {"vertex", Normals::vertex}},
-                                "Normals: at each vertex the gradient of the field; of each face; or at each vertex "
-                                "the mean of its triangles'");
+                                "Normals: at each vertex the gradient of the field, from all cells; of each face; or "
+                                "at each vertex the mean of its triangles'");
     command.add_texts(
         "--with", [&](const std::vector<std::string>& names) { extract.with = names; }, "FIELD[,...]",
         "Carry these point and cell fields onto the surface; may be repeated; an empty name carries none. Default: "

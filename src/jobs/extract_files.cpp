@@ -222,7 +222,7 @@ Result<std::optional<std::uint64_t>> ExtractRun::read_grid(std::size_t step) {
         return read->cells_in_file;
     }
     Result<Grid> grid = source_->read(plan_.read, step, caller_);
-    if (!grid) return grid.error();
+    if (!grid) return with_way_out(grid.error(), job_, plan_);
     grid_ = *std::move(grid);
     return std::optional<std::uint64_t>{};
 }

@@ -121,6 +121,26 @@ Result<void> check_solid(const ExtractJob& job) {
 
 } // namespace
 
+Error with_way_out(Error error, const ExtractJob& job, const ExtractPlan& plan) {
+    if (error.code != ErrorCode::out_of_memory || plan.active_cells) return error;
+    ExtractPlan cheaper = plan;
+    const auto try_it = [&](std::string_view way) {
+        if (!plan_active_cells(job, cheaper)) return false;
+        error.message += fmt::format("; {}, only cells that an isovalue cuts are kept", way);
+        return true;
+    };
+    std::vector<double>& isovalues = cheaper.contour.expected_isovalues;
+    if (isovalues.size() > most_isovalues_of_active_cells) isovalues.resize(most_isovalues_of_active_cells);
+    if (try_it(fmt::format("of up to {} isovalues at a time", most_isovalues_of_active_cells))) return error;
+    if (!plan.field.cell.empty()) return error; // which is read in any case
+    cheaper.read.cell.emplace();
+    if (cheaper.carried) cheaper.carried->components.clear();
+    if (try_it("without cell fields and components, which `with` leaves out,")) return error;
+    cheaper.contour.normals = Normals::none;
+    try_it("without `normals` gradient");
+    return error;
+}
+
 bool is_animated(const OutputNames& names) { return names.fixed() && ending_of(names.pattern()) == ".glb"; }
 
 Result<void> check_names(const ExtractJob& job, const ExtractPlan& plan, const FileInfo& info) {

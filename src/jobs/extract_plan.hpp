@@ -78,6 +78,9 @@ Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid, con
 Estimate predict(const ExtractJob& job, const ExtractPlan& plan, const FieldSample& sample, double kept,
                  std::size_t together);
 
+/// An error of reading all cells; where memory ran out, with what would make active ones do.
+Error with_way_out(Error error, const ExtractJob& job, const ExtractPlan& plan);
+
 /// The values that a solid has, of one isovalue.
 SolidRange range_for(const SolidChoice& choice, double isovalue);
 
