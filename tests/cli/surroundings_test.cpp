@@ -82,17 +82,34 @@ TEST_F(Program, CtrlCEndsEveryCommandAtAnyMoment) {
         {"extract", "make:kuhn:40:gyroid", path("OUT.stl"), "-i", "0.1", "--solid", "above"},
         {"clip", "make:mixed:30:gyroid", path("OUT.vtu"), "-i", "0.1"},
         {"render", "make:hex:40:gyroid", "-o", path("OUT.png"), "-i", "0.1"},
-        {"pack", "make:kuhn:40:gyroid", "-o", path("OUT.isotet")},
-        {"make", "kelvin", "--side", "14", "-o", path("OUT.vtu")}};
+        {"pack", "make:kuhn:40:gyroid", path("OUT.isotet")},
+        {"make", "kelvin", "--side", "14", "-o", path("OUT.vtu")},
+        {"info", path("tets.vtu"), "--survey"},
+        {"info", path("polyhedra.vtu")},
+        {"extract", path("tets.vtu"), path("OUT_{value}.vtp"), "--levels", "5"},
+        {"extract", path("tets.vtu"), path("OUT.vtp"), "-i", "0.1", "--merge-points", "1e-6"},
+        {"render", path("polyhedra.vtu"), "-o", path("OUT.png"), "-i", "0.1"},
+        {"render", path("tets.vtu"), "-o", path("OUT.png"), "--volume"},
+        {"slice", path("polyhedra.vtu"), path("OUT.vtp"), "--plane", "z=0.4"},
+        {"check", path("s.vtp"), "--grid", path("tets.vtu"), "-f", "gyroid"},
+        {"bench", path("tets.vtu"), "-f", "gyroid"}};
+    ASSERT_EQ(isotet({"make", "shuffled", "--side", "50", "--fields", "gyroid", "-o", path("tets.vtu")}).status, 0);
+    ASSERT_EQ(isotet({"make", "kelvin", "--side", "14", "--fields", "gyroid", "-o", path("polyhedra.vtu")}).status, 0);
+    ASSERT_EQ(isotet({"extract", path("tets.vtu"), path("s.vtp"), "-i", "0.1", "--edge-ends"}).status, 0);
+    constexpr std::chrono::seconds at_most(3); // of a busy machine; alone a tenth of it
     std::mt19937 random(7);
     for (std::size_t i = 0; i < commands.size(); i += seed_share) {
         std::vector<std::string> command = commands[i];
         command.insert(command.end(), {"-j", "1"});
-        const auto moment = std::chrono::milliseconds(30 + random() % 200);
+        const auto moment = std::chrono::milliseconds(30 + random() % 400);
+        const auto start = std::chrono::steady_clock::now();
         const RunResult run = isotet(command, {.interrupt_after = moment});
-        if (!run.interrupted || run.status == 0) continue; // it was faster
+        const auto took = std::chrono::steady_clock::now() - start;
+        const bool before_main = run.status == -1 && run.signal == SIGINT;
+        if (!run.interrupted || run.status == 0 || before_main) continue; // it was faster, or had not begun
         SCOPED_TRACE(testing::Message() << command[0] << " " << command[1] << " after " << moment.count() << " ms");
         EXPECT_EQ(run.status, 130) << run.err;
+        EXPECT_LT(took, moment + at_most);
         EXPECT_NE(run.err.find("isotet: interrupted"), std::string::npos) << run.err;
         for (const auto& entry : std::filesystem::directory_iterator(path(".")))
             EXPECT_NE(entry.path().extension(), ".part") << entry.path();
