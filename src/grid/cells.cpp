@@ -13,6 +13,7 @@
 #include "base/errors.hpp"
 #include "base/parallel.hpp"
 #include "grid/cell/curved_types.hpp"
+#include "grid/cell_survey.hpp"
 
 namespace isotet {
 
@@ -240,6 +241,15 @@ std::string describe(Fault fault, const Grid& grid, const CellReader& cells, std
 }
 
 } // namespace
+
+bool all_are_sound(const Grid& grid, const CellReader& cells, std::size_t begin, std::size_t end,
+                   bool points_are_sound) {
+    if (points_are_sound && all_have_their_corners(cells, begin, end) && all_corners_are_points(cells, begin, end))
+        return true;
+    for (std::size_t cell = begin; cell < end; ++cell)
+        if (fault_of(grid, cells, cell) != Fault::none) return false;
+    return true;
+}
 
 Result<void> check_cells(const Grid& grid, const CellReader& cells, const Progress& progress) {
     if (grid.cells.offsets.tuples() > 0 && IndexColumn(grid.cells.offsets)[0] > cells.connectivity_size())

@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include <isotet/grid.hpp>
 #include <isotet/linear_cells.hpp>
 
 #include "base/carry_out.hpp"
 #include "base/memory.hpp"
+#include "grid/cell_survey.hpp"
 #include "grid/faces.hpp"
+#include "grid/fixed_corners.hpp"
 #include "grid/mixed_faces.hpp"
 #include "grid/points/duplicate_points.hpp"
 #include "grid/renumber.hpp"
@@ -25,28 +28,21 @@ namespace {
 Error cancelled() { return {ErrorCode::cancelled, "checking the grid was cancelled"}; }
 
 /// Of a grid without tets: the box around all points that are finite.
-GridReport with_bounds_of_all(GridReport report, const Array& points) {
+void take_bounds_of_all(GridReport& report, const Array& points) {
     Bounds bounds;
     const PointReader reader(points);
     for (std::size_t i = 0; i < points.tuples(); ++i)
         if (const Point point = reader[i]; std::ranges::all_of(point, [](double x) { return std::isfinite(x); }))
             bounds.add(point);
-    if (bounds.lower[0] > bounds.upper[0]) return report;
+    if (bounds.lower[0] > bounds.upper[0]) return;
     report.lower = bounds.lower;
     report.upper = bounds.upper;
-    return report;
 }
 
-Result<GridReport> survey(const Grid& grid, const SurveyOptions& options, const Progress& progress) {
-    auto cells = CellReader::open(grid);
-    if (!cells) return cells.error();
-    if (auto ok = check_cells(grid, *cells, progress); !ok) return ok.error();
-    progress("check", 0.1);
-    const TetSurvey tets = survey_tets(grid, *cells, progress);
-    if (progress.cancelled()) return cancelled();
+GridReport report_of(const TetSurvey& tets, const Array& points, std::uint64_t cells) {
     GridReport report;
-    report.points = grid.points.tuples();
-    report.cells = cells->count();
+    report.points = points.tuples();
+    report.cells = cells;
     for (std::size_t type = 0; type < tets.cells_by_type.size(); ++type)
         if (tets.cells_by_type[type]) report.cells_by_type[static_cast<std::uint8_t>(type)] = tets.cells_by_type[type];
     report.cells_left_out = tets.left_out;
@@ -58,7 +54,19 @@ Result<GridReport> survey(const Grid& grid, const SurveyOptions& options, const 
     report.unused_points = tets.unused;
     report.lower = tets.lower;
     report.upper = tets.upper;
-    if (tets.tets == 0) return with_bounds_of_all(std::move(report), grid.points);
+    if (tets.tets == 0) take_bounds_of_all(report, points);
+    return report;
+}
+
+Result<GridReport> survey(const Grid& grid, const SurveyOptions& options, const Progress& progress) {
+    auto cells = CellReader::open(grid);
+    if (!cells) return cells.error();
+    if (auto ok = check_cells(grid, *cells, progress); !ok) return ok.error();
+    progress("check", 0.1);
+    const TetSurvey tets = survey_tets(grid, *cells, progress);
+    if (progress.cancelled()) return cancelled();
+    GridReport report = report_of(tets, grid.points, cells->count());
+    if (tets.tets == 0) return report;
     if (options.faces) {
         progress("check", 0.4);
         report.duplicate_points = count_duplicates(PointReader(grid.points), tets.used, progress);
@@ -120,6 +128,44 @@ Result<GridReport> survey_linear(const Grid& grid, const SurveyOptions& options,
 }
 
 } // namespace
+
+CellSurvey::CellSurvey(const Array& points) : tets_(points) {
+    block_.points = points;
+    points_are_sound_ = all_points_are_sound(block_);
+}
+
+void CellSurvey::add(CellType type, const Array& corners) {
+    Grid block = block_;
+    block.cells.uniform_type = type;
+    block.cells.connectivity = corners;
+    add(block);
+}
+
+void CellSurvey::add(std::span<const std::uint8_t> types, const Array& corners) {
+    Grid block = block_;
+    block.cells.types = Array(ScalarType::uint8, types.data(), types.size(), 1, nullptr);
+    std::vector<std::uint64_t> offsets{0};
+    for (const std::uint8_t type : types) offsets.push_back(offsets.back() + fixed_corners_of(type));
+    block.cells.offsets = Array::borrow(offsets);
+    block.cells.connectivity = corners;
+    add(block);
+}
+
+void CellSurvey::add(const Grid& block) {
+    const auto cells = CellReader::open(block);
+    if (!cells || !all_are_sound(block, *cells, 0, cells->count(), points_are_sound_)) {
+        broken_ = true;
+        return;
+    }
+    tets_.add(*cells, 0, cells->count());
+    cells_ += cells->count();
+}
+
+std::optional<GridReport> CellSurvey::finish(const Progress& progress) {
+    if (broken_) return std::nullopt;
+    return report_of(std::move(tets_).finish(progress), block_.points, cells_);
+}
+
 } // namespace core
 
 Result<GridReport> survey(const Grid& grid, const SurveyOptions& options, const Run& run) {

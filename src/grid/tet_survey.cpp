@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <atomic>
 #include <mutex>
+#include <utility>
 
 #include "base/parallel.hpp"
 #include "grid/cell/native_cells.hpp"
 #include "grid/cell/splitter.hpp"
+#include "grid/cell_survey.hpp"
 #include "grid/orientation.hpp"
 #include "numbers/bounds.hpp"
 
@@ -138,32 +140,39 @@ void clear(Buffer<std::uint8_t>& flags) {
 
 } // namespace
 
-TetSurvey survey_tets(const Grid& grid, const CellReader& cells, const Progress& progress) {
-    const PointReader points(grid.points);
-    TetSurvey survey;
-    survey.used = Buffer<std::uint8_t>(cells.points());
-    clear(survey.used);
-    const Marker used(survey.used);
-    std::mutex mutex;
-    parallel_pieces(cells.count(), cells_per_chunk, progress, [&](std::size_t begin, std::size_t end) {
-        Partial part;
-        add_cells(cells, points, begin, end, used, part);
-        const std::lock_guard lock(mutex);
-        survey.tets += part.tets;
-        survey.collapsed += part.collapsed;
-        survey.mirrored += part.mirrored;
-        survey.orientation.combine(part.orientation);
-        for (std::size_t type = 0; type < part.by_type.size(); ++type) survey.cells_by_type[type] += part.by_type[type];
-    });
-    for (std::size_t type = 0; type < survey.cells_by_type.size(); ++type)
-        if (!is_contoured(static_cast<std::uint8_t>(type))) survey.left_out += survey.cells_by_type[type];
-    const UsedPoints of_used = look_at_used(points, survey.used, progress);
-    survey.unused = of_used.unused;
-    if (survey.tets) {
-        survey.lower = of_used.bounds.lower;
-        survey.upper = of_used.bounds.upper;
+TetSurveyor::TetSurveyor(const Array& points) : points_(points) {
+    survey_.used = Buffer<std::uint8_t>(points.tuples());
+    clear(survey_.used);
+}
+
+void TetSurveyor::add(const CellReader& cells, std::size_t begin, std::size_t end) {
+    Partial part;
+    add_cells(cells, points_, begin, end, Marker(survey_.used), part);
+    const std::lock_guard lock(mutex_);
+    survey_.tets += part.tets;
+    survey_.collapsed += part.collapsed;
+    survey_.mirrored += part.mirrored;
+    survey_.orientation.combine(part.orientation);
+    for (std::size_t type = 0; type < part.by_type.size(); ++type) survey_.cells_by_type[type] += part.by_type[type];
+}
+
+TetSurvey TetSurveyor::finish(const Progress& progress) && {
+    for (std::size_t type = 0; type < survey_.cells_by_type.size(); ++type)
+        if (!is_contoured(static_cast<std::uint8_t>(type))) survey_.left_out += survey_.cells_by_type[type];
+    const UsedPoints of_used = look_at_used(points_, survey_.used, progress);
+    survey_.unused = of_used.unused;
+    if (survey_.tets) {
+        survey_.lower = of_used.bounds.lower;
+        survey_.upper = of_used.bounds.upper;
     }
-    return survey;
+    return std::move(survey_);
+}
+
+TetSurvey survey_tets(const Grid& grid, const CellReader& cells, const Progress& progress) {
+    TetSurveyor surveyor(grid.points);
+    parallel_pieces(cells.count(), cells_per_chunk, progress,
+                    [&](std::size_t begin, std::size_t end) { surveyor.add(cells, begin, end); });
+    return std::move(surveyor).finish(progress);
 }
 
 namespace {

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <exception>
+#include <functional>
 #include <new>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -20,9 +22,13 @@
 #include "grid/patches.hpp"
 #include "io/files/text_scanner.hpp"
 #include "io/formats.hpp"
+#include "io/pieces/join.hpp"
 #include "io/pieces/region_choice.hpp"
+#include "io/pieces/survey_unread.hpp"
 #include "io/pieces/uniform_cells.hpp"
 #include "io/reader.hpp"
+#include "io/vtk_legacy/read_legacy_vtk.hpp"
+#include "io/vtk_xml/load.hpp"
 
 namespace isotet {
 
@@ -121,6 +127,13 @@ Result<void> check_grid(const Grid& grid, const Progress& progress) {
     return core::check_faces(grid, *cells, progress);
 }
 
+/// Cell fields of all cells do not fit some of them.
+Grid without_values_of_others(const ReadResult& read) {
+    Grid grid = read.grid;
+    if (read.cells_in_file) grid.cell_fields.clear();
+    return grid;
+}
+
 /// The point field called so, or gathered from the fields of its components.
 Result<Field> vector_called(const std::string& name, const Grid& grid) {
     std::vector<std::string> names;
@@ -200,7 +213,44 @@ Result<ReadOptions> with_regions(const GridReader& reader, const std::string& pa
     return options;
 }
 
-Result<ReadResult> read_checked(const std::string& path, const ReadOptions& options, const Progress& progress) {
+/// The pieces of a file whose cells may stay in it; nothing where the format has none.
+std::optional<Result<Loaded>> load_uncounted(const std::string& format, const std::string& path,
+                                             const ReadOptions& options, const Progress& progress) {
+    if (format == "vtk") return load_legacy_file(path, options, Depth::arrays, progress);
+    if (format == "vtu") return vtk_xml::load_file(path, "UnstructuredGrid", options, Depth::arrays, false, progress);
+    return std::nullopt;
+}
+
+Result<ReadResult> read_surveyed(const GridReader& reader, const std::string& path, const ReadOptions& options,
+                                 const Progress& progress, SurveyedGrid& counted) {
+    if (options.active_cells) return reader.read(path, options, progress);
+    const ReadOptions counting = to_be_counted(options);
+    auto loaded = load_uncounted(reader.format.name, path, counting, progress);
+    if (!loaded) return reader.read(path, options, progress);
+    if (!*loaded) return loaded->error();
+    Loaded& file = **loaded;
+    file.info.format = reader.format.name;
+    if (file.pieces.size() == 1) {
+        auto surveyed = survey_unread(file.pieces[0], counting, progress);
+        if (!surveyed) return surveyed.error();
+        if (*surveyed) {
+            counted.report = std::move((*surveyed)->report);
+            counted.sampled = std::move((*surveyed)->sampled);
+            ReadResult result = std::move((*surveyed)->read);
+            result.info = std::move(file.info);
+            result.step = file.step;
+            result.notes = std::move(file.notes);
+            return result;
+        }
+    }
+    return join(std::move(file), counting, progress);
+}
+
+/// How a reader is called: as itself, or for counting.
+using ReadWith = std::function<Result<ReadResult>(const GridReader& reader, const ReadOptions& options)>;
+
+Result<ReadResult> read_checked(const std::string& path, const ReadOptions& options, const Progress& progress,
+                                const ReadWith& read_with) {
     const auto reader = choose_reader(path, options);
     if (!reader) return reader.error();
     auto displaced_options = with_displacement(**reader, path, options, progress);
@@ -208,7 +258,7 @@ Result<ReadResult> read_checked(const std::string& path, const ReadOptions& opti
     const auto extended = with_regions(**reader, path, *std::move(displaced_options), progress);
     if (!extended) return extended.error();
     const ReadOptions& all = *extended;
-    auto result = (*reader)->read(path, all, progress);
+    auto result = read_with(**reader, all);
     if (!result) return result;
     say_left_out(*result);
     if (auto known = check_blocks(result->info, options); !known) return known.error();
@@ -223,7 +273,8 @@ Result<ReadResult> read_checked(const std::string& path, const ReadOptions& opti
         if (error.code == ErrorCode::invalid_data) error.message = path + ": " + error.message;
         return error;
     };
-    if (auto checked = check_grid(result->grid, progress); !checked) return in_file(checked.error());
+    if (auto checked = check_grid(without_values_of_others(*result), progress); !checked)
+        return in_file(checked.error());
     if (auto checked = check_bezier(*result); !checked) return in_file(checked.error());
     if (core::has_linear_names(result->grid.cells)) {
         result->grid.cells = core::with_linear_names(std::move(result->grid.cells));
@@ -298,11 +349,19 @@ Result<FileInfo> inspect_step(const std::string& path, const ReadOptions& option
     return info;
 }
 
-Result<ReadResult> read_step(const std::string& path, const ReadOptions& options, const Progress& progress) {
-    if (options.more_files.empty()) return read_checked(path, options, progress);
+/// `surveyed`   gets the counts, where cells are counted; else null
+Result<ReadResult> read_step(const std::string& path, const ReadOptions& options, const Progress& progress,
+                             SurveyedGrid* surveyed = nullptr) {
+    const auto read_it = [&](const std::string& of_step, const ReadOptions& all) {
+        return read_checked(of_step, all, progress, [&](const GridReader& reader, const ReadOptions& extended) {
+            return surveyed ? read_surveyed(reader, of_step, extended, progress, *surveyed)
+                            : reader.read(of_step, extended, progress);
+        });
+    };
+    if (options.more_files.empty()) return read_it(path, options);
     const auto file = file_of_step(path, options);
     if (!file) return file.error();
-    auto result = read_checked(file->path, file->options, progress);
+    auto result = read_it(file->path, file->options);
     if (!result) return result;
     if (auto numbered = number_steps(*file, result->info); !numbered) return numbered.error();
     result->step = options.step.value_or(0);
@@ -334,6 +393,16 @@ Result<Value> without_exceptions(const std::string& path, const Run& run, const 
 Result<FileInfo> inspect(const std::string& path, const ReadOptions& options, const Run& run) {
     return io::without_exceptions<FileInfo>(
         path, run, [&](const Progress& progress) { return io::inspect_step(path, options, progress); });
+}
+
+Result<SurveyedGrid> read_surveyed(const std::string& path, const ReadOptions& options, const Run& run) {
+    return io::without_exceptions<SurveyedGrid>(path, run, [&](const Progress& progress) -> Result<SurveyedGrid> {
+        SurveyedGrid surveyed;
+        auto read = io::read_step(path, options, progress, &surveyed);
+        if (!read) return read.error();
+        surveyed.read = *std::move(read);
+        return surveyed;
+    });
 }
 
 Result<ReadResult> read(const std::string& path, const ReadOptions& options, const Run& run) {

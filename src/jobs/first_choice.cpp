@@ -9,6 +9,8 @@
 
 #include <isotet/jobs/number_text.hpp>
 
+#include "grid/fields/sampled_view.hpp"
+
 namespace isotet::jobs {
 
 namespace {
@@ -50,8 +52,21 @@ private:
         return field_varies(some->grid, found->name);
     }
 
+    Result<bool> look_at_surveyed(std::size_t step) {
+        Result<SurveyedGrid> all = source_.read_surveyed({}, step, caller_);
+        if (!all) return all.error();
+        view_ = core::first_view_of_sample(all->read.grid, source_.info().fields, all->sampled);
+        source_.keep(*std::move(all), step);
+        return shows_a_field();
+    }
+
+    bool shows_a_field() const {
+        return view_.draw == FirstDraw::isosurfaces || view_.draw == FirstDraw::field_on_boundary;
+    }
+
     /// Names that are preferred are looked at first: most often one of them is taken.
     Result<bool> look_for_view(std::size_t step) {
+        if (wish_.surveys) return look_at_surveyed(step);
         constexpr std::size_t most_at_first = 4;
         const std::vector<FieldInfo>& fields = source_.info().fields;
         FieldsToRead read{std::vector<std::string>(), std::vector<std::string>()};
@@ -75,7 +90,7 @@ private:
         if (!some) return some.error();
         view_ = first_view(some->grid, fields);
         source_.keep(*some, {}, step);
-        return view_.draw == FirstDraw::isosurfaces || view_.draw == FirstDraw::field_on_boundary;
+        return shows_a_field();
     }
 
     Result<ReadResult> read_with_others(FieldsToRead& read, std::size_t step) {

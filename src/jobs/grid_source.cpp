@@ -419,6 +419,7 @@ struct GridSource::Kept {
     std::optional<ReadResult> read;
     FieldsToRead fields;
     std::size_t step = 0;
+    std::optional<SurveyedGrid> surveyed; ///< instead of `read`
 
     std::optional<ReadResult> take(const FieldsToRead& wanted, std::size_t wanted_step, CellsToRead cells);
     bool is_there() {
@@ -562,6 +563,32 @@ Result<ReadResult> GridSource::read_some(const FieldsToRead& fields, std::size_t
     return read_cells(fields, step, CellsToRead::some, caller, run);
 }
 
+void GridSource::keep(SurveyedGrid read, std::size_t step) {
+    kept_ = std::make_shared<Kept>();
+    kept_->surveyed = std::move(read);
+    kept_->step = step;
+}
+
+Result<SurveyedGrid> GridSource::read_surveyed(const FieldsToRead& fields, std::size_t step, Caller& caller) const {
+    if (kept_) {
+        const std::lock_guard lock(kept_->mutex);
+        if (kept_->surveyed && kept_->step == step) return *std::exchange(kept_->surveyed, std::nullopt);
+    }
+    if (made_ || surface_ || is_packed_file() || options_.merge_points || !options_.cells.empty() ||
+        names_blocks(fields)) {
+        Result<ReadResult> all = read_cells(fields, step, CellsToRead::all, caller, caller.run());
+        if (!all) return all.error();
+        return SurveyedGrid{*std::move(all)};
+    }
+    ReadOptions options = read_options_;
+    choose_fields(fields, step, options);
+    Result<SurveyedGrid> result = isotet::read_surveyed(options_.file, options, caller.run());
+    if (!result) return result;
+    caller.notes(result->read.notes);
+    if (!result->report) caller.note(coincident_points_note(result->read.grid));
+    return result;
+}
+
 Result<ReadResult> GridSource::read_active(const FieldsToRead& fields, std::size_t step, const ReadActiveCells& active,
                                            Caller& caller) const {
     if (made_ || surface_ || options_.merge_points || !options_.cells.empty() || names_blocks(fields) ||
@@ -606,11 +633,15 @@ Result<Grid> GridSource::read_block(const BlockInfo& block, std::size_t step, Ca
 
 Result<ReadResult> GridSource::read_file(const FieldsToRead& fields, std::size_t step, ReadOptions options,
                                          const Run& run) const {
+    choose_fields(fields, step, options);
+    return isotet::read(options_.file, options, run);
+}
+
+void GridSource::choose_fields(const FieldsToRead& fields, std::size_t step, ReadOptions& options) const {
     options.point_fields = fields.point;
     options.cell_fields = fields.cell;
     if (!info_.times.empty()) options.step = step;
     options.skip_missing_fields = info_.times.size() > 1 && described_ != step;
-    return isotet::read(options_.file, options, run);
 }
 
 std::string cells_left_out_note(const Grid& grid) {

@@ -14,6 +14,7 @@
 #include <isotet/jobs/output_names.hpp>
 #include <isotet/linear_cells.hpp>
 
+#include "grid/fields/sampled_view.hpp"
 #include "grid/patches.hpp"
 
 namespace isotet::jobs {
@@ -185,6 +186,15 @@ std::uint64_t count_of(const HangingReport& closed, std::uint64_t by_places, con
     return knows_all ? closed.points : std::max(by_places, closed.points);
 }
 
+Result<SurveyedGrid> read_for(const ChoiceWish& wish, const GridSource& source, std::size_t step, Caller& caller) {
+    if (wish.surveys) return source.read_surveyed({}, step, caller);
+    Result<Grid> grid = source.read({}, step, caller);
+    if (!grid) return grid.error();
+    SurveyedGrid read;
+    read.read.grid = *std::move(grid);
+    return read;
+}
+
 } // namespace
 
 Result<GridSummary> look_into(const InfoJob& job, Caller& caller) {
@@ -195,16 +205,20 @@ Result<GridSummary> look_into(const InfoJob& job, Caller& caller) {
     if (!source) return source.error();
     if (auto paths = check_output_paths(source->info().files, job.other_outputs); !paths) return paths.error();
     if (job.heads) return look_at_heads(*source, options, caller);
-    const ChoiceWish wish{Steps::one, {}, {}, false};
+    ChoiceWish wish;
+    wish.also = {};
+    wish.needs_view = false;
+    wish.surveys = !job.survey && !job.chart && options.cells.empty();
     const Result<FirstChoice> choice = choose_first(*source, options, wish, caller, caller.run());
     if (!choice) return choice.error();
     GridSummary summary;
     summary.file = source->info();
     summary.step = choice->steps.front();
-    const Result<Grid> grid = source->read({}, summary.step, caller);
-    if (!grid) return grid.error();
+    const Result<SurveyedGrid> read = read_for(wish, *source, summary.step, caller);
+    if (!read) return read.error();
+    const Grid* const grid = &read->read.grid;
     summary.point_type = grid->points.type();
-    Result<GridReport> surveyed = survey(*grid, {.faces = job.survey}, caller.run());
+    Result<GridReport> surveyed = read->report ? *read->report : survey(*grid, {.faces = job.survey}, caller.run());
     if (!surveyed) return surveyed.error();
     summary.report = *std::move(surveyed);
     summary.report.cells_left_out -=
@@ -222,7 +236,7 @@ Result<GridSummary> look_into(const InfoJob& job, Caller& caller) {
     if (!fields) return fields.error();
     summary.fields = *std::move(fields);
     summary.vectors = vectors_of(describe_fields(*grid));
-    summary.first = first_view(*grid, source->info().fields);
+    summary.first = core::first_view_of_sample(*grid, source->info().fields, read->sampled);
     Result<CurvedSummary> curved = look_at_curved_cells(*grid, summary.fields, caller.run());
     if (!curved) return curved.error();
     summary.curved = *std::move(curved);

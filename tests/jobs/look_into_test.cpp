@@ -1,7 +1,18 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <isotet/jobs/look_into.hpp>
 
+#include <cstdint>
+#include <string>
+#include <vector>
+
 #include <gtest/gtest.h>
+
+#include <isotet/fields.hpp>
+#include <isotet/first_view.hpp>
+#include <isotet/grid.hpp>
+#include <isotet/make.hpp>
+#include <isotet/read_surveyed.hpp>
+#include <isotet/write.hpp>
 
 #include "jobs/listener.hpp"
 #include "support/temporary_folder.hpp"
@@ -10,6 +21,117 @@ namespace isotet::jobs {
 namespace {
 
 using test::Listener;
+
+void expect_same(const GridReport& one, const GridReport& other) {
+    EXPECT_EQ(one.points, other.points);
+    EXPECT_EQ(one.cells, other.cells);
+    EXPECT_EQ(one.cells_by_type, other.cells_by_type);
+    EXPECT_EQ(one.cells_left_out, other.cells_left_out);
+    EXPECT_EQ(one.tets, other.tets);
+    EXPECT_EQ(one.collapsed_tets, other.collapsed_tets);
+    EXPECT_EQ(one.negative_tets, other.negative_tets);
+    EXPECT_EQ(one.inverted_tets, other.inverted_tets);
+    EXPECT_EQ(one.flat_tets, other.flat_tets);
+    EXPECT_EQ(one.unused_points, other.unused_points);
+    EXPECT_EQ(one.lower, other.lower);
+    EXPECT_EQ(one.upper, other.upper);
+}
+
+/// Some cells inside out, some with a corner twice, points that no cell has, a field that is noise, and one of cells.
+Grid awkward_grid(const std::string& shape) {
+    Grid grid = make_grid({.shape = shape, .side = 22, .fields = {"gyroid", "integer"}}).value();
+    std::vector<std::int64_t> corners;
+    for (std::size_t i = 0; i < grid.cells.connectivity.tuples(); ++i)
+        corners.push_back(static_cast<std::int64_t>(grid.cells.connectivity.at(i)));
+    for (std::size_t i = 0; i + 4 < corners.size(); i += 400) std::swap(corners[i], corners[i + 1]);
+    for (std::size_t i = 200; i + 4 < corners.size(); i += 4000) corners[i] = corners[i + 1];
+    grid.cells.connectivity = Array::own(std::move(corners));
+    std::vector<float> points, noise, of_cells;
+    for (std::size_t i = 0; i < grid.points.size(); ++i)
+        points.push_back(static_cast<float>(grid.points.at(i / 3, i % 3)));
+    points.insert(points.end(), {7, 8, 9, 17, 18, 19});
+    grid.points = Array::own(std::move(points), 3);
+    for (Field& field : grid.point_fields) {
+        std::vector<float> values;
+        for (std::size_t i = 0; i < field.values.tuples(); ++i)
+            values.push_back(static_cast<float>(field.values.at(i)));
+        values.insert(values.end(), {3, -3});
+        field.values = Array::own(std::move(values));
+    }
+    for (std::uint32_t i = 0; i < grid.points.tuples(); ++i) noise.push_back(static_cast<float>(i * 2654435761U >> 8U));
+    grid.point_fields.insert(grid.point_fields.begin(), {"temperature", Array::own(std::move(noise))});
+    for (std::uint32_t i = 0; i < grid.cells.count(); ++i)
+        of_cells.push_back(static_cast<float>(i * 2654435761U >> 8U));
+    grid.cell_fields = {{"pressure", Array::own(std::move(of_cells))}};
+    return grid;
+}
+
+TEST(LookInto, CountsCellsThatStayInTheirFile) {
+    const test::TemporaryFolder folder;
+    for (const char* shape : {"kuhn", "shuffled", "hex", "mixed"})
+        for (const char* name : {"raw.vtu", "packed.vtu", "binary.vtk"})
+            for (const bool cell_fields : {true, false}) {
+                const bool legacy = std::string(name) == "binary.vtk";
+                const bool stays = !legacy || std::string(shape) != "mixed";
+                if (legacy && cell_fields) continue;
+                SCOPED_TRACE(testing::Message() << shape << " " << name << " " << cell_fields);
+                Grid grid = awkward_grid(shape);
+                if (!cell_fields) grid.cell_fields.clear();
+                const std::string file = folder.file(name);
+                const Compression compression =
+                    std::string(name) == "packed.vtu" ? Compression::zlib : Compression::none;
+                ASSERT_TRUE(write_grid(grid, file, {.compression = compression}));
+                const SurveyedGrid counted = read_surveyed(file).value();
+                EXPECT_EQ(counted.report.has_value(), stays);
+                if (stays) {
+                    EXPECT_LE(counted.read.grid.cells.count(), 16384u);
+                }
+                const ReadResult all = read(file).value();
+                Listener listener;
+                InfoJob job;
+                job.grid.file = file;
+                const GridSummary summary = look_into(job, listener).value();
+                const GridReport expected = survey(all.grid, {.faces = false}).value();
+                EXPECT_GT(expected.inverted_tets, 0u);
+                EXPECT_GT(expected.collapsed_tets, 0u);
+                EXPECT_EQ(expected.unused_points, 2u);
+                expect_same(summary.report, expected);
+                const FirstView view = first_view(all.grid, all.info.fields);
+                EXPECT_EQ(summary.first.field, view.field);
+                EXPECT_EQ(summary.first.reason, view.reason);
+                EXPECT_EQ(summary.first.rough, view.rough);
+                EXPECT_EQ(summary.first.draw, view.draw);
+                ASSERT_EQ(summary.fields.size(), all.grid.point_fields.size() + all.grid.cell_fields.size());
+                const auto last =
+                    statistics_of(cell_fields ? all.grid.cell_fields[0].values : all.grid.point_fields.back().values);
+                EXPECT_EQ(summary.fields.back().components[0].upper, last.value()[0].upper);
+            }
+}
+
+TEST(LookInto, ReadsAllCellsToTellWhichIsBroken) {
+    const test::TemporaryFolder folder;
+    Grid grid = make_grid({.shape = "kuhn", .side = 8, .fields = {"gyroid"}}).value();
+    std::vector<std::int32_t> corners;
+    for (std::size_t i = 0; i < grid.cells.connectivity.tuples(); ++i)
+        corners.push_back(static_cast<std::int32_t>(grid.cells.connectivity.at(i)));
+    const auto bytes_of = [&] {
+        return std::string(reinterpret_cast<const char*>(corners.data()), 4 * corners.size());
+    };
+    const std::string sound = bytes_of();
+    grid.cells.connectivity = Array::own(std::vector(corners));
+    InfoJob job;
+    job.grid.file = folder.file("a.vtu");
+    ASSERT_TRUE(write_grid(grid, job.grid.file));
+    std::string content = test::content_of(job.grid.file);
+    const std::size_t place = content.find(sound);
+    ASSERT_NE(place, std::string::npos);
+    corners[4 * 1234 + 2] = 729;
+    folder.write("a.vtu", content.replace(place, sound.size(), bytes_of()));
+    Listener listener;
+    const auto summary = look_into(job, listener);
+    ASSERT_FALSE(summary);
+    EXPECT_NE(summary.error().message.find("tets[1234] has point 729"), std::string::npos) << summary.error().message;
+}
 
 TEST(LookInto, CountsCellsAndSummarizesFields) {
     Listener listener;

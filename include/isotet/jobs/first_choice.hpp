@@ -25,6 +25,7 @@ struct ChoiceWish {
     FieldsToRead also{std::vector<std::string>(), std::vector<std::string>()}; ///< will be read in any case
     bool needs_view = true;       ///< where no field is named; else it is not looked for
     bool only_field_will_do = false; ///< the only field of a file is taken unseen
+    bool surveys = false;            ///< the grid will be read by GridSource::read_surveyed(), with all fields
 };
 
 /// Chooses the step that the options ask for; else the first one, the second or the last, where a field varies, and

@@ -15,6 +15,7 @@
 #include <isotet/pack.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/read.hpp>
+#include <isotet/read_surveyed.hpp>
 #include <isotet/result.hpp>
 
 namespace isotet::jobs {
@@ -108,6 +109,13 @@ public:
     /// The same, for looking at fields: of a packed file some cells, spread evenly (ReadResult::cells_in_file).
     Result<ReadResult> read_some(const FieldsToRead& fields, std::size_t step, Caller& caller, const Run& run) const;
 
+    /// The same, for what is counted and looked at alone: of the cells only counts and a sample, where that can be done. No
+    /// hanging points are looked for then.
+    Result<SurveyedGrid> read_surveyed(const FieldsToRead& fields, std::size_t step, Caller& caller) const;
+
+    /// What read_surveyed() gave is given out by its next call for the same step.
+    void keep(SurveyedGrid read, std::size_t step);
+
     /// The same; where that can be done, only the active cells (ReadResult::cells_in_file). Points are never merged and cells
     /// never chosen then; where some of the cells may have hanging points, all are read.
     Result<ReadResult> read_active(const FieldsToRead& fields, std::size_t step, const ReadActiveCells& active,
@@ -138,6 +146,8 @@ private:
     Result<void> choose(ReadResult& read, Caller& caller) const;
     Result<ReadResult> read_file(const FieldsToRead& fields, std::size_t step, ReadOptions options,
                                  const Run& run) const;
+
+    void choose_fields(const FieldsToRead& fields, std::size_t step, ReadOptions& options) const;
 
     Result<void> look_at(std::size_t step, const Run& run);
 

@@ -16,6 +16,10 @@ namespace {
 
 constexpr std::size_t most_runs = 64, cells_of_run = 256;
 
+std::size_t begin_of_run(std::size_t run, std::size_t runs, std::size_t cells) {
+    return cells / runs * run + cells % runs * run / runs;
+}
+
 /// Variance within groups as a share of that over all. `value(item)` may be NaN: the item is passed over.
 template <class Items, class Value>
 double share_of_variance(const Items& groups, const Value& value) {
@@ -56,14 +60,24 @@ double share_of_variance(const Items& groups, const Value& value) {
 
 } // namespace
 
-CellCornersSample::CellCornersSample(const Grid& grid) {
+std::vector<std::pair<std::uint64_t, std::uint64_t>> cells_to_sample(std::uint64_t cells) {
+    if (cells <= most_runs * cells_of_run) return {{0, cells}};
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> runs;
+    for (std::size_t run = 0; run < most_runs; ++run) {
+        const std::uint64_t begin = begin_of_run(run, most_runs, cells);
+        runs.emplace_back(begin, begin + cells_of_run);
+    }
+    return runs;
+}
+
+CellCornersSample::CellCornersSample(const Grid& grid, std::span<const std::uint64_t> numbers) {
     const Grid bare{grid.points, grid.cells, {}, {}, {}};
     const auto cells = CellReader::open(bare);
     if (!cells || cells->count() == 0) return;
     const std::size_t runs = std::min(most_runs, (cells->count() + cells_of_run - 1) / cells_of_run);
     std::vector<std::pair<std::uint64_t, std::uint64_t>> uses; // point, cell
     for (std::size_t run = 0; run < runs; ++run) {
-        const std::size_t begin = cells->count() / runs * run + cells->count() % runs * run / runs;
+        const std::size_t begin = begin_of_run(run, runs, cells->count());
         const std::size_t end = std::min(begin + cells_of_run, cells->count());
         uses.clear();
         for (std::size_t cell = begin; cell < end; ++cell) {
@@ -73,7 +87,7 @@ CellCornersSample::CellCornersSample(const Grid& grid) {
             for (std::uint64_t i = first; i < next; ++i)
                 if (const std::uint64_t point = cells->corner(i); point < cells->points()) {
                     points_of_cells_.items.push_back(point);
-                    uses.emplace_back(point, cell);
+                    uses.emplace_back(point, cell < numbers.size() ? numbers[cell] : cell);
                 }
             points_of_cells_.first.push_back(points_of_cells_.items.size());
         }

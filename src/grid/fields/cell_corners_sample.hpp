@@ -2,19 +2,27 @@
 // Some cells of a grid, in runs, to tell fields from noise.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include <isotet/array.hpp>
+#include <isotet/export.hpp>
 #include <isotet/grid.hpp>
 
 namespace isotet::core {
+
+/// The cells of a grid of so many that a sample looks at, as ranges [first, last): in ascending order, and apart.
+ISOTET_API std::vector<std::pair<std::uint64_t, std::uint64_t>> cells_to_sample(std::uint64_t cells);
 
 /// Runs of consecutive cells spread over a grid, with the points of each. Nothing is assumed of the grid: what does not
 /// fit is passed over.
 class CellCornersSample {
 public:
-    explicit CellCornersSample(const Grid& grid);
+    /// `numbers`   of the cells, where the grid has only those that would be looked at (cells_to_sample()); else empty
+    explicit CellCornersSample(const Grid& grid, std::span<const std::uint64_t> numbers = {});
 
     /// The variance of a scalar within cells (point fields), or around points (cell fields), as a share of that over
     /// all: about 1 for noise, far less for what varies over many cells. Values are magnitudes of vectors. 0 where the

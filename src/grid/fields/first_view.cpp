@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include <isotet/fields.hpp>
 #include <isotet/grid.hpp>
@@ -11,6 +12,7 @@
 #include "grid/fields/cell_corners_sample.hpp"
 #include "grid/fields/name_kind.hpp"
 #include "grid/fields/sampled_values.hpp"
+#include "grid/fields/sampled_view.hpp"
 
 namespace isotet {
 
@@ -91,7 +93,7 @@ bool has_few_values(std::vector<double> values) {
 
 class Judge {
 public:
-    explicit Judge(const Grid& grid) : grid_(grid) {}
+    explicit Judge(const Grid& grid, std::span<const std::uint64_t> sampled = {}) : grid_(grid), sampled_(sampled) {}
 
     Judged judge(const Array& values, Association association) {
         constexpr double largest_value = 1e100, least_share = 1e-7;
@@ -115,7 +117,7 @@ public:
 
 private:
     const core::CellCornersSample& cells() {
-        if (!cells_) cells_.emplace(grid_);
+        if (!cells_) cells_.emplace(grid_, sampled_);
         return *cells_;
     }
 
@@ -128,6 +130,7 @@ private:
     }
 
     const Grid& grid_;
+    std::span<const std::uint64_t> sampled_;
     std::optional<core::CellCornersSample> cells_;
 };
 
@@ -213,8 +216,9 @@ std::vector<FieldInfo> describe_fields(const Grid& grid) {
 
 namespace {
 
-FirstView chosen_view(const Grid& grid, const std::vector<FieldInfo>& fields, bool flat) {
-    Judge judge(grid);
+FirstView chosen_view(const Grid& grid, const std::vector<FieldInfo>& fields, bool flat,
+                      std::span<const std::uint64_t> sampled) {
+    Judge judge(grid, sampled);
     std::vector<FirstCandidate> candidates = first_candidates(fields);
     add_named_as_regions(fields, candidates);
     const FirstDraw surfaces =
@@ -250,8 +254,13 @@ FirstView chosen_view(const Grid& grid, const std::vector<FieldInfo>& fields, bo
 } // namespace
 
 FirstView first_view(const Grid& grid, const std::vector<FieldInfo>& fields) {
+    return core::first_view_of_sample(grid, fields, {});
+}
+
+FirstView core::first_view_of_sample(const Grid& grid, const std::vector<FieldInfo>& fields,
+                                     std::span<const std::uint64_t> numbers) {
     const bool flat = has_only_flat_cells(grid.cells);
-    FirstView view = chosen_view(grid, fields, flat);
+    FirstView view = chosen_view(grid, fields, flat, numbers);
     view.flat = flat;
     return view;
 }

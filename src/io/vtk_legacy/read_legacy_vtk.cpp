@@ -4,16 +4,21 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include <fmt/core.h>
 
 #include "base/errors.hpp"
 #include "base/parallel.hpp"
 #include "grid/cells.hpp"
+#include "io/files/escape.hpp"
 #include "io/files/text_scanner.hpp"
 #include "io/pieces/active_filter.hpp"
 #include "io/pieces/join.hpp"
+#include "io/pieces/survey_unread.hpp"
 #include "io/pieces/uniform_cells.hpp"
 #include "io/vtk_legacy/legacy_cells.hpp"
 #include "io/vtk_legacy/legacy_polyhedra.hpp"
@@ -131,9 +136,68 @@ Result<std::optional<Cells>> active_cells(LegacyValues& values, const LegacyFile
     return cells; // what is broken is told when all cells are there
 }
 
+/// Cells of one type whose corners were left in the file.
+class LegacyCellSource final : public CellSource {
+public:
+    /// `file`       without points and fields
+    /// `progress`   borrowed
+    LegacyCellSource(std::string path, std::size_t size, LegacyFile file, const Progress& progress)
+        : CellSource(CellPlaces(static_cast<CellType>(*file.one_type), file.cells.count), {}),
+          path_(std::move(path)),
+          size_(size),
+          file_(std::move(file)),
+          progress_(progress) {}
+
+    Result<void> each_block(const Visit& visit) const override {
+        const auto source = open();
+        if (!source) return source.error();
+        LegacyValues values(*source, progress_);
+        values.set_binary(true);
+        const auto all = each_of_corners(values, *file_.cells.in_file, [&](std::uint64_t first, const Array& corners) {
+            visit(first, corners);
+            return true;
+        });
+        if (!all) return all.error();
+        return *all ? Result<void>() : invalid_data("cells have not as many corners as their type has");
+    }
+
+    Result<Cells> read() const override {
+        const auto source = open();
+        if (!source) return source.error();
+        LegacyValues values(*source, progress_);
+        values.set_binary(true);
+        LegacyFile file = file_;
+        if (auto done = read_corners(values, file.cells); !done) return in_file(path_, done.error());
+        auto cells = cells_of(file);
+        return cells ? std::move(cells) : in_file(path_, cells.error());
+    }
+
+private:
+    Result<ByteSource> open() const {
+        auto source = ByteSource::open(path_);
+        if (source && source->size() != size_)
+            return Error{ErrorCode::file, fmt::format("{} was changed while it was read", escaped(path_))};
+        return source;
+    }
+
+    std::string path_;
+    std::size_t size_;
+    LegacyFile file_;
+    const Progress& progress_;
+};
+
 /// `piece`   has points and point fields
-Result<void> take_cells(const ByteSource& source, LegacyFile& file, const ReadOptions& options,
+Result<void> take_cells(const ByteSource& source, const std::string& path, LegacyFile& file, const ReadOptions& options,
                         const Progress& progress, Piece& piece) {
+    if (file.cells.in_file && are_counted(options) && !path.empty() && says_nothing(file) &&
+        file.cell_type_count == file.cells.count) {
+        LegacyFile cells;
+        cells.cells = file.cells;
+        cells.cell_type_count = file.cell_type_count;
+        cells.one_type = file.one_type;
+        piece.unread = std::make_shared<const LegacyCellSource>(path, source.size(), std::move(cells), progress);
+        return {};
+    }
     if (file.cells.in_file) {
         LegacyValues values(source, progress);
         values.set_binary(true);
@@ -165,8 +229,8 @@ bool is_grid(std::string_view dataset) { return dataset.ends_with("_grid") || da
 
 } // namespace
 
-Result<Loaded> load_legacy(const ByteSource& source, const ReadOptions& options, Depth depth,
-                           const Progress& progress) {
+Result<Loaded> load_legacy(const ByteSource& source, const ReadOptions& options, Depth depth, const Progress& progress,
+                           const std::string& path) {
     std::string kind;
     LegacyWants wants;
     wants.geometry = depth == Depth::arrays;
@@ -204,15 +268,15 @@ Result<Loaded> load_legacy(const ByteSource& source, const ReadOptions& options,
     if (piece.grid.points.empty()) piece.grid.points = Array(ScalarType::float32, nullptr, 0, 3, nullptr);
     for (Attribute& field : file->point_data) piece.grid.point_fields.push_back({field.name, std::move(field.values)});
     if (!structured)
-        if (auto taken = take_cells(source, *file, options, progress, piece); !taken) return taken.error();
-    const bool flat = structured && piece.grid.cells.count() == 0; // its cells are not volumes
+        if (auto taken = take_cells(source, path, *file, options, progress, piece); !taken) return taken.error();
+    const bool flat = structured && piece.cell_count() == 0; // its cells are not volumes
     for (Attribute& field : file->cell_data) {
         if (flat) continue;
-        if (field.name == vtk_xml::ghost_rank_name && field.values.tuples() == piece.grid.cells.count())
+        if (field.name == vtk_xml::ghost_rank_name && field.values.tuples() == piece.cell_count())
             vtk_xml::mark_left_out(field.values, field.name, piece.left_out);
         if (!vtk_xml::is_ghost_array(field.name))
             piece.grid.cell_fields.push_back({field.name, std::move(field.values)});
-        else if (field.values.tuples() == piece.grid.cells.count())
+        else if (field.values.tuples() == piece.cell_count())
             vtk_xml::mark_left_out(field.values, field.name, piece.left_out);
     }
     loaded.pieces.push_back(std::move(piece));
@@ -223,7 +287,7 @@ Result<Loaded> load_legacy_file(const std::string& path, const ReadOptions& opti
                                 const Progress& progress) {
     const auto source = ByteSource::open(path);
     if (!source) return source.error();
-    auto loaded = load_legacy(*source, options, depth, progress);
+    auto loaded = load_legacy(*source, options, depth, progress, path);
     if (!loaded) return in_file(path, loaded.error());
     for (Piece& piece : loaded->pieces) piece.name = path;
     loaded->info.format = "vtk";

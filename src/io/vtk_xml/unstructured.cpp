@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include "base/errors.hpp"
+#include "io/pieces/survey_unread.hpp"
 #include "io/vtk_xml/cells_reader.hpp"
 #include "io/vtk_xml/load.hpp"
 #include "io/vtk_xml/unread_cells.hpp"
@@ -103,7 +104,8 @@ Result<std::vector<Piece>> load_unstructured(const std::shared_ptr<Document>& do
     whole.grid.points = std::move(*places);
     const Wanted of_pieces{wanted.options, wanted.step, wanted.ids || !alone, wanted.path};
     if (auto read = load_fields(*document, layouts, of_pieces, progress, loaded, whole); !read) return read.error();
-    const bool later = wanted.options.active_cells && whole.grid.cell_fields.empty() && !wanted.path.empty();
+    const bool later = wanted.options.active_cells && !wanted.path.empty() &&
+                       (are_counted(wanted.options) ? alone : whole.grid.cell_fields.empty());
     std::vector<Piece> pieces;
     for (std::size_t i = 0; i < elements.size(); ++i) {
         auto part = read_cells(*document, {elements[i], cells.tuples[i], wanted.step}, later, progress);
