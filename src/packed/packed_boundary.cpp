@@ -54,7 +54,14 @@ struct Face {
         return {p, sign};
     }
     friend bool operator<(const Face& a, const Face& b) {
-        return std::tie(a.points, a.uses) < std::tie(b.points, b.uses);
+        if constexpr (sizeof(Point) == 1) { // else each comparison calls memcmp()
+            const auto key = [](const std::array<Point, 3>& p) {
+                return unsigned{p[0]} << 16 | unsigned{p[1]} << 8 | p[2];
+            };
+            return std::pair(key(a.points), a.uses) < std::pair(key(b.points), b.uses);
+        } else {
+            return std::tie(a.points, a.uses) < std::tie(b.points, b.uses);
+        }
     }
 };
 
