@@ -56,6 +56,25 @@ TEST_F(ReadXdmf, ReadsValuesInXml) {
     EXPECT_EQ(result->grid.cell_fields.at(0).values.at(1, 2), 6);
 }
 
+TEST_F(ReadXdmf, SymmetricTensorsHaveVtksOrder) {
+    const std::string rows = "11 12 13 22 23 33 ";
+    const auto result = read_domain(
+        grid(points + tets +
+             field("p", rows + rows + rows + rows + rows, "AttributeType=\"Tensor6\" Center=\"Node\"", "5 6") +
+             field("c", rows + rows, "AttributeType=\"tensor6\" Center=\"Cell\"", "2 6") +
+             field("m", rows + rows, "AttributeType=\"Matrix\" Center=\"Cell\"", "2 6")));
+    ASSERT_TRUE(result) << result.error().message;
+    const auto tuple_of = [](const Field& field, std::size_t tuple) {
+        std::vector<double> values;
+        for (std::size_t c = 0; c < field.values.components(); ++c) values.push_back(field.values.at(tuple, c));
+        return values;
+    };
+    const std::vector<double> as_vtk{11, 22, 33, 12, 23, 13};
+    EXPECT_EQ(tuple_of(result->grid.point_fields.at(0), 4), as_vtk);
+    EXPECT_EQ(tuple_of(result->grid.cell_fields.at(0), 1), as_vtk);
+    EXPECT_EQ(tuple_of(result->grid.cell_fields.at(1), 1), (std::vector<double>{11, 12, 13, 22, 23, 33}));
+}
+
 TEST_F(ReadXdmf, ReadsHdf5WithHyperSlabsEntitiesAndReferences) {
     {
         Hdf5Writer file(folder_.file("heavy.h5"));

@@ -13,21 +13,11 @@
 #include "io/files/text_scanner.hpp"
 #include "io/foam/field_file.hpp"
 #include "io/pieces/loaded.hpp"
+#include "io/pieces/tensor_order.hpp"
 
 namespace isotet::io::foam {
 
 namespace {
-
-/// VTK's order of the components of symmetric tensors: XX YY ZZ XY YZ XZ.
-void order_as_vtk(std::size_t components, std::vector<double>& values) {
-    constexpr std::array<std::size_t, 6> from = {0, 3, 5, 1, 4, 2};
-    if (components != 6) return;
-    for (std::size_t at = 0; at + 6 <= values.size(); at += 6) {
-        std::array<double, 6> tuple;
-        std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(at), 6, tuple.begin());
-        for (std::size_t k = 0; k < 6; ++k) values[at + k] = tuple[from[k]];
-    }
-}
 
 /// Means at points; NaN is left out.
 class PointMeans {
@@ -116,7 +106,7 @@ private:
         const std::size_t count = of_points_ ? part.points : part.cells;
         if (const std::string wrong = misfit(inside, count, "internalField"); !wrong.empty())
             return broken(file.path, wrong);
-        order_as_vtk(components_, inside.values);
+        if (components_ == 6) order_as_vtk(inside.values, order_of_upper_rows);
         const bool is_whole = whole_.parts.size() == 1;
         if (is_whole && !inside.uniform) {
             values_ = std::move(inside.values);
@@ -140,7 +130,7 @@ private:
                 misfits_.insert(std::move(wrong));
                 continue;
             }
-            order_as_vtk(components_, values->values);
+            if (components_ == 6) order_as_vtk(values->values, order_of_upper_rows);
             patches_.emplace_back(&patch, std::move(*values));
         }
     }

@@ -10,6 +10,7 @@
 #include "io/confined/xdmf/xdmf_finite_element.hpp"
 #include "io/files/escape.hpp"
 #include "io/files/text_scanner.hpp"
+#include "io/pieces/tensor_order.hpp"
 #include "io/reader.hpp"
 
 namespace isotet::io::confined {
@@ -96,7 +97,11 @@ Result<void> XdmfFieldReader::read_values(const XdmfField& field, XdmfMesh& mesh
                                                           on_points ? "points" : "cells")};
     const std::uint64_t components = values->count() / tuples;
     announce(loaded.info, {field.name, *field.association, values->values.type(), components});
-    if (want) fields.push_back({field.name, with_components(values->values, components)});
+    if (!want) return {};
+    const std::string_view type = field.node.attribute("AttributeType").value();
+    fields.push_back({field.name, components == 6 && same_word(type, "Tensor6")
+                                      ? ordered_as_vtk(values->values, order_of_upper_rows)
+                                      : with_components(values->values, components)});
     return {};
 }
 
