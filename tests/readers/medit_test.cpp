@@ -44,7 +44,8 @@ TEST_P(ReadMedit, GivesTheFieldsOfTheSolutionBeside) {
         const auto value = static_cast<double>(n);
         EXPECT_EQ(scalar->values.at(n), value);
         EXPECT_EQ(vector->values.at(n, 1), value + 0.25);
-        EXPECT_EQ(tensor->values.at(n, 5), value + 5);
+        constexpr std::size_t places[] = {0, 3, 1, 5, 4, 2}; // of XX XY YY XZ YZ ZZ
+        for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(tensor->values.at(n, places[i]), value + static_cast<double>(i));
     }
 }
 
@@ -109,6 +110,16 @@ TEST(ReadMeditText, OfTwoDimensionsGetsZeroForZ) {
                         std::nullopt, {}, {})
             .value();
     EXPECT_EQ(values_of(result.grid.points), (std::vector<double>{1, 2, 0, 3, 4, 0, 5, 6, 0}));
+}
+
+TEST(ReadMeditText, TensorsOfTwoDimensionsHaveVtksOrder) {
+    const ReadResult result =
+        io::parse_medit("MeshVersionFormatted 2 Dimension 2 Vertices 3 1 2 0 3 4 0 5 6 0 Triangles 1 1 2 3 0 End",
+                        "MeshVersionFormatted 2 Dimension 2 SolAtVertices 3 1 3 1 2 3 4 5 6 7 8 9 End", {}, {})
+            .value();
+    const Field* tensor = find(result.grid.point_fields, "sol");
+    ASSERT_TRUE(tensor);
+    EXPECT_EQ(values_of(tensor->values), (std::vector<double>{1, 3, 2, 4, 6, 5, 7, 9, 8}));
 }
 
 TEST(ReadMeditErrors, NameTheValueAndTheRule) {

@@ -21,7 +21,7 @@ Result<FileInfo> inspect_medit(std::string_view mesh, std::optional<std::string_
 ///
 /// Text or binary is told by the content of each file. Cells come in the order of the file's sections; Edges,
 /// Triangles, Quadrilaterals and the quadratic kinds are cells, too. Points are float64, in binary files of version 1
-/// float32. A mesh of dimension 2 gets z = 0. Symmetric tensors keep the file's order xx xy yy xz yz zz.
+/// float32. A mesh of dimension 2 gets z = 0. Symmetric tensors are in VTK's order: xx yy zz xy yz xz, or xx yy xy.
 ///
 /// Errors   invalid_data: a rule of the format broken, with section, value and rule
 Result<ReadResult> parse_medit(std::string_view mesh, std::optional<std::string_view> solution,

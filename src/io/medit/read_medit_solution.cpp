@@ -13,6 +13,7 @@
 #include "io/files/scalars.hpp"
 #include "io/medit/read_medit_parts.hpp"
 #include "io/pieces/loaded.hpp"
+#include "io/pieces/tensor_order.hpp"
 #include "io/reader.hpp"
 
 namespace isotet::io::medit {
@@ -130,9 +131,13 @@ private:
             }
             if (!pace_.goes_on(source.position())) return Pace::cancelled();
         }
-        for (std::size_t f = 0; f < values.size(); ++f)
-            if (open_.fields[f].wanted)
-                open_.fields[f].values = Array::own(std::move(values[f]), open_.fields[f].info.components);
+        for (std::size_t f = 0; f < values.size(); ++f) {
+            const std::size_t components = open_.fields[f].info.components;
+            if (components == 6) order_as_vtk(values[f], order_of_lower_rows);
+            if (dimension_ == 2 && components == 3) // XX XY YY
+                for (std::size_t i = 0; i < values[f].size(); i += 3) std::swap(values[f][i + 1], values[f][i + 2]);
+            if (open_.fields[f].wanted) open_.fields[f].values = Array::own(std::move(values[f]), components);
+        }
         return {};
     }
 
