@@ -183,6 +183,36 @@ TEST_P(ReadLegacyForm, RefusesPolyhedraWhoseNumbersAreNoFaces) {
     }
 }
 
+TEST_P(ReadLegacyForm, ComponentNamesOfMetadataPutTensorsIntoVtksOrder) {
+    const std::string names = "METADATA\nCOMPONENT_NAMES\nXX\nXY\nXZ\nYY\nYZ\nZZ\nINFORMATION 0\n\n";
+    const std::string bytes = LegacyText(GetParam())
+                                  .start("4.2")
+                                  .tet()
+                                  .text("POINT_DATA 9\nFIELD FieldData 3\nS 6 9 float\n")
+                                  .nine(0, 6)
+                                  .text(names)
+                                  .text("plain 6 9 float\n")
+                                  .nine(0, 6)
+                                  .text("vector 3 9 float\n")
+                                  .nine(0, 3)
+                                  .text("METADATA\nCOMPONENT_NAMES\nXX\nXY\nXZ\n\n")
+                                  .text("TENSORS6 T float\n")
+                                  .nine(0, 6)
+                                  .text(names)
+                                  .str();
+    const io::Loaded loaded = load(bytes);
+    const auto of_point_1 = [&](const char* name) {
+        const Field* const field = find(grid_of(loaded).point_fields, name);
+        std::vector<double> values;
+        for (std::size_t c = 0; field && c < field->values.components(); ++c) values.push_back(field->values.at(1, c));
+        return values;
+    };
+    EXPECT_EQ(of_point_1("S"), (std::vector<double>{6, 9, 11, 7, 10, 8}));
+    EXPECT_EQ(of_point_1("T"), (std::vector<double>{6, 9, 11, 7, 10, 8}));
+    EXPECT_EQ(of_point_1("plain"), (std::vector<double>{6, 7, 8, 9, 10, 11}));
+    EXPECT_EQ(of_point_1("vector"), (std::vector<double>{3, 4, 5}));
+}
+
 TEST_P(ReadLegacyForm, StepsOverMetadataOfEveryKind) {
     for (const char* metadata :
          {"METADATA\nCOMPONENT_NAMES\n\nINFORMATION 0\n\n", "METADATA\nCOMPONENT_NAMES\n\n\n",

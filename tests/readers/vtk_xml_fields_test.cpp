@@ -153,6 +153,46 @@ TEST(VtkXmlFields, OneThatIsBrokenLeavesTheOthers) {
     }
 }
 
+/// Of a symmetric tensor, for one cell.
+std::string named_tensor(std::string_view type, std::string_view values, const std::vector<std::string>& names,
+                         std::string_view form = "ascii") {
+    std::string more = fmt::format("NumberOfComponents=\"6\" format=\"{}\"", form);
+    for (std::size_t i = 0; i < names.size(); ++i) more += fmt::format(" ComponentName{}=\"{}\"", i, names[i]);
+    return array_of(type, "S", values, more);
+}
+
+TEST(VtkXmlFields, SymmetricTensorsOfAnotherOrderGetVtks) {
+    using Values = std::vector<double>;
+    const Values as_vtk{11, 22, 33, 12, 23, 13};
+    const Names rows{"XX", "XY", "XZ", "YY", "YZ", "ZZ"};
+    const std::string of_rows = "11 12 13 22 23 33";
+    for (const auto& [values, names] : {std::pair{of_rows, rows},
+                                        {of_rows, Names{"xx", "yx", "zx", "yy", "zy", "zz"}},
+                                        {of_rows, Names{"S11", "S12", "S13", "S22", "S23", "S33"}},
+                                        {"11 12 22 13 23 33", Names{"s_xx", "s_xy", "s_yy", "s_xz", "s_yz", "s_zz"}},
+                                        {"11 22 33 12 23 13", Names{"XX", "YY", "ZZ", "XY", "YZ", "XZ"}},
+                                        {"11 22 33 12 23 13", Names{}},
+                                        {"11 22 33 12 23 13", Names{"XX", "XY", "XZ", "YY", "YZ", "XX"}},
+                                        {"11 22 33 12 23 13", Names{"x", "y", "z", "rx", "ry", "rz"}}}) {
+        for (const char* const type : {"Float32", "Float64", "Int8"}) {
+            const io::Loaded file = loaded(vtu(Tet{.cell_data = named_tensor(type, values, names)}.piece()));
+            EXPECT_EQ(values_of(find(file.pieces.at(0).grid.cell_fields, "S")), as_vtk) << names.size() << values;
+        }
+    }
+    // Pieces of other orders and types; base64
+    const io::Loaded file =
+        loaded(vtu(Tet{.cell_data = named_tensor("Float64", of_rows, rows)}.piece() +
+                   Tet{.x = 1, .cell_data = named_tensor("Float32", "11 22 33 12 23 13", {})}.piece() +
+                   Tet{.x = 2, .cell_data = named_tensor("UInt8", "BgAAAAsMDRYXIQ==", rows, "binary")}.piece()));
+    Values all;
+    for (const io::Piece& piece : file.pieces) {
+        const Values values = values_of(find(piece.grid.cell_fields, "S"));
+        all.insert(all.end(), values.begin(), values.end());
+    }
+    ASSERT_EQ(all.size(), 18U);
+    for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(all[i], as_vtk[i % 6]) << i;
+}
+
 TEST(VtkXmlFields, OneThatIsBrokenIsAnErrorWhereItIsNamed) {
     const TemporaryFolder folder;
     for (const auto& [bad, reason] : {std::pair{array_of("Foo", "q", "1 2 3 4"), "its type is 'Foo'"},

@@ -14,6 +14,7 @@
 #include "base/errors.hpp"
 #include "io/files/text_scanner.hpp"
 #include "io/pieces/loaded.hpp"
+#include "io/pieces/tensor_order.hpp"
 
 namespace isotet::io {
 namespace {
@@ -95,7 +96,7 @@ bool LegacyData::is_section(std::string_view keyword) {
 
 Result<void> LegacyData::read(const std::string& keyword) {
     if (keyword == "metadata") {
-        skip_metadata();
+        read_metadata();
         return {};
     }
     if (keyword == "field") return read_field();
@@ -241,7 +242,7 @@ Result<void> LegacyData::read_field() {
                 return {};
             }
             scanner_.word();
-            skip_metadata();
+            read_metadata();
             continue;
         }
         const auto was_array = read_array_of_field(*count - arrays - 1);
@@ -279,7 +280,7 @@ Result<bool> LegacyData::read_array_of_field(std::uint64_t left) {
 
 /// Values of an array with a name, which are kept if they are wanted.
 Result<void> LegacyData::read_array(const Header& header) {
-    names_ = header.components;
+    expect_names(header.components);
     if (header.type == "string" || header.type == "utf8_string" || header.type == "variant")
         return skip_strings(header);
     const auto type = legacy_type(header.type);
@@ -308,6 +309,7 @@ Result<void> LegacyData::read_array(const Header& header) {
                       stored,
                       header.components,
                       header.tuples});
+    last_is_found_ = true;
     return {};
 }
 
@@ -360,8 +362,16 @@ Result<void> LegacyData::skip_unknown_type(const Header& header) {
     return ends.size() == 1 ? Result<void>() : go_on_behind(0, error);
 }
 
+/// Puts symmetric tensors into VTK's order.
+void LegacyData::order_as_named(std::span<const std::string> names) {
+    if (!last_is_found_ || !found_.back().wanted || found_.back().components != names.size()) return;
+    Array& values = found_.back().attribute.values;
+    if (const auto order = order_of_names(names)) values = ordered_as_vtk(values, *order);
+    last_is_found_ = false;
+}
+
 /// Up to an empty line. COMPONENT_NAMES has a line for each component, which may be empty, too.
-void LegacyData::skip_metadata() {
+void LegacyData::read_metadata() {
     scanner_.next_line();
     while (scanner_.left() > 0 && !scanner_.at_line_end()) {
         const std::string word = scanner_.word_of_line();
@@ -371,11 +381,14 @@ void LegacyData::skip_metadata() {
         }
         scanner_.next_line();
         if (word != "COMPONENT_NAMES") continue;
+        std::vector<std::string> names;
         for (std::uint64_t i = 0; i < names_ && scanner_.left() > 0; ++i) {
             const auto words = words_of_line(2); // a blank in a name is written as %20
             if (words.size() == 2 && words[0] == "INFORMATION") break;
+            names.push_back(words.empty() ? std::string() : words[0]);
             scanner_.next_line();
         }
+        order_as_named(names);
     }
 }
 

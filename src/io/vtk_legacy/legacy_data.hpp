@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -35,7 +36,10 @@ public:
     Result<void> read_unknown(const std::string& keyword);
 
     /// What was read last has so many components, which METADATA may name.
-    void expect_names(std::uint64_t components) { names_ = components; }
+    void expect_names(std::uint64_t components) {
+        names_ = components;
+        last_is_found_ = false;
+    }
 
     /// Announces the arrays, leaves out those that do not fit the grid or have no name; of two of one name the last counts.
     void finish();
@@ -70,7 +74,8 @@ private:
     Result<void> read_array(const Header& header);
     Result<void> skip_strings(const Header& header);
     Result<void> skip_unknown_type(const Header& header);
-    void skip_metadata();
+    void read_metadata();
+    void order_as_named(std::span<const std::string> names);
     void skip_information();
 
     std::vector<std::string> words_of_line(std::size_t most);
@@ -97,6 +102,7 @@ private:
     std::size_t faults_ = 0;
     bool unread_ = false; ///< the rest of the file
     std::vector<Found> found_;
+    bool last_is_found_ = false; ///< METADATA is of the last one
     std::vector<std::pair<Association, std::string>> scalars_; ///< names of SCALARS
 };
 

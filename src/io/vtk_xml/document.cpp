@@ -109,6 +109,15 @@ Result<void> place_appended(const Document& document, const pugi::xml_node& elem
     return {};
 }
 
+/// Of a symmetric tensor whose components have names.
+std::optional<TensorOrder> stated_order(const pugi::xml_node& element, std::size_t components) {
+    std::array<std::string, 6> names;
+    if (components != names.size()) return std::nullopt;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        names[i] = element.attribute(fmt::format("ComponentName{}", i).c_str()).value();
+    return order_of_names(names);
+}
+
 /// The text of an array, which comments, CDATA and keys of VTK may cut into several.
 Result<void> place_inside(const Document& document, const pugi::xml_node& element, DataArray& array) {
     std::vector<Range> parts;
@@ -193,6 +202,7 @@ Result<std::optional<DataArray>> describe_array(const Document& document, const 
         (!parse_number(components, array.components) || array.components == 0 || array.components > max_components))
         return wrong(array.name,
                      fmt::format("it has {} components, not 1 to {}", in_quotes(components), max_components));
+    array.order = stated_order(element, array.components);
     const std::string_view form = element.attribute("format").value();
     if (same_word(form, "appended")) {
         if (auto placed = place_appended(document, element, array); !placed) return placed.error();

@@ -19,6 +19,7 @@
 #include <isotet/result.hpp>
 
 #include "io/files/byte_source.hpp"
+#include "io/pieces/tensor_order.hpp"
 #include "io/vtk_xml/codec.hpp"
 
 namespace isotet::io::vtk_xml {
@@ -66,6 +67,7 @@ struct DataArray {
     enum class Form : std::uint8_t { ascii, base64, raw } form = Form::ascii;
     bool bits = false;   ///< of type Bit: eight to a byte; they become uint8
     bool inside = false; ///< inline, else appended
+    std::optional<TensorOrder> order; ///< of its components in the file, where their names state another one than VTK's
     Range place;         ///< of its text, or from its block to the end of the appended data
     std::shared_ptr<const std::string> text; ///< where it stands in several places: these together, `place` is in it
 

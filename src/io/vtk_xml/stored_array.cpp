@@ -318,6 +318,13 @@ Result<bool> StoredArray::for_blocks(const BlockWork& work) const {
 }
 
 Result<void> StoredArray::decode(std::byte* to, bool* more) const {
+    if (auto done = decode_stored(to, more); !done || !array_.order) return done;
+    order_as_vtk(to, static_cast<std::size_t>(scalars_ / array_.components), size_of(array_.type), *array_.order);
+    return {};
+}
+
+/// In the order of the file.
+Result<void> StoredArray::decode_stored(std::byte* to, bool* more) const {
     if (scalars_ == 0) return {};
     if (array_.form == DataArray::Form::ascii) {
         const auto end = read_numbers(array_.source(*document_), array_.place.begin, array_.place.end, array_.type, scalars_,
@@ -367,7 +374,7 @@ Result<void> StoredArray::check_stored() const {
 }
 
 bool StoredArray::has_blocks() const {
-    return array_.form != DataArray::Form::ascii && !array_.bits && scalars_ > 0 &&
+    return array_.form != DataArray::Form::ascii && !array_.bits && !array_.order && scalars_ > 0 &&
            document_->order == std::endian::native && block_bytes_ % size_of(array_.type) == 0;
 }
 

@@ -46,7 +46,7 @@ public:
     static Result<StoredArray> find(Document& document, const DataArray& array, std::uint64_t scalars,
                                     const Progress& progress);
 
-    /// Writes the values, in this machine's byte order. Sets `more` where others stand behind them.
+    /// Writes the values, in this machine's byte order, symmetric tensors in VTK's order. Sets `more` where others stand behind them.
     ///
     /// `to`     room for them
     /// Errors   invalid_data: blocks that cannot be inflated, words that are no numbers; file, machine; cancelled
@@ -59,7 +59,7 @@ public:
     /// Errors   invalid_data: more values are stored than were looked for. Of text only decode() tells
     Result<void> check_stored() const;
 
-    /// True where each_block() can be called: values are stored as this machine has them, whole ones in each block.
+    /// True where each_block() can be called: values are stored as they are read, whole ones in each block.
     bool has_blocks() const;
 
     /// Calls work(position of its first value, bytes) for each block, in parallel, and keeps none of them.
@@ -84,6 +84,7 @@ private:
     StoredArray(const Document& document, const DataArray& array, std::uint64_t scalars, const Progress& progress)
         : document_(&document), array_(array), progress_(&progress), scalars_(scalars) {}
 
+    Result<void> decode_stored(std::byte* to, bool* more) const;
     Result<void> find_plain_block(std::vector<std::string>& odd_lengths);
     Result<void> find_packed_blocks();
     Error wrong(std::string_view what) const;
