@@ -460,7 +460,7 @@ TEST(VtkXmlCells, PointsMayBeOfAnyType) {
 }
 
 TEST(VtkXmlCells, WithoutAPieceAreNone) {
-    const Loaded nothing = loaded(vtu(""));
+    const io::Loaded nothing = loaded(vtu(""));
     EXPECT_EQ(nothing.info.cells, 0u);
     ASSERT_EQ(nothing.pieces.size(), 1u);
     EXPECT_EQ(nothing.pieces[0].grid.points.components(), 3u);
