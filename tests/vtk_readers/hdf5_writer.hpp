@@ -64,6 +64,33 @@ public:
         empty_data(name, count, list);
     }
 
+    struct RowsElsewhere {
+        std::string file, source;
+        hsize_t rows, first; ///< `first`: where they go
+    };
+    /// Rows of data sets elsewhere, as VTK has partitions and time steps in files of their own.
+    template <class T>
+    void virtual_rows(const std::string& name, const std::vector<RowsElsewhere>& parts, hsize_t rows,
+                      hsize_t columns = 0) {
+        const int rank = columns == 0 ? 1 : 2;
+        const auto space_of = [&](hsize_t count) {
+            const hsize_t lengths[] = {count, columns};
+            return H5Screate_simple(rank, lengths, nullptr);
+        };
+        const hid_t list = H5Pcreate(H5P_DATASET_CREATE), whole = space_of(rows);
+        for (const RowsElsewhere& part : parts) {
+            const hid_t place = space_of(rows), from = space_of(part.rows);
+            const hsize_t start[] = {part.first, 0}, count[] = {part.rows, columns};
+            H5Sselect_hyperslab(place, H5S_SELECT_SET, start, nullptr, count, nullptr);
+            H5Pset_virtual(list, place, part.file.c_str(), part.source.c_str(), from);
+            H5Sclose(place);
+            H5Sclose(from);
+        }
+        H5Dclose(H5Dcreate2(file_, name.c_str(), type<T>(), whole, H5P_DEFAULT, list, H5P_DEFAULT));
+        H5Sclose(whole);
+        H5Pclose(list);
+    }
+
     template <class T>
     void data(const std::string& name, const std::vector<T>& values, std::vector<hsize_t> dimensions) {
         const hid_t space = dimensions.empty()

@@ -102,7 +102,7 @@ TEST_F(HostileHdf5, DataStoredInFilesOutsideIsAnError) {
 
 TEST_F(HostileHdf5, DataPutTogetherOfOtherFilesIsAnError) {
     expect_error(vtkhdf([](Hdf5Writer& file) { file.virtual_data("/VTKHDF/PointData/p", "../other.h5", "/p", 5); }),
-                 {"/VTKHDF/PointData/p", "virtual"});
+                 {"/VTKHDF/PointData/p", "../other.h5", "only files below"});
 }
 
 TEST_F(HostileHdf5, AGroupThatContainsItselfIsAnError) {

@@ -11,6 +11,7 @@
 #include <fmt/core.h>
 #include <hdf5.h>
 
+#include "io/confined/hdf5/hdf5_virtual.hpp"
 #include "io/files/escape.hpp"
 #include "io/files/index_file.hpp"
 #include "io/pieces/loaded.hpp"
@@ -101,6 +102,7 @@ public:
     Result<std::vector<LeftOut>> all_files() {
         for (std::size_t i = 0; i < files_.size() && !failed_; ++i) one_file(WalkedFile(files_[i]));
         if (!failed_) follow_links();
+        if (!failed_) check_virtual();
         if (failed_) return *failed_;
         return std::move(broken_);
     }
@@ -115,6 +117,10 @@ private:
         std::string file, path;
         std::optional<LeftOut> without; ///< what a grid then lacks; nothing: it cannot
         std::optional<Error> missing;   ///< its file is not where it may be
+    };
+
+    struct VirtualData {
+        std::string file, path;
     };
 
     void fail(std::string_view what) {
@@ -137,6 +143,17 @@ private:
                 else if (object.id < 0 && link.without) lack(*std::move(link.without));
                 else if (object.id < 0) fail(in(link.path, "is a link that leads to nothing"));
             }
+        }
+    }
+    /// Once it is known where links lead.
+    void check_virtual() {
+        for (const VirtualData& one : virtual_) {
+            file_ = one.file;
+            const Closing file(H5Fopen(file_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+            const Closing data(file.id < 0 ? -1 : H5Dopen2(file.id, one.path.c_str(), H5P_DEFAULT), H5Dclose);
+            if (data.id < 0) return fail(in(one.path, "cannot be opened"));
+            auto whole = check_virtual_data(data.id, file_, allow_outside_, one.path.ends_with("/Offsets"));
+            if (!whole) return fail(in(one.path, whole.error().message));
         }
     }
     void one_file(const WalkedFile& walked) {
@@ -234,7 +251,12 @@ private:
                 return fail(in(path, "stores its data in a file whose name cannot be read"));
             named(path, name, "stores its data in");
         }
-        if (H5Pget_layout(list.id) == H5D_VIRTUAL) fail(in(path, "is a virtual data set, which is not read"));
+        if (H5Pget_layout(list.id) != H5D_VIRTUAL) return;
+        const auto files = files_of_virtual_data(id);
+        if (!files) return fail(in(path, files.error().message));
+        for (std::size_t i = 0; i < files->size() && !failed_; ++i)
+            other_file(path, (*files)[i], true, "is put together of");
+        virtual_.push_back({file_, path});
     }
 
     void named(const std::string& path, std::string_view name, std::string_view does) {
@@ -242,8 +264,8 @@ private:
             failed_ = Error{file.error().code, fmt::format("{}: {} another file: {}", escaped(file_), in(path, does),
                                                            file.error().message)};
     }
-    void other_file(const std::string& path, std::string_view name, bool needed) {
-        named(path, name, "links to");
+    void other_file(const std::string& path, std::string_view name, bool needed, std::string_view does = "links to") {
+        named(path, name, does);
         if (failed_) return;
         const auto file = named_file(file_, name, allow_outside_);
         if (const auto known = std::ranges::find(files_, *file, &WalkedFile::path); known != files_.end()) {
@@ -260,6 +282,7 @@ private:
     bool allow_outside_;
     std::vector<WalkedFile> files_; ///< this one, and those that it links to
     std::vector<LooseLink> links_;  ///< of each file together
+    std::vector<VirtualData> virtual_;
     std::string file_;
     bool needed_ = true;
     std::vector<haddr_t> ancestors_, seen_; ///< groups: around this one; with several names

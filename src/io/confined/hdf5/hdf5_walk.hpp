@@ -11,7 +11,7 @@ namespace isotet::io::confined {
 
 /// Goes over the names in an HDF5 file, without their data, before anybody reads it: links and data in other files must
 /// be files that the index rules allow (check_name(), named_file()), which are gone over, too; no group may contain
-/// itself; no data set may be put together of others, elsewhere. Files of other kinds pass.
+/// itself; virtual data sets must be whole (check_virtual_data()). Files of other kinds pass.
 ///
 /// Returns  what HDF5 cannot open, or links to nothing, and a grid can lack: arrays of VTKHDF, fields of MED, solutions of
 ///          CGNS, variables of Exodus
