@@ -127,11 +127,50 @@ TEST_P(ReadExodus, KeepsSinglePrecision) {
     EXPECT_EQ(result->grid.point_fields.at(0).values.type(), ScalarType::float32);
 }
 
-TEST_P(ReadExodus, IsAnErrorForEveryTruncation) {
+TEST_P(ReadExodus, IsAnErrorForEveryTruncationBeforeTheEndOfTheFirstStep) {
     const std::string content = content_of(written());
     read_prefixes(content, "cut.e", content.size() / 30 + 1, [](const Result<ReadResult>& result, std::size_t length) {
-        EXPECT_FALSE(result) << "cut to " << length << " bytes";
+        if (!result) return;
+        EXPECT_NE(GetParam(), EX_NETCDF4) << "cut to " << length << " bytes";
+        EXPECT_EQ(result->info.times, std::vector<double>{0}) << "cut to " << length << " bytes";
     });
+}
+
+TEST_P(ReadExodus, LeavesOutTheStepThatIsCutShort) {
+    ExodusSample sample;
+    sample.steps = 3;
+    const std::string content = content_of(written(sample));
+    const auto result = read(folder_.write("cut.e", content.substr(0, content.size() - 9)));
+    if (GetParam() == EX_NETCDF4) {
+        ASSERT_FALSE(result);
+        return;
+    }
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(result->info.times, (std::vector<double>{0, 0.5}));
+    EXPECT_EQ(std::ranges::count(result->notes, "the last of 3 time steps is cut short and left out"), 1);
+    ReadOptions options;
+    options.step = 1;
+    const auto last = read(folder_.file("cut.e"), options);
+    ASSERT_TRUE(last) << last.error().message;
+    EXPECT_EQ(last->grid.point_fields.at(3).values.at(4), 14);
+}
+
+TEST_P(ReadExodus, HasNaNForValuesThatWereNeverWritten) {
+    for (const bool single : {false, true}) {
+        ExodusSample sample;
+        sample.single = single;
+        sample.filled_from = 1;
+        ReadOptions options;
+        options.step = 1;
+        const auto result = read(written(sample), options);
+        ASSERT_TRUE(result) << result.error().message;
+        for (std::size_t i = 0; i < 5; ++i) EXPECT_TRUE(std::isnan(result->grid.point_fields.at(3).values.at(i)));
+        EXPECT_TRUE(std::isnan(result->grid.cell_fields.at(0).values.at(0)));
+        for (const char* note : {"point field \"temp\" has 5 values of 5 that were never written: NaN there",
+                                 "cell field \"load\" has 1 values of 2 that were never written: NaN there"})
+            EXPECT_EQ(std::ranges::count(result->notes, note), 1) << note;
+        EXPECT_EQ(read(written(sample))->grid.point_fields.at(3).values.at(4), 4);
+    }
 }
 
 TEST_P(ReadExodus, IsAnErrorWhenAnElementHasANodeThatIsNotThere) {
@@ -349,6 +388,27 @@ TEST(ReadExodusPieces, VariablesOfNodesMayBeOneArrayAsBeforeVersion202) {
     }
 }
 
+TEST(ReadExodusPieces, StepsThatHdf5HasNoRowsOfAreNaN) {
+    const TemporaryFolder folder;
+    ExodusSample sample;
+    sample.format = EX_NETCDF4;
+    write_exodus(sample, folder.file("a.e"));
+    {
+        Hdf5Writer file(folder.file("a.e"), {"vals_nod_var4"});
+        file.data<double>("vals_nod_var4", {0, 1, 2, 3, 4}, {1, 5});
+    }
+    ReadOptions options;
+    options.point_fields = {"temp"};
+    EXPECT_EQ(read(folder.file("a.e"), options).value().grid.point_fields.at(0).values.at(4), 4);
+    options.step = 1;
+    const auto result = read(folder.file("a.e"), options);
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_TRUE(std::isnan(result->grid.point_fields.at(0).values.at(4)));
+    EXPECT_EQ(
+        std::ranges::count(result->notes, "point field \"temp\" has 5 values of 5 that were never written: NaN there"),
+        1);
+}
+
 TEST(ReadExodusPieces, AVariableThatIsBrokenIsLeftOutAndOthersAreRead) {
     const TemporaryFolder folder;
     write_exodus({}, folder.file("a.e"));
@@ -474,6 +534,27 @@ TEST_F(ReadExodusParts, JoinsByTheNumbersOfNodesAndElements) {
         EXPECT_EQ(result->grid.cells.count(), 3u);
         EXPECT_EQ(result->grid.point_fields.at(3).values.tuples(), 6u);
     }
+}
+
+TEST_F(ReadExodusParts, HaveTheStepsThatAllOfThemHave) {
+    ExodusSample first;
+    for (const int steps : {1, 3}) {
+        first.steps = steps;
+        write_exodus(first, folder_.file("run.e.2.0"));
+        ReadOptions options;
+        options.step = static_cast<std::size_t>(std::min(steps, 2) - 1);
+        const auto result = read(folder_.file("run.e.2.1"), options);
+        ASSERT_TRUE(result) << result.error().message;
+        EXPECT_EQ(result->info.times.size(), *options.step + 1);
+        EXPECT_EQ(result->grid.cells.count(), 3u);
+        const std::string note = steps == 1
+                                     ? "its parts have 1 to 2 time steps: those that all have are read, the first 1"
+                                     : "its parts have 2 to 3 time steps: those that all have are read, the first 2";
+        EXPECT_EQ(std::ranges::count(result->notes, note), 1);
+    }
+    first.steps = 0;
+    write_exodus(first, folder_.file("run.e.2.0"));
+    EXPECT_FALSE(read(folder_.file("run.e.2.0"))) << "none of them";
 }
 
 TEST_F(ReadExodusParts, AreRecognizedWhereHdf5HasItsNamesFarFromTheBeginning) {

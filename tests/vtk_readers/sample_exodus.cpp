@@ -67,7 +67,8 @@ void write(const ExodusSample& sample, const std::string& path) {
         ex_put_time(file, step + 1, &time);
         std::vector<Real> values;
         for (std::int64_t node = 0; node < count; ++node)
-            values.push_back(static_cast<Real>(10 * step + static_cast<int>(node)));
+            values.push_back(step >= sample.filled_from ? static_cast<Real>(9.9692099683868690e+36)
+                                                        : static_cast<Real>(10 * step + static_cast<int>(node)));
         for (int variable = 1; variable <= 4; ++variable)
             ex_put_var(file, step + 1, EX_NODAL, variable, 1, count, values.data());
         ex_put_var(file, step + 1, EX_ELEM_BLOCK, 1, 10, cells_of(sample, 0), values.data());

@@ -71,6 +71,13 @@ Result<void> take_variable(Association association, const std::string& name, Res
     return {};
 }
 
+void note_unwritten(Association association, const std::string& name, const ExodusFile::Gaps& gaps, std::uint64_t all,
+                    Loaded& loaded) {
+    if (gaps.values > 0)
+        loaded.notes.push_back(fmt::format("{} \"{}\" has {} values of {} that were never written: NaN there",
+                                           kind_of_variable(association), escaped(name), gaps.values, all));
+}
+
 Result<void> read_fields(OpenPart& part, const ReadOptions& options, Loaded& loaded, Grid& grid) {
     ExodusFile& file = part.file;
     const auto is_read = [&](Association association, const std::string& name, std::size_t variable) {
@@ -80,18 +87,21 @@ Result<void> read_fields(OpenPart& part, const ReadOptions& options, Loaded& loa
     for (std::size_t i = 0; i < file.point_variables().size(); ++i) {
         const std::string& name = file.point_variables()[i];
         if (!is_read(Association::point, name, i)) continue;
-        auto taken = take_variable(Association::point, name, file.point_variable(i, loaded.step), loaded.info,
-                                   grid.point_fields);
+        ExodusFile::Gaps gaps;
+        auto values = file.point_variable(i, loaded.step, gaps);
+        note_unwritten(Association::point, name, gaps, file.points(), loaded);
+        auto taken = take_variable(Association::point, name, std::move(values), loaded.info, grid.point_fields);
         if (!taken) return taken;
     }
     for (std::size_t i = 0; i < file.cell_variables().size(); ++i) {
         const std::string& name = file.cell_variables()[i];
         if (!is_read(Association::cell, name, i)) continue;
-        std::size_t blocks_without = 0;
-        auto values = file.cell_variable(i, loaded.step, blocks_without);
-        if (values && blocks_without > 0)
+        ExodusFile::Gaps gaps;
+        auto values = file.cell_variable(i, loaded.step, gaps);
+        if (values) note_unwritten(Association::cell, name, gaps, file.cells(), loaded);
+        if (values && gaps.blocks > 0)
             loaded.notes.push_back(fmt::format("cell field \"{}\" is not defined in {} of {} element blocks: NaN there",
-                                               escaped(name), blocks_without, file.blocks().size()));
+                                               escaped(name), gaps.blocks, file.blocks().size()));
         auto taken = take_variable(Association::cell, name, std::move(values), loaded.info, grid.cell_fields);
         if (!taken) return taken;
     }
@@ -150,21 +160,46 @@ Result<OpenPart> open_part(const std::string& part, const ReadOptions& options) 
     return OpenPart{*std::move(file), *std::move(broken)};
 }
 
+/// How many steps files have in common, from the first one on: of those with as many all, else those of equal times.
+std::size_t common_steps(const std::vector<double>& a, const std::vector<double>& b) {
+    if (a.size() == b.size()) return a.size();
+    return static_cast<std::size_t>(std::ranges::mismatch(a, b).in1 - a.begin());
+}
+
 /// What all parts hold.
-Result<FileInfo> describe_parts(const std::vector<std::string>& parts, const ReadOptions& options) {
+Result<FileInfo> describe_parts(const std::vector<std::string>& parts, const ReadOptions& options,
+                                std::vector<std::string>& notes) {
     FileInfo all;
+    std::size_t fewest = 0, most = 0;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         auto file = open_part(parts[i], options);
         if (!file) return file.error();
         FileInfo info = describe(*file);
-        if (i == 0) all.times = info.times;
-        if (info.times.size() != all.times.size())
-            return broken(parts[i], fmt::format("this part has {} time steps, the first one {}", info.times.size(),
-                                                all.times.size()));
+        if (const std::uint64_t cut = file->file.steps_cut_off(); cut > 0)
+            notes.push_back(fmt::format("{}the last {}of {} time steps {} cut short and left out",
+                                        parts.size() > 1 ? escaped(parts[i]) + ": " : "",
+                                        cut > 1 ? fmt::format("{} ", cut) : "", info.times.size() + cut,
+                                        cut > 1 ? "are" : "is"));
+        const std::size_t steps = info.times.size();
+        if (i == 0) {
+            all.times = info.times;
+            fewest = most = steps;
+        }
+        const std::size_t common = common_steps(all.times, info.times);
+        if (common == 0 && all.times.size() != steps)
+            return broken(parts[i], fmt::format("this part has {} time steps and the parts before it {}, of which none "
+                                                "have the same time",
+                                                steps, all.times.size()));
+        all.times.resize(common);
+        fewest = std::min(fewest, steps);
+        most = std::max(most, steps);
         for (FieldInfo& field : info.fields) announce(all, std::move(field));
         for (LeftOut& item : info.left_out) leave_out(all, std::move(item));
         for (const BlockInfo& block : blocks_of(file->file)) announce_block(all, block);
     }
+    if (fewest != most)
+        notes.push_back(fmt::format("its parts have {} to {} time steps: those that all have are read, the first {}",
+                                    fewest, most, all.times.size()));
     return all;
 }
 
@@ -259,7 +294,7 @@ Result<Loaded> load_exodus(const std::string& path, const ReadOptions& options, 
     auto parts = exodus_parts(path);
     if (!parts) return parts.error();
     Loaded loaded;
-    auto info = describe_parts(*parts, options);
+    auto info = describe_parts(*parts, options, loaded.notes);
     if (!info) return info.error();
     loaded.info = std::move(*info);
     const auto chosen = chosen_blocks(loaded.info.blocks, options);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <span>
 
 #include <fmt/core.h>
 
@@ -205,6 +206,20 @@ std::optional<Array> ExodusFile::rows(const std::string& variable, std::uint64_t
     });
 }
 
+double ExodusFile::fill_value_of(const std::string& variable) const {
+    constexpr double of_netcdf = 9.9692099683868690e+36; // float32, too
+    return file_->number_attribute(variable, "_FillValue").value_or(of_netcdf);
+}
+
+std::optional<Array> ExodusFile::rows_of_step(const std::string& variable, std::size_t step, std::uint64_t size) const {
+    const auto shape = file_->shape(variable);
+    if (!shape || shape->size() < 2 || step < shape->front() || shape->back() != size)
+        return rows(variable, step, size);
+    const double fill = fill_value_of(variable); // HDF5 has as many rows as were written
+    if (is_single_) return Array::own(std::vector<float>(size, static_cast<float>(fill)));
+    return Array::own(std::vector<double>(size, fill));
+}
+
 template <class T>
 Result<Array> ExodusFile::read_coordinates() const {
     std::vector<T> places(3 * points_, T(0));
@@ -235,21 +250,30 @@ Result<Array> ExodusFile::nodes(const Block& block, std::uint64_t first, std::ui
     return nodes;
 }
 
-Result<Array> ExodusFile::point_variable(std::size_t variable, std::size_t step) {
-    const std::string own = fmt::format("vals_nod_var{}", variable + 1);
-    const std::uint64_t all = points_ * point_variables_.size();
-    if (file_->has(own)) {
-        if (auto values = rows(own, step, points_)) return *std::move(values);
-    } else if (const auto values = rows("vals_nod_var", step, all)) { // of all variables, as "coord"
-        const auto* const first = static_cast<const std::byte*>(values->data()) + variable * points_ * size_of(type());
-        return Array(type(), first, points_, 1, values->owner().lock());
-    }
-    return failed(fmt::format("nodal variable \"{}\"", escaped(point_variables_[variable])));
+template <class T>
+Result<Array> ExodusFile::read_point_variable(std::size_t variable, std::size_t step, Gaps& gaps) const {
+    std::string own = fmt::format("vals_nod_var{}", variable + 1);
+    const bool alone = file_->has(own);
+    if (!alone) own = "vals_nod_var"; // of all variables, as "coord"
+    auto all = alone ? rows_of_step(own, step, points_) : rows(own, step, points_ * point_variables_.size());
+    if (!all) return failed(fmt::format("nodal variable \"{}\"", escaped(point_variables_[variable])));
+    const std::span<const T> values = all->as<T>().subspan(alone ? 0 : variable * points_, points_);
+    const T fill = static_cast<T>(fill_value_of(own));
+    const auto unwritten = static_cast<std::uint64_t>(std::ranges::count(values, fill));
+    if (unwritten == 0) return Array(type(), values.data(), points_, 1, all->owner().lock());
+    gaps.values += unwritten;
+    std::vector<T> known(values.begin(), values.end());
+    std::ranges::replace(known, fill, std::numeric_limits<T>::quiet_NaN());
+    return Array::own(std::move(known));
+}
+
+Result<Array> ExodusFile::point_variable(std::size_t variable, std::size_t step, Gaps& gaps) {
+    return is_single_ ? read_point_variable<float>(variable, step, gaps)
+                      : read_point_variable<double>(variable, step, gaps);
 }
 
 template <class T>
-Result<Array> ExodusFile::read_cell_variable(std::size_t variable, std::size_t step,
-                                             std::size_t& blocks_without) const {
+Result<Array> ExodusFile::read_cell_variable(std::size_t variable, std::size_t step, Gaps& gaps) const {
     std::vector<T> values(cells_, std::numeric_limits<T>::quiet_NaN());
     const auto table = file_->numbers<std::int32_t>("elem_var_tab");
     std::uint64_t first = 0;
@@ -258,20 +282,23 @@ Result<Array> ExodusFile::read_cell_variable(std::size_t variable, std::size_t s
         const std::string name = fmt::format("vals_elem_var{}eb{}", variable + 1, block.number);
         const std::size_t at = (block.number - 1) * cell_variables_.size() + variable;
         if (table && at < table->size() ? (*table)[at] == 0 : !file_->has(name)) {
-            ++blocks_without;
+            ++gaps.blocks;
         } else {
-            const auto own = rows(name, step, block.cells);
+            const auto own = rows_of_step(name, step, block.cells);
             if (!own) return failed(fmt::format("element variable \"{}\"", escaped(cell_variables_[variable])));
-            std::ranges::copy(own->as<T>(), values.begin() + static_cast<std::ptrdiff_t>(first));
+            const T fill = static_cast<T>(fill_value_of(name));
+            gaps.values += static_cast<std::uint64_t>(std::ranges::count(own->as<T>(), fill));
+            std::ranges::replace_copy(own->as<T>(), values.begin() + static_cast<std::ptrdiff_t>(first), fill,
+                                      std::numeric_limits<T>::quiet_NaN());
         }
         first += block.cells;
     }
     return Array::own(std::move(values));
 }
 
-Result<Array> ExodusFile::cell_variable(std::size_t variable, std::size_t step, std::size_t& blocks_without) {
-    return is_single_ ? read_cell_variable<float>(variable, step, blocks_without)
-                      : read_cell_variable<double>(variable, step, blocks_without);
+Result<Array> ExodusFile::cell_variable(std::size_t variable, std::size_t step, Gaps& gaps) {
+    return is_single_ ? read_cell_variable<float>(variable, step, gaps)
+                      : read_cell_variable<double>(variable, step, gaps);
 }
 
 /// A node or element has its place as its number where the file has no map.

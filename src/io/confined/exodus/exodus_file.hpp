@@ -56,6 +56,8 @@ public:
     const std::vector<std::string>& point_variables() const noexcept { return point_variables_; }
     const std::vector<std::string>& cell_variables() const noexcept { return cell_variables_; }
     const std::vector<double>& times() const noexcept { return times_; }
+    /// Time steps behind these, which the file ends before.
+    std::uint64_t steps_cut_off() const { return file_->records_cut_off(); }
     /// Leaves out blocks for all that follows: of the file's blocks those stay that `chosen` marks.
     void choose(const std::vector<bool>& chosen);
 
@@ -84,9 +86,14 @@ public:
     std::optional<std::uint64_t> place_of(std::int64_t element) const;
     /// Errors   invalid_data: sides that are not one for each element
     Result<std::vector<SideSet>> side_sets() const;
-    Result<Array> point_variable(std::size_t variable, std::size_t step);
-    /// One value a cell of all blocks; NaN in blocks that do not have the variable, which are counted.
-    Result<Array> cell_variable(std::size_t variable, std::size_t step, std::size_t& blocks_without);
+    /// Where a variable is NaN.
+    struct Gaps {
+        std::size_t blocks = 0;   ///< that do not have it
+        std::uint64_t values = 0; ///< that were never written: netCDF's fill value
+    };
+    Result<Array> point_variable(std::size_t variable, std::size_t step, Gaps& gaps);
+    /// One value a cell of all blocks.
+    Result<Array> cell_variable(std::size_t variable, std::size_t step, Gaps& gaps);
     Result<Array> point_ids();
     Result<Array> cell_ids();
 
@@ -101,10 +108,15 @@ private:
                                std::uint64_t size, const std::string& owner) const;
     /// Some rows of a variable, in the type of the file's coordinates and variables, if it has so many values.
     std::optional<Array> rows(const std::string& variable, std::uint64_t first, std::uint64_t size) const;
+    /// The fill value in rows that a file in HDF5 lacks.
+    std::optional<Array> rows_of_step(const std::string& variable, std::size_t step, std::uint64_t size) const;
+    double fill_value_of(const std::string& variable) const;
     template <class T>
     Result<Array> read_coordinates() const;
     template <class T>
-    Result<Array> read_cell_variable(std::size_t variable, std::size_t step, std::size_t& blocks_without) const;
+    Result<Array> read_point_variable(std::size_t variable, std::size_t step, Gaps& gaps) const;
+    template <class T>
+    Result<Array> read_cell_variable(std::size_t variable, std::size_t step, Gaps& gaps) const;
     Result<Array> id_map(const std::string& map, std::uint64_t count) const;
 
     std::string path_;

@@ -84,6 +84,8 @@ struct NetcdfVariable {
 
 struct NetcdfHeader {
     std::uint64_t records = 0;
+    std::uint64_t records_cut_off = 0; ///< not in `records`
+    std::string record_dimension;
     std::map<std::string, std::uint64_t, std::less<>> dimensions;
     std::map<std::string, NetcdfVariable, std::less<>> variables;
     NetcdfAttributes attributes;
@@ -154,7 +156,7 @@ private:
             const std::string own = name();
             lengths_.push_back(count());
             header.dimensions[own] = lengths_.back();
-            if (lengths_.back() == 0) record_dimension_ = own;
+            if (lengths_.back() == 0) header.record_dimension = own;
         }
     }
 
@@ -204,7 +206,7 @@ private:
             if (size > enough) return void(fail());
         }
         header.records = records ? *records : size == 0 ? 0 : (file_size_ - begin) / size;
-        if (!record_dimension_.empty()) header.dimensions[record_dimension_] = header.records;
+        if (!header.record_dimension.empty()) header.dimensions[header.record_dimension] = header.records;
         for (NetcdfVariable* variable : of_records) {
             variable->dimensions.front() = header.records;
             variable->stride = size;
@@ -217,7 +219,6 @@ private:
     std::size_t at_ = 4;
     bool good_ = true;
     std::vector<std::uint64_t> lengths_;
-    std::string record_dimension_;
 };
 
 /// Bytes that the file must have; nothing where it is more than a file can have.
@@ -230,6 +231,21 @@ std::optional<std::uint64_t> needed_length(const NetcdfHeader& header) {
         needed = std::max(needed, variable.begin + (rows - 1) * variable.stride + variable.row);
     }
     return needed;
+}
+
+/// Drops the last records where a file of so many bytes ends before them, unless it has no whole one.
+void drop_records_cut_off(NetcdfHeader& header, std::uint64_t file_size) {
+    std::uint64_t whole = header.records;
+    for (const auto& [name, variable] : header.variables) {
+        if (!variable.is_record || variable.stride == 0) continue;
+        const std::uint64_t first_end = variable.begin + variable.row;
+        whole = std::min(whole, first_end > file_size ? 0 : (file_size - first_end) / variable.stride + 1);
+    }
+    if (whole == 0 || whole == header.records) return;
+    header.records_cut_off = header.records - whole;
+    header.records = header.dimensions[header.record_dimension] = whole;
+    for (auto& [name, variable] : header.variables)
+        if (variable.is_record) variable.dimensions.front() = whole;
 }
 
 class NetcdfClassic final : public NetcdfFile {
@@ -267,6 +283,8 @@ public:
             return std::optional(static_cast<double>(big_endian_value<T>(found->bytes.data())));
         });
     }
+
+    std::uint64_t records_cut_off() const override { return header_.records_cut_off; }
 
 private:
     const NetcdfVariable* variable(const std::string& name) const {
@@ -334,6 +352,7 @@ Result<std::unique_ptr<NetcdfFile>> open_netcdf_classic(const std::string& path)
     if (!file) return file.error();
     auto header = read_netcdf_header(*file);
     if (!header) return in_file(path, header.error());
+    if (*header) drop_records_cut_off(**header, file->size());
     const auto needed = *header ? needed_length(**header) : std::nullopt;
     if (!needed) return broken(path, "its netCDF header is broken or cut short");
     if (*needed > file->size())

@@ -20,7 +20,7 @@ namespace isotet::io::confined {
 /// Threads   one call at a time; rows() is safe from many threads
 class NetcdfFile {
 public:
-    /// Errors   invalid_data: no such file, a header that is broken, a file that is shorter than its header says
+    /// Errors   invalid_data: no such file, a header that is broken, a file that ends before its first whole record
     static Result<std::unique_ptr<NetcdfFile>> open(const std::string& path);
     NetcdfFile() = default;
     NetcdfFile(const NetcdfFile&) = delete;
@@ -40,6 +40,9 @@ public:
     /// Of a variable, or of the file where it is empty. Nothing where there is none of that kind.
     virtual std::optional<std::string> text_attribute(const std::string& variable, const char* name) const = 0;
     virtual std::optional<double> number_attribute(const std::string& variable, const char* name) const = 0;
+
+    /// The last ones of the unlimited dimension, which the file ends before: dimensions and variables lack them.
+    virtual std::uint64_t records_cut_off() const { return 0; }
 
     bool has(const std::string& variable) const { return shape(variable).has_value(); }
     /// All values of a variable, as int32, int64, float or double; nothing where they cannot be read.
