@@ -284,6 +284,7 @@ Result<CellsAround> CellsAround::of(const Grid& active, const PointField& field,
         data->reader = core::PointReader(data->points);
         data->marked.assign(points, 0);
         data->cut.assign(points, 0);
+        data->ends = faces->size() > 0;
         std::optional<linear::Box> box;
         std::vector<core::Point> middles;
         for (std::size_t i = 0; i < faces->size(); ++i) {
@@ -295,9 +296,7 @@ Result<CellsAround> CellsAround::of(const Grid& active, const PointField& field,
             for (const std::uint64_t point : loop) data->cut[point] = 1;
             middles.push_back(linear::middle_of(loop, data->reader));
         }
-        // Where none is cut the surface neither has an edge here nor goes on in a larger cell.
-        data->ends = !middles.empty();
-        if (data->ends) data->middles.emplace(middles);
+        if (!middles.empty()) data->middles.emplace(middles);
         return CellsAround(std::move(data));
     });
 }
