@@ -316,45 +316,14 @@ private:
     std::unique_ptr<Data> data_;
 };
 
-/// Whether cells have hanging points, of a grid of which only those that isovalues cut were kept (active_cells.hpp): by
-/// the cells around them, for which all cells go by once more.
+/// Whether the surfaces of isovalues may end at hanging points, by places: a face that they cut, and that no other cell
+/// has, lies on a larger one. For grids of which only the cells that the isovalues cut are there (active_cells.hpp):
+/// their other faces have lost their neighbours. True of thin grids, too; false where only the smaller cells are cut.
 ///
-///     auto around = CellsAround::of(active, field, isovalues);
-///     if (around->are_needed()) for (each piece of the cells) around->add(types, corners);
-///     if (*around->may_have_hanging_points()) ... // extraction needs the whole grid, closed
-///
-/// Memory    two bytes a point, and the cells around: of smooth fields some of a hundred
-/// Threads   add() is safe from many threads
-class ISOTET_API CellsAround {
-public:
-    /// `active`   all points, and the cells that were kept
-    /// `field`    one scalar a point
-    ///
-    /// Cost     two passes over these cells, 8 to 16 bytes each
-    /// Errors   invalid_argument when the field does not fit; else as close_hanging_points()
-    static Result<CellsAround> of(const Grid& active, const PointField& field, std::span<const double> isovalues,
-                                  const Run& run = {});
-
-    /// False where each face of each cut cell has its neighbour: nothing hangs on these.
-    bool are_needed() const;
-
-    /// Whole linear cells, of VTK's types, and their corners one after another. All calls together have each cell once,
-    /// in any order; points that the grid does not have are passed over.
-    void add(std::span<const std::uint8_t> types, const Array& corners);
-
-    /// When all were added; they are gone then. True where a face at these cells lies on a larger one, so also where
-    /// only a cell beside them has hanging points, or smaller faces do not cover the larger one.
-    /// Errors   out_of_memory; cancelled
-    Result<bool> may_have_hanging_points(const Run& run = {});
-
-    CellsAround(CellsAround&&) noexcept;
-    CellsAround& operator=(CellsAround&&) noexcept;
-    ~CellsAround();
-
-private:
-    struct Data;
-    explicit CellsAround(std::unique_ptr<Data> data);
-    std::unique_ptr<Data> data_;
-};
+/// `field`  one scalar a point
+/// Cost     two passes over the cells, and the places of faces at which the surfaces end
+/// Errors   invalid_argument when the field does not fit; else as close_hanging_points()
+ISOTET_API Result<bool> may_have_hanging_points(const Grid& active, const PointField& field,
+                                                std::span<const double> isovalues, const Run& run = {});
 
 } // namespace isotet

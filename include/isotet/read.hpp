@@ -83,7 +83,6 @@ struct ReadActiveCells {
     DirectOptions options; ///< of the extraction; the point fields that are read count as carried ones
     std::optional<SliceShape> shape = {}; ///< slice_field() in place of `field`
     bool bounds = false;                  ///< ReadResult::bounds are wanted
-    bool all_at_hanging_points = false;   ///< all cells are read where active ones may have some (linear_cells.hpp)
 };
 
 /// Where inspect() leaves a file that it had to read whole, so that read() need not read it again. Nothing of it is left

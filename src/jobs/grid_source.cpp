@@ -601,10 +601,26 @@ Result<ReadResult> GridSource::read_active(const FieldsToRead& fields, std::size
     }
     ReadOptions options = read_options_;
     options.active_cells = active;
-    options.active_cells->all_at_hanging_points =
-        options_.hanging_points == HangingChoice::close || options_.hanging_points == HangingChoice::interpolate;
     Result<ReadResult> result = read_file(fields, step, std::move(options), caller.run());
     if (!result) return result;
+    const bool closes =
+        options_.hanging_points == HangingChoice::close || options_.hanging_points == HangingChoice::interpolate;
+    if (result->cells_in_file && closes) {
+        const Grid& cut = result->grid;
+        const auto field = active.shape ? slice_field(cut.points, *active.shape, caller.run())
+                                        : find_field(cut, active.field, {}, caller.run());
+        if (!field) return field.error();
+        const Result<bool> hanging = may_have_hanging_points(cut, *field, active.isovalues, caller.run());
+        if (!hanging) return hanging.error();
+        if (*hanging) {
+            caller.detail("cells may have hanging points: all are read");
+            Result<Grid> grid = read(fields, step, caller);
+            if (!grid) return grid.error();
+            ReadResult whole;
+            whole.grid = *std::move(grid);
+            return whole;
+        }
+    }
     caller.notes(result->notes);
     if (result->cells_in_file) return result;
     caller.note(coincident_points_note(result->grid));

@@ -1,12 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Grids with hanging points through the jobs: closed by default, also where only some cells are read.
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <random>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -20,7 +14,6 @@
 #include <isotet/write.hpp>
 
 #include "jobs/listener.hpp"
-#include "pieces/partition.hpp"
 #include "support/quadratic_grid.hpp"
 #include "support/small_grid.hpp"
 #include "support/places.hpp"
@@ -68,118 +61,6 @@ TEST(HangingPointJobs, CloseWhatIsReadWholeAndWhatIsReadInPart) {
             EXPECT_EQ(has_note(heard, "they have those of the larger cells"), choice == HangingChoice::interpolate);
             EXPECT_EQ(has_note(heard, "they have their own"), choice == HangingChoice::close);
         }
-}
-
-/// "noise": whole numbers at random, "bumps": 0 but at some hanging points, of which the larger cells' corners tell nothing,
-/// "missing": the same, and some of these have no value.
-Grid with_rough_fields(Grid grid, unsigned seed) {
-    std::mt19937 random(seed);
-    const std::size_t points = grid.points.tuples();
-    std::vector<float> noise(points), bumps(points), missing(points);
-    for (float& value : noise) value = static_cast<float>(random() % 4);
-    const Array hanging = close_hanging_points(grid).value().points;
-    for (std::size_t i = 0; i < hanging.size(); ++i) {
-        const auto point = static_cast<std::size_t>(hanging.at(i));
-        if (random() % 10 == 0) bumps[point] = static_cast<float>(1 + random() % 2);
-        missing[point] = random() % 20 == 0 ? NAN : bumps[point];
-    }
-    grid.cell_fields.clear();
-    grid.point_fields = {{"noise", Array::own(std::move(noise))},
-                         {"bumps", Array::own(std::move(bumps))},
-                         {"missing", Array::own(std::move(missing))}};
-    return grid;
-}
-
-/// The surface of a file of which only active cells are read where they do, against that of all cells.
-void expect_same_file(const std::string& file, const test::TemporaryFolder& folder, const std::string& field,
-                      double isovalue, HangingChoice choice) {
-    SCOPED_TRACE(testing::Message() << field << " " << isovalue);
-    ExtractJob job = job_for(file, folder.file("active.vtp"), choice);
-    job.field.name = field;
-    job.isovalues = {isovalue};
-    job.allow_empty = true;
-    test::Listener heard;
-    ASSERT_TRUE(extract_files(job, heard));
-    const std::string active = test::content_of(job.out);
-    job.engine = EngineChoice::reference; // reads all cells
-    ASSERT_TRUE(extract_files(job, heard));
-    EXPECT_TRUE(active == test::content_of(job.out));
-}
-
-void expect_same_files(const std::string& file, const test::TemporaryFolder& folder) {
-    for (const auto& [field, isovalue] : {std::pair{"noise", 1.5},
-                                          {"noise", 3.0},
-                                          {"bumps", 0.5},
-                                          {"bumps", 1.0},
-                                          {"bumps", 2.0},
-                                          {"missing", 0.5},
-                                          {"missing", 1.0}})
-        for (const HangingChoice choice : {HangingChoice::close, HangingChoice::interpolate})
-            expect_same_file(file, folder, field, isovalue, choice);
-}
-
-TEST(HangingPointJobs, GiveTheSameFilesFromActiveCellsAsFromAll) {
-    const test::TemporaryFolder folder;
-    const std::string file = folder.file("grid.vtu");
-    for (const char* shape : {"octree", "octree-random", "octree-bent", "octree-tets"})
-        for (const unsigned seed : {1U, 2U, 3U}) {
-            SCOPED_TRACE(testing::Message() << shape << ", seed " << seed);
-            ASSERT_TRUE(write_grid(with_rough_fields(test::made_grid(shape, 3, {}, seed), seed), file));
-            expect_same_files(file, folder);
-        }
-}
-
-TEST(HangingPointJobs, GiveTheSameFilesFromActiveCellsOfPiecesAsFromAll) {
-    const test::TemporaryFolder folder;
-    for (const char* shape : {"octree-random", "octree-tets"}) {
-        SCOPED_TRACE(shape);
-        const Grid grid = with_rough_fields(test::made_grid(shape, 3, {}), 1);
-        std::string index = "<VTKFile type=\"PUnstructuredGrid\"><PUnstructuredGrid GhostLevel=\"0\">\n";
-        int number = 0;
-        for (const test::GridPiece& piece : test::partition(grid, test::point_field(grid), 3, 1)) {
-            Grid part = piece.grid;
-            part.point_fields.clear();
-            for (const Field& field : grid.point_fields)
-                part.point_fields.push_back({field.name, test::taken(field.values, piece.points)});
-            part.point_numbers = {};
-            const std::string name = "piece-" + std::to_string(number++) + ".vtu";
-            ASSERT_TRUE(write_grid(part, folder.file(name)));
-            index += "<Piece Source=\"" + name + "\"/>\n";
-        }
-        expect_same_files(folder.write("a.pvtu", index + "</PUnstructuredGrid></VTKFile>\n"), folder);
-    }
-}
-
-TEST(HangingPointJobs, ReadAllCellsOnlyWhereActiveOnesMayHaveHangingPoints) {
-    const test::TemporaryFolder folder;
-    const std::string file = folder.file("grid.vtu");
-    const Grid octree = test::made_grid("octree", 10, {});
-    int whole = 0, part = 0;
-    for (unsigned seed = 1; seed <= 12; ++seed) { // small spheres, some of them away from levels
-        SCOPED_TRACE(seed);
-        std::mt19937 random(seed);
-        std::array<double, 3> centre;
-        for (double& x : centre) x = 2 * std::generate_canonical<double, 32>(random) - 1;
-        std::vector<float> distance;
-        for (std::size_t i = 0; i < octree.points.tuples(); ++i) {
-            double sum = 0;
-            for (std::size_t axis = 0; axis < 3; ++axis) sum += std::abs(octree.points.at(i, axis) - centre[axis]);
-            distance.push_back(static_cast<float>(sum));
-        }
-        Grid grid = octree;
-        grid.cell_fields.clear();
-        grid.point_fields = {{"distance", Array::own(std::move(distance))}};
-        ASSERT_TRUE(write_grid(grid, file));
-        ReadOptions options;
-        options.cell_fields = std::vector<std::string>{};
-        options.active_cells = ReadActiveCells{"distance", {0.3}, {}};
-        EXPECT_TRUE(read(file, options).value().cells_in_file);
-        options.active_cells->all_at_hanging_points = true;
-        ++(read(file, options).value().cells_in_file ? part : whole);
-        expect_same_file(file, folder, "distance", 0.3, HangingChoice::close);
-    }
-    EXPECT_GT(whole, 2);
-    EXPECT_GT(part, 0);
 }
 
 /// Each cell with points of its own, as deal.II, MFEM and t8code write VTK's files.

@@ -11,7 +11,7 @@
 namespace isotet::io::confined {
 namespace {
 
-constexpr std::uint32_t request_version = 0x69730008;
+constexpr std::uint32_t request_version = 0x69730007;
 
 using Names = std::optional<std::vector<std::string>>;
 
@@ -76,7 +76,6 @@ void encode_active(Encoder& out, const std::optional<ReadActiveCells>& active) {
     out.number<std::uint8_t>(active->options.extract.ties == Ties::keep);
     out.number<std::uint8_t>(active->options.precision == Precision::float64);
     out.number<std::uint8_t>(active->bounds);
-    out.number<std::uint8_t>(active->all_at_hanging_points);
     encode_shape(out, active->shape);
 }
 
@@ -88,7 +87,6 @@ std::optional<ReadActiveCells> decode_active(Decoder& in) {
     if (in.number<std::uint8_t>() != 0) active.options.extract.ties = Ties::keep;
     if (in.number<std::uint8_t>() != 0) active.options.precision = Precision::float64;
     active.bounds = in.number<std::uint8_t>() != 0;
-    active.all_at_hanging_points = in.number<std::uint8_t>() != 0;
     active.shape = decode_shape(in);
     return active;
 }
