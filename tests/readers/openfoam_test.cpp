@@ -380,6 +380,29 @@ TEST_F(DecomposedCase, IsReadWhereItHasLaterTimes) {
     EXPECT_EQ(field_of(read_whole(folder_.file("")).cell_fields, "T").at(0), 42) << "the case's own is as complete";
 }
 
+TEST_F(DecomposedCase, HasNoDataWhereAProcessorLacksAField) {
+    for (const int lacking : {0, 2}) {
+        const TemporaryFolder folder;
+        write_case(folder, foam_case(box_, wave, {}, 3));
+        ReadOptions options = last_step();
+        const auto whole = read(folder.file(""), options).value().grid;
+        const std::string part = "processor" + std::to_string(lacking);
+        ASSERT_TRUE(std::filesystem::remove(folder.file(part + "/0.5/T")));
+        options.cell_fields = {"T"};
+        const ReadResult result = read(folder.file(""), options).value();
+        EXPECT_EQ(result.notes.size(), 1u);
+        EXPECT_EQ(result.notes.at(0), part + " has no T at this time: there is no data");
+        const Array &values = field_of(result.grid.cell_fields, "T"), &before = field_of(whole.cell_fields, "T");
+        std::size_t missing = 0;
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            missing += std::isnan(values.at(i));
+            EXPECT_TRUE(std::isnan(values.at(i)) || values.at(i) == before.at(i)) << i;
+        }
+        EXPECT_GT(missing, 0u);
+        EXPECT_LT(missing, values.size() / 2);
+    }
+}
+
 TEST_F(DecomposedCase, AMissingProcessorIsAnError) {
     write_case(folder_, foam_case(box_, wave, {}, 3));
     std::filesystem::remove_all(folder_.file("processor1"));

@@ -62,6 +62,7 @@ public:
         for (const Part& part : whole_.parts)
             if (auto added = add(part); !added) return added.error();
         CaseField out;
+        out.lacking = std::move(lacking_);
         out.unread = std::move(unread_);
         out.misfits = std::move(misfits_);
         if (of_points_) {
@@ -76,9 +77,16 @@ public:
 private:
     Result<void> add(const Part& part) {
         const std::string name = part.prefix + request_.folder + request_.name;
+        const auto first = std::ranges::find_if(whole_.parts, [&](const Part& one) {
+            return files_.has(one.prefix + request_.folder + request_.name);
+        });
+        if (first != whole_.parts.end() && !files_.has(name)) { // as where a run was stopped while it wrote
+            lacking_.push_back(part.prefix.substr(0, part.prefix.find('/')));
+            return {};
+        }
         auto file = read_field_file(files_, name, std::max(part.cells, part.points), request_.allow_outside);
         if (!file) return file.error();
-        if (&part == &whole_.parts.front()) {
+        if (type_.empty()) {
             components_ = file->components;
             of_points_ = file->header.type.starts_with("point");
             type_ = file->header.type;
@@ -198,6 +206,7 @@ private:
     std::string type_;
     std::size_t components_ = 1;
     bool of_points_ = false, single_ = true;
+    std::vector<std::string> lacking_;
     std::set<std::string> unread_, misfits_;
     std::vector<double> values_;
     std::vector<std::pair<const Patch*, Values>> patches_;

@@ -4,6 +4,7 @@
 
 #include <set>
 #include <string>
+#include <vector>
 
 #include <isotet/grid.hpp>
 #include <isotet/result.hpp>
@@ -23,6 +24,7 @@ struct FieldRequest {
 /// What was read; an array is empty where it was not asked for.
 struct CaseField {
     Array cells, points;
+    std::vector<std::string> lacking; ///< parts that do not have it, where there is no data
     std::set<std::string> unread; ///< files of an OpenFOAM installation that its files include
     std::set<std::string> misfits; ///< values of patches that do not fit and are not used: what is wrong with them
 };

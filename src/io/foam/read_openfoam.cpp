@@ -241,6 +241,10 @@ Result<void> read_fields(const CaseFiles& files, const CaseLayout& layout, const
         }
         if (points) piece.grid.point_fields.push_back({field.name, std::move(read->points)});
         if (cells) piece.grid.cell_fields.push_back({field.name, std::move(read->cells)});
+        if (!read->lacking.empty())
+            loaded.notes.push_back(fmt::format("{} {} no {} at this time: there is no data",
+                                               fmt::join(read->lacking, ", "),
+                                               read->lacking.size() > 1 ? "have" : "has", escaped(field.name)));
         for (const std::string& wrong : read->misfits) loaded.notes.push_back(wrong + ": it is not used");
         for (const std::string& file : read->unread) fields_including[file].push_back(escaped(field.name));
     }
