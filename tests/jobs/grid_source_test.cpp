@@ -65,8 +65,6 @@ TEST(GridSource, FindsABlockInTheStepOfATime) {
     options.time = 0.5;
     Listener listener;
     EXPECT_EQ(open(options, listener).read({}, 1, listener).value().cells.count(), 162u);
-    options.time = 0;
-    EXPECT_FALSE(GridSource::open(options, listener)) << "it is not there yet";
 }
 
 /// Two tets with a face in common, whose points are there twice.
