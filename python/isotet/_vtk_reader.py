@@ -43,7 +43,8 @@ class IsotetReader(VTKPythonAlgorithmBase):
         self._opened: tuple[Any, ...] = ()
         self._file: _isotet.PackedFile | None = None
         self._times: list[float] = []
-        self._cells: vtkUnstructuredGrid | None = None  # with points, without arrays: of all steps
+        self._cells: vtkUnstructuredGrid | None = None  # with points, without arrays: of steps from `_moved` on
+        self._moved = 0
         self._arrays = vtkDataArraySelection()
         mine = weakref.ref(self)
         self._arrays.AddObserver("ModifiedEvent", lambda *_: mine() and mine().Modified())
@@ -116,9 +117,11 @@ class IsotetReader(VTKPythonAlgorithmBase):
 
     def _read(self, step: int, out) -> None:
         call = call_options(self._threads, lambda _, fraction: self.UpdateProgress(fraction))
-        fields = self._file.info()["fields"]
-        if self._cells is None:
-            packed = self._file.grid(fields[0]["name"], fields[0]["step"], call)
+        info = self._file.info()
+        fields = [field for field in info["fields"] if field["step"] == step]
+        moved = max((points["step"] for points in info["moved_points"] if points["step"] <= step), default=0)
+        if self._cells is None or moved != self._moved:
+            packed, self._moved = self._file.grid(fields[0]["name"], step, 0, call), moved
             grid = Grid._of(packed.unpack(call))
             self._cells = fill_unstructured(vtkUnstructuredGrid(), grid)
             for name in grid.fields:
@@ -126,9 +129,9 @@ class IsotetReader(VTKPythonAlgorithmBase):
         out.ShallowCopy(self._cells)
         for field in fields:
             name = field["name"]
-            if field["step"] != step or not self._arrays.ArrayIsEnabled(name):
+            if not self._arrays.ArrayIsEnabled(name):
                 continue
-            array = numpy_to_vtk(self._file.grid(name, step, call).unpack_field(call), deep=True)
+            array = numpy_to_vtk(self._file.grid(name, step, 0, call).unpack_field(call), deep=True)
             array.SetName(name)
             out.GetPointData().AddArray(array)
             if out.GetPointData().GetScalars() is None:

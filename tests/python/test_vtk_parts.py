@@ -1,6 +1,8 @@
 # Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 """Slices, solids, clips and packed files in pipelines of VTK's."""
 
+import subprocess
+
 import numpy as np
 import pytest
 import pyvista as pv
@@ -95,6 +97,19 @@ def test_they_say_why_there_is_nothing():
     assert "a Solid was asked for" in errors_of(IsotetSolid(input_data=pv.ImageData(dimensions=(3, 3, 3)).elevation()))[0]
     with pytest.raises(ValueError, match="one of above, below, between"):
         IsotetSolid(side="left")
+
+
+def test_points_of_a_packed_file_move_with_its_steps(tmp_path, program):
+    grid = isotet.make("hex", 4, ["sphere"])
+    packed = tmp_path / "run.isotet"
+    for step in range(2):
+        path = tmp_path / f"{step}.vtu"
+        isotet.Grid(grid.points * (1 + step), grid.cells, offsets=grid.offsets, types=grid.types, fields=grid.fields).write(path)
+        subprocess.run([program, "pack", path, packed, "-q", *["--append"][:step]], check=True)
+    reader = IsotetReader(file_name=packed)
+    for time, side in ((0, 2), (1, 4), (0, 2)):
+        reader.UpdateTimeStep(time)
+        assert pv.wrap(reader.GetOutput()).bounds[1] - pv.wrap(reader.GetOutput()).bounds[0] == pytest.approx(side)
 
 
 def test_packed_files_are_read_with_their_steps(tmp_path):
