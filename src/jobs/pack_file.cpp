@@ -378,8 +378,10 @@ Result<void> PackRun::pack_step(std::size_t step) {
         Result<void> written = write(*packed, step, is_first);
         if (!written && may_have_moved && written.error().code == ErrorCode::invalid_argument) {
             auto again = packed_as_in_file(*grid, *field, step);
-            if (again && *again) packed = **std::move(again);
-            if (again) written = write(*packed, step, is_first);
+            if (again) {
+                if (*again) packed = *std::move(*again);
+                written = write(*packed, step, is_first);
+            }
         }
         if (!written) return written;
         numbers_.fields.push_back(packed->field());
