@@ -26,7 +26,7 @@ ISOTET_API Block take_block(std::size_t bytes);
 ISOTET_API void give_back(Block block) noexcept;
 
 /// Gives what is kept to the system; returns how many bytes that were.
-std::size_t drop_kept_blocks() noexcept;
+ISOTET_API std::size_t drop_kept_blocks() noexcept;
 
 /// Smaller blocks come from the ordinary heap. (The heap gives a megabyte that becomes free at its end back to the
 /// system, and every small surface would touch its pages anew.)
@@ -34,6 +34,6 @@ constexpr std::size_t large_block = std::size_t{256} << 10;
 
 /// Maps memory, in huge pages where there are some, from which the next large blocks are taken. A wish: nothing happens
 /// where there is no room. What is not taken costs address space only.
-void prepare_blocks(std::size_t bytes) noexcept;
+ISOTET_API void prepare_blocks(std::size_t bytes) noexcept;
 
 } // namespace isotet::core
