@@ -97,4 +97,18 @@ ISOTET_API Result<ExpressionNeeds> needs_of_expression(std::string_view text, co
 /// Whether a text has what names of fields do not: operators, brackets or backquotes.
 ISOTET_API bool looks_like_expression(std::string_view text) noexcept;
 
+/// The arrays of a file that a field of find_field() is made of.
+struct FieldArrays {
+    std::vector<std::string> point, cell; ///< none of a coordinate. Both may have a field of the name
+    bool neighbours = false;              ///< as ExpressionNeeds
+    bool is_expression = false;           ///< which needs all of them, each as a point field or as a cell field
+};
+
+/// Finds them by name, before anything is read.
+///
+/// `point`, `cell`   names of the fields that there are
+/// Errors            as needs_of_expression(); invalid_argument: no field has the name, and those that there are, nearest first
+ISOTET_API Result<FieldArrays> arrays_of_field(const std::string& name, const std::vector<std::string>& point,
+                                               const std::vector<std::string>& cell);
+
 } // namespace isotet

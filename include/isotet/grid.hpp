@@ -2,9 +2,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,6 +26,25 @@ enum class CellType : std::uint8_t { tetrahedron = 10, voxel = 11, hexahedron = 
 
 /// "tetrahedron", "quadratic tetrahedron", "polygon" and so on for any of VTK's numbers; "cell type 97" otherwise.
 ISOTET_API std::string name_of_cell_type(std::uint8_t vtk_type);
+
+/// Scalars that lie `stride` bytes apart: a member of structs, or an array of its own (stride: the scalar's size).
+struct StridedScalars {
+    ScalarType type = ScalarType::float32;
+    const void* first = nullptr;
+    std::ptrdiff_t stride = 0; ///< of any size and sign; 0: one scalar for all rows
+
+    template <class T>
+    static StridedScalars of(const T* first, std::ptrdiff_t stride = sizeof(T)) {
+        return {scalar_type_of<T>(), first, stride};
+    }
+};
+
+/// An array of what does not lie one behind another: points of structs, or x, y and z apart. Its memory is its own.
+///
+/// `columns`   one a component, of one type
+/// Cost        a copy, by all threads
+/// Errors      invalid_argument: no columns, of several types, null; out_of_memory; cancelled
+ISOTET_API Result<Array> interleave(std::span<const StridedScalars> columns, std::size_t rows, const Run& run = {});
 
 /// The cells of a grid: corners of all cells one after another, and where each cell's corners start.
 ///

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -75,6 +76,14 @@ ISOTET_API Result<Array> vertex_normals(const Surface& surface, const Run& run =
 /// Cost         O(F)
 /// Errors       invalid_data when a triangle has a vertex that is not there; out_of_memory
 ISOTET_API Result<Array> face_normals(const Surface& surface, const Run& run = {});
+
+/// Writes positions for a renderer: float32, relative to an origin near them, so that places far from zero stay apart.
+///
+/// `out`      of the caller, 3 a vertex; written once, never read: mapped memory of a device
+/// Cost       a pass over the positions
+/// Errors     invalid_argument: `out` has another size, the origin is not finite; cancelled
+ISOTET_API Result<void> write_positions(const Surface& surface, const std::array<double, 3>& origin,
+                                        std::span<float> out, const Run& run = {});
 
 /// Area of all triangles, summed in double in a fixed order; NaN when check() would call the surface invalid.
 ISOTET_API double area(const Surface& surface);

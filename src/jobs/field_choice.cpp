@@ -38,15 +38,9 @@ std::vector<std::string> arrays_of(const std::string& name, const std::vector<st
 
 /// The fields to read for an expression.
 Result<FoundField> find_expression(const GridSource& source, const std::string& text) {
-    const auto needs = needs_of_expression(text, all_names(source));
-    if (!needs) return needs.error();
-    FoundField found{text, {}, {}, needs->neighbours, true};
-    const std::vector<std::string> point = source.names(Association::point), cell = source.names(Association::cell);
-    for (const std::string& field : needs->fields) {
-        if (has(point, field)) found.point.push_back(field);
-        if (has(cell, field)) found.cell.push_back(field);
-    }
-    return found;
+    const auto arrays = arrays_of_field(text, source.names(Association::point), source.names(Association::cell));
+    if (!arrays) return arrays.error();
+    return FoundField{text, arrays->point, arrays->cell, arrays->neighbours, true};
 }
 
 /// The first comma that is in no brackets.
