@@ -1,0 +1,246 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/grid_file.hpp>
+
+#include <algorithm>
+#include <utility>
+
+#include <isotet/fields.hpp>
+#include <isotet/linear_cells.hpp>
+#include <isotet/packed_file.hpp>
+
+namespace isotet {
+
+struct GridFile::Data {
+    std::string path;
+    ReadOptions options;
+    FileInfo info;
+
+    Result<FieldArrays> arrays_of(const std::vector<std::string>& names, std::size_t step, const Run& run) const;
+    ReadOptions options_for(std::size_t step, const std::optional<FieldArrays>& fields) const;
+    Result<ReadResult> read_all(const ReadOptions& wanted, bool close_too, const Run& run) const;
+    Result<ReadResult> read_enough(const ReadOptions& wanted, bool close_too, const Run& run) const;
+};
+
+namespace {
+
+struct FieldNames {
+    std::vector<std::string> point, cell;
+};
+
+FieldNames names_of(const FileInfo& info) {
+    FieldNames names;
+    for (const FieldInfo& field : info.fields)
+        (field.association == Association::point ? names.point : names.cell).push_back(field.name);
+    return names;
+}
+
+void add(std::vector<std::string>& names, const std::vector<std::string>& more) {
+    for (const std::string& name : more)
+        if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+}
+
+/// What surfaces carry of a grid that was read.
+Result<void> carry(const std::vector<std::string>& names, const Grid& grid, ContourInput& input, const Run& run) {
+    for (const std::string& name : names) {
+        const auto add_of = [&](const std::vector<Field>& from, std::vector<Field>& to) {
+            const auto at = std::ranges::find(from, name, &Field::name);
+            if (at == from.end()) return false;
+            to.push_back(*at);
+            return true;
+        };
+        if (add_of(grid.point_fields, input.point_fields) || add_of(grid.cell_fields, input.cell_fields)) continue;
+        Result<PointField> computed = find_field(grid, name, {}, run);
+        if (!computed) return computed.error();
+        input.point_fields.push_back({name, std::move(computed->values)});
+    }
+    return {};
+}
+
+Result<ContourInput> input_of(const Grid& grid, const std::string& field, const FileContourOptions& options,
+                              std::vector<std::string>& notes, const Run& run) {
+    Result<PointField> found = find_field(grid, field, {}, run);
+    if (!found) return found.error();
+    if (!found->note.empty()) notes.push_back(found->note);
+    ContourInput input{grid, *std::move(found), {}, {}};
+    if (auto carried = carry(options.with, grid, input, run); !carried) return carried.error();
+    return input;
+}
+
+/// What to read where the cells that the isovalues meet do; nothing: all are needed.
+std::optional<ReadActiveCells> active_cells(const FieldArrays& arrays, const std::string& field,
+                                            const ContourOptions& options) {
+    if (!arrays.cell.empty() || arrays.neighbours || !Contour::can_do_with_active_cells(options)) return std::nullopt;
+    ReadActiveCells active{field, options.expected_isovalues, {}};
+    active.options.precision = options.precision;
+    active.options.extract.ties = options.ties;
+    return active;
+}
+
+/// A session on the chunks of a packed file; nothing where it asks for what the file does not have as it is.
+Result<std::optional<Contour>> session_of_packed(const std::string& path, const std::string& field,
+                                                 const FileContourOptions& options, const Run& run) {
+    const Result<PackedFile> file = PackedFile::open(path, {}, run);
+    if (!file) return file.error();
+    const auto has = [&](const std::string& name) {
+        return std::ranges::any_of(file->info().fields, [&](const PackedFieldInfo& one) {
+            return one.step == options.step && (one.report.name == name || name.empty());
+        });
+    };
+    if (!has(field) || !std::ranges::all_of(options.with, has)) return std::optional<Contour>{};
+    ContourInput input;
+    Result<PackedGrid> grid = file->grid(field, options.step, run);
+    if (!grid) return grid.error();
+    input.packed = *std::move(grid);
+    for (const std::string& name : options.with) {
+        Result<PackedGrid> carried = file->grid(name, options.step, run);
+        if (!carried) return carried.error();
+        input.packed_fields.push_back(*std::move(carried));
+    }
+    Result<Contour> contour = Contour::create(std::move(input), options.contour, run);
+    if (contour) return std::optional(*std::move(contour));
+    if (contour.error().code != ErrorCode::invalid_argument) return contour.error();
+    return std::optional<Contour>{};
+}
+
+Result<void> close(Grid& grid, std::vector<std::string>& notes, const Run& run) {
+    Result<ClosedGrid> closed = close_hanging_points(grid, run);
+    if (!closed) return closed.error();
+    grid = std::move(closed->grid);
+    for (std::string& note : closed->report.notes()) notes.push_back(std::move(note));
+    return {};
+}
+
+} // namespace
+
+Result<FieldArrays> GridFile::Data::arrays_of(const std::vector<std::string>& names, std::size_t step,
+                                              const Run& run) const {
+    FieldNames there = names_of(info);
+    if (step > 0 && info.times.size() > 1) {
+        ReadOptions of_step = options;
+        of_step.step = step;
+        const Result<FileInfo> looked = inspect(path, of_step, run);
+        if (!looked) return looked.error();
+        there = names_of(*looked);
+    }
+    FieldArrays all;
+    for (const std::string& name : names) {
+        if (name.empty()) { // the only one there is
+            add(all.point, there.point);
+            add(all.cell, there.cell);
+            continue;
+        }
+        const Result<FieldArrays> one = arrays_of_field(name, there.point, there.cell);
+        if (!one) return one;
+        add(all.point, one->point);
+        add(all.cell, one->cell);
+        all.neighbours = all.neighbours || one->neighbours;
+    }
+    return all;
+}
+
+ReadOptions GridFile::Data::options_for(std::size_t step, const std::optional<FieldArrays>& fields) const {
+    ReadOptions wanted = options;
+    if (!info.times.empty() || step > 0) wanted.step = step; // else the reader's own choice
+    if (!fields) return wanted;
+    wanted.point_fields = fields->point;
+    wanted.cell_fields = fields->cell;
+    return wanted;
+}
+
+GridFile::GridFile(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
+
+Result<GridFile> GridFile::open(const std::string& path, ReadOptions options, const Run& run) {
+    options.point_fields.reset();
+    options.cell_fields.reset();
+    options.step.reset();
+    options.active_cells.reset();
+    if (!options.kept) options.kept = keep_files();
+    Result<FileInfo> info = inspect(path, options, run);
+    if (!info) return info.error();
+    return GridFile(std::make_shared<const Data>(Data{path, std::move(options), *std::move(info)}));
+}
+
+const FileInfo& GridFile::info() const noexcept { return data_->info; }
+
+Result<ReadResult> GridFile::read(std::size_t step, const std::optional<std::vector<std::string>>& fields,
+                                  const Run& run) const {
+    std::optional<FieldArrays> arrays;
+    if (fields) {
+        Result<FieldArrays> found = data_->arrays_of(*fields, step, run);
+        if (!found) return found.error();
+        arrays = *std::move(found);
+    }
+    return isotet::read(data_->path, data_->options_for(step, arrays), run);
+}
+
+/// What `wanted` says, closed; only its active cells where the file lets that be, and no point may hang.
+Result<ReadResult> GridFile::Data::read_enough(const ReadOptions& wanted, bool close_too, const Run& run) const {
+    if (!wanted.active_cells) return read_all(wanted, close_too, run);
+    Result<ReadResult> result = isotet::read(path, wanted, run);
+    if (!result || !close_too) return result;
+    if (result->cells_in_file) {
+        const auto field = find_field(result->grid, wanted.active_cells->field, {}, run);
+        if (!field) return field.error();
+        const Result<bool> hanging = may_have_hanging_points(result->grid, *field, wanted.active_cells->isovalues, run);
+        if (!hanging) return hanging.error();
+        if (!*hanging) return result;
+        *result = {};
+        ReadOptions all = wanted;
+        all.active_cells.reset();
+        return read_all(all, close_too, run);
+    }
+    if (auto closed = close(result->grid, result->notes, run); !closed) return closed.error();
+    return result;
+}
+
+Result<ReadResult> GridFile::Data::read_all(const ReadOptions& wanted, bool close_too, const Run& run) const {
+    Result<ReadResult> result = isotet::read(path, wanted, run);
+    if (!result || !close_too) return result;
+    if (auto closed = close(result->grid, result->notes, run); !closed) return closed.error();
+    return result;
+}
+
+Result<FileSession> GridFile::session(const std::string& field, const FileContourOptions& options,
+                                      const Run& run) const {
+    if (data_->info.format == "isotet") {
+        Result<std::optional<Contour>> packed = session_of_packed(data_->path, field, options, run);
+        if (!packed) return packed.error();
+        if (*packed) return FileSession{**std::move(packed), {}};
+    }
+    std::vector<std::string> names = options.with;
+    names.push_back(field);
+    const Result<FieldArrays> arrays = data_->arrays_of(names, options.step, run);
+    if (!arrays) return arrays.error();
+    ReadOptions wanted = data_->options_for(options.step, *arrays);
+    wanted.active_cells = active_cells(*arrays, field, options.contour);
+    Result<ReadResult> read = data_->read_enough(wanted, options.close_hanging_points, run);
+    if (!read) return read.error();
+    Result<ContourInput> input = input_of(read->grid, field, options, read->notes, run);
+    if (!input) return input.error();
+    if (read->cells_in_file) {
+        wanted.active_cells.reset();
+        input->all_cells = [data = data_, wanted, field, options](const Run& later) -> Result<ContourInput> {
+            Result<ReadResult> all = data->read_all(wanted, options.close_hanging_points, later);
+            if (!all) return all.error();
+            return input_of(all->grid, field, options, all->notes, later);
+        };
+    }
+    Result<Contour> contour = Contour::create(*std::move(input), options.contour, run);
+    if (!contour) return contour.error();
+    return FileSession{*std::move(contour), std::move(read->notes)};
+}
+
+Result<ContourResult> GridFile::contour(const std::string& field, std::span<const double> isovalues,
+                                        const FileContourOptions& options, const Run& run) const {
+    FileContourOptions once = options;
+    once.contour.expected_isovalues.assign(isovalues.begin(), isovalues.end());
+    if (once.contour.surfaces == 0) once.contour.surfaces = isovalues.size();
+    Result<FileSession> started = session(field, once, run);
+    if (!started) return started.error();
+    Result<ContourResult> result = started->contour.extract(isovalues, run);
+    if (!result) return result;
+    result->notes.insert(result->notes.begin(), started->notes.begin(), started->notes.end());
+    return result;
+}
+
+} // namespace isotet
