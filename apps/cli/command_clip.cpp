@@ -92,7 +92,9 @@ Result<ExitCode> run_clip(const ClipCommand& command) {
     job.clip.polyhedra = !command.no_polyhedra;
     const Result<ClipNumbers> done = clip_files(job, console);
     if (!done) return done.error();
-    return finish(console, command.common, clip_table(*done), clip_json(*done));
+    Json report = clip_json(*done);
+    const ExitCode status = say_broken_steps(done->broken_steps, report);
+    return finish(console, command.common, clip_table(*done), std::move(report), status);
 }
 
 } // namespace isotet::cli

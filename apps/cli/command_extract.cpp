@@ -20,7 +20,9 @@ Result<ExitCode> extract_each(const ExtractJob& job, const ExtractCommand& comma
     return do_each(*jobs, "extract", console, command.common, [&](const ExtractJob& one) -> Result<TableAndJson> {
         const Result<ExtractNumbers> done = extract_files(one, console);
         if (!done) return done.error();
-        return TableAndJson{extract_table(*done, command.common.verbose), extract_json("extract", *done)};
+        Json report = extract_json("extract", *done);
+        const ExitCode status = say_broken_steps(done->broken_steps, report);
+        return TableAndJson{extract_table(*done, command.common.verbose), std::move(report), status};
     });
 }
 
@@ -33,8 +35,9 @@ Result<ExitCode> run_extract(const ExtractCommand& command) {
     if (names_each_file(job)) return extract_each(job, command, console);
     const Result<ExtractNumbers> done = extract_files(job, console);
     if (!done) return done.error();
-    return finish(console, command.common, extract_table(*done, command.common.verbose),
-                  extract_json("extract", *done));
+    Json report = extract_json("extract", *done);
+    const ExitCode status = say_broken_steps(done->broken_steps, report);
+    return finish(console, command.common, extract_table(*done, command.common.verbose), std::move(report), status);
 }
 
 Result<ExitCode> run_slice(const SliceCommand& command) {
@@ -43,7 +46,9 @@ Result<ExitCode> run_slice(const SliceCommand& command) {
     job.other_outputs = {command.common.json};
     const Result<ExtractNumbers> done = slice_files(job, console);
     if (!done) return done.error();
-    return finish(console, command.common, extract_table(*done, command.common.verbose), extract_json("slice", *done));
+    Json report = extract_json("slice", *done);
+    const ExitCode status = say_broken_steps(done->broken_steps, report);
+    return finish(console, command.common, extract_table(*done, command.common.verbose), std::move(report), status);
 }
 
 } // namespace isotet::cli

@@ -17,6 +17,7 @@ namespace isotet::cli {
 struct TableAndJson {
     std::string table;
     Json json;
+    ExitCode status = ExitCode::done;
 };
 
 /// Calls `work` with each job, prints its table, and goes on after an error, which it says; a cancelled job ends all. The
@@ -36,6 +37,7 @@ Result<ExitCode> do_each(const std::vector<Job>& jobs, const std::string& comman
         if (done) {
             if (auto printed = console.print((i > 0 ? "\n" : "") + done->table); !printed) return printed.error();
             files.push_back(done->json);
+            worst = std::max(worst, done->status);
             continue;
         }
         if (done.error().code == ErrorCode::cancelled) return done.error();

@@ -1,6 +1,11 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "json_output.hpp"
 
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
 #include <isotet/write.hpp>
 
 #include "standard_streams.hpp"
@@ -35,6 +40,19 @@ Json json_texts(const std::vector<std::string>& texts) {
     Json list = Json::array();
     for (const std::string& text : texts) list.push_back(json_text(text));
     return list;
+}
+
+ExitCode say_broken_steps(const std::vector<BrokenStep>& broken, Json& report) {
+    if (broken.empty()) return ExitCode::done;
+    ExitCode worst = ExitCode::done;
+    Json list = Json::array();
+    for (const auto& [step, error] : broken) {
+        say_error(fmt::format("time step {} is left out: {}", step, error.message));
+        list.push_back({{"step", step}, {"error", json_text(error.message)}});
+        worst = std::max(worst, exit_code_of(error.code));
+    }
+    report["broken_steps"] = std::move(list);
+    return worst;
 }
 
 Result<ExitCode> finish(Console& console, const CommonOptions& common, std::string_view table, Json report,

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <isotet/jobs/grid_source.hpp>
 #include <isotet/result.hpp>
 
 #include "console.hpp"
@@ -27,6 +28,9 @@ Json json_report(const std::string& command);
 /// Text from a file or the command line: bytes that are not UTF-8 become \xNN.
 Json json_text(const std::string& text);
 Json json_texts(const std::vector<std::string>& texts);
+
+/// Says which time steps could not be read, and adds them to the report. Returns the exit status.
+ExitCode say_broken_steps(const std::vector<BrokenStep>& broken, Json& report);
 
 /// The end of a command: prints the table, and writes the report with the notes of the console where --json says.
 Result<ExitCode> finish(Console& console, const CommonOptions& common, std::string_view table, Json report,

@@ -162,7 +162,7 @@ Result<void> ClipRun::write(const ClippedGrid& clipped, std::size_t step, ClipSt
 
 Result<void> ClipRun::clip_step(std::size_t step) {
     Result<std::optional<ContourInput>> loaded = load(step);
-    if (!loaded) return loaded.error();
+    if (!loaded) return keep_broken(step, loaded.error(), plan_.steps.size(), numbers_.broken_steps);
     if (!*loaded) {
         skipped_.push_back(step);
         return {};
@@ -210,7 +210,8 @@ Result<void> ClipRun::run() {
         if (caller_.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
         if (auto clipped = clip_step(step); !clipped) return clipped;
     }
-    if (skipped_.size() == plan_.steps.size()) return source_->no_such_field(plan_.field.name);
+    if (skipped_.size() + numbers_.broken_steps.size() == plan_.steps.size())
+        return source_->no_such_field(plan_.field.name);
     if (!skipped_.empty()) caller_.note(skipped_note(plan_.field.name, skipped_, plan_.steps.size()));
     if (plan_.collection.empty()) return {};
     numbers_.collection = plan_.collection;

@@ -811,7 +811,10 @@ Result<void> ExtractRun::run_step(std::size_t step) {
     for (between_ = 0; between_ <= last; ++between_) {
         if (caller_.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
         const Result<bool> loaded = packed_ ? load_packed(step) : load(step);
-        if (!loaded) return loaded.error();
+        if (!loaded) {
+            between_ = 0;
+            return keep_broken(step, loaded.error(), plan_.steps.size(), numbers_.broken_steps);
+        }
         if (!*loaded) {
             if (between_ == 0) skipped_.push_back(step);
             break;
@@ -826,7 +829,8 @@ Result<void> ExtractRun::run() {
     if (Result<void> opened = open(); !opened) return opened;
     for (const std::size_t step : plan_.steps)
         if (Result<void> done = run_step(step); !done) return done;
-    if (skipped_.size() == plan_.steps.size()) return source_->no_such_field(plan_.field.name);
+    if (skipped_.size() + numbers_.broken_steps.size() == plan_.steps.size())
+        return source_->no_such_field(plan_.field.name);
     note_what_steps_miss();
     if (!animated_.empty())
         if (auto written = write(join(animated_, {}), numbers_.surfaces.back()); !written) return written;

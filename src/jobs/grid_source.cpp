@@ -330,9 +330,13 @@ Result<void> GridSource::look_at_steps(const std::vector<std::size_t>& steps, Ca
     if (steps.size() > 1) closing_ = std::make_shared<KnownClosing>();
     std::vector<FieldInfo> fields;
     std::vector<LeftOut> left_out;
+    std::vector<BrokenStep> broken;
     for (const std::size_t step : steps) {
         if (caller.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
-        if (auto looked = look_at(step, caller.run()); !looked) return looked;
+        if (auto looked = look_at(step, caller.run()); !looked) { // it may have all fields: reading it tells
+            if (auto kept = keep_broken(step, looked.error(), steps.size(), broken); !kept) return kept;
+            continue;
+        }
         for (const FieldInfo& field : info_.fields)
             if (std::ranges::none_of(fields, [&](const FieldInfo& known) {
                     return known.name == field.name && known.association == field.association;
@@ -658,6 +662,14 @@ void GridSource::choose_fields(const FieldsToRead& fields, std::size_t step, Rea
     options.cell_fields = fields.cell;
     if (!info_.times.empty()) options.step = step;
     options.skip_missing_fields = info_.times.size() > 1 && described_ != step;
+}
+
+Result<void> keep_broken(std::size_t step, Error error, std::size_t steps, std::vector<BrokenStep>& broken) {
+    const bool is_of_the_file = error.code == ErrorCode::invalid_data || error.code == ErrorCode::file;
+    if (!is_of_the_file || steps == 1) return error;
+    if (broken.size() + 1 == steps) return broken.empty() ? error : broken.front().error; // none can be read
+    broken.push_back({step, std::move(error)});
+    return {};
 }
 
 std::string cells_left_out_note(const Grid& grid) {

@@ -224,5 +224,40 @@ TEST_F(SeriesFields, InfoTellsThoseOfTheStep) {
     EXPECT_EQ(found->report.cells, 2u);
 }
 
+TEST_F(SeriesFields, ABrokenStepDoesNotEndTheOthers) {
+    folder.write("b.vtu", vtu({"T"}, 1).substr(0, 300));
+    for (const std::string& file : files()) {
+        SCOPED_TRACE(file);
+        ExtractJob job = job_of(file, "T");
+        job.all_steps = true;
+        job.out = folder.file("out_{step}.vtp");
+        const ExtractNumbers done = extract_files(job, listener).value();
+        ASSERT_EQ(done.broken_steps.size(), 1u);
+        EXPECT_EQ(done.broken_steps[0].step, 1u);
+        EXPECT_EQ(done.broken_steps[0].error.code, ErrorCode::invalid_data);
+        EXPECT_EQ(done.surfaces.size(), 2u);
+        EXPECT_EQ(done.surfaces[1].time, 1.0);
+        EXPECT_TRUE(std::filesystem::exists(done.collection));
+        ClipJob clip;
+        clip.grid = job.grid;
+        clip.field = job.field;
+        clip.all_steps = true;
+        clip.range = SolidRange::above(1.5);
+        clip.out = folder.file("clip_{step}.vtu");
+        const auto clipped = clip_files(clip, listener);
+        ASSERT_TRUE(clipped) << clipped.error().message;
+        EXPECT_EQ(clipped->broken_steps.size(), 1u);
+        EXPECT_EQ(clipped->steps.size(), 2u);
+    }
+}
+
+TEST_F(SeriesFields, OfBrokenStepsAloneAreAnError) {
+    for (const char* name : {"a.vtu", "b.vtu", "c.vtu"}) folder.write(name, vtu({"T"}, 1).substr(0, 300));
+    ExtractJob job = job_of(pvd, "T");
+    job.all_steps = true;
+    job.out = folder.file("out_{step}.vtp");
+    EXPECT_FALSE(extract_files(job, listener));
+}
+
 } // namespace
 } // namespace isotet::jobs

@@ -58,6 +58,7 @@ struct ClipNumbers {
     Method method = Method::direct;
     double read_seconds = 0;
     std::vector<ClipStepNumbers> steps;
+    std::vector<BrokenStep> broken_steps;
     std::string collection; ///< of a series; empty: none
     RefinementReport refinement = {};
 };

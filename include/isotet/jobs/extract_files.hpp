@@ -123,6 +123,7 @@ struct ExtractNumbers {
     std::uint64_t cells_left_out = 0;
     FieldReport field;     ///< of the last time step
     std::size_t steps = 1; ///< time steps
+    std::vector<BrokenStep> broken_steps; ///< of these
     bool averaged = false;
     Precision precision = Precision::float32;
     Method method = Method::direct;    ///< of the last surface
@@ -150,7 +151,7 @@ struct ExtractNumbers {
 };
 
 /// Reads the steps one after another, extracts, and writes each file as soon as it is complete. Files that were
-/// complete before an error or a cancelled run stay.
+/// complete before an error or a cancelled run stay. A step that cannot be read does not end the others.
 ///
 /// Memory   one step, and the surfaces that are extracted in one pass or go into one file
 /// Errors   invalid_argument: what is asked for does not fit together or with the file, told before anything large is

@@ -170,6 +170,16 @@ enum class Steps { one, all };
 Result<std::vector<std::size_t>> choose_steps(const FileInfo& info, const GridOptions& options, Steps steps,
                                               Caller& caller);
 
+/// A time step that cannot be read, among others that can.
+struct BrokenStep {
+    std::size_t step = 0;
+    Error error;
+};
+
+/// Keeps a step whose file, or what is in it, is wrong, so that the other steps are done; other errors come back, and those of
+/// the only step.
+Result<void> keep_broken(std::size_t step, Error error, std::size_t steps, std::vector<BrokenStep>& broken);
+
 /// "cells left out, their types are not contoured: 12 triangle, 40 polyhedron"; empty when there are none. Empty
 /// cells are not told of.
 std::string cells_left_out_note(const Grid& grid);
