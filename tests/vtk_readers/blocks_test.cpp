@@ -125,6 +125,13 @@ TEST_F(Blocks, AreChosenByNameOrNumber) {
     EXPECT_EQ(both->grid.cells.count(), static_cast<std::size_t>(sample_grid()->GetNumberOfCells()) + 20);
 }
 
+TEST_F(Blocks, AreChosenByAnyPartOfTheirPath) {
+    folder_.write("deep.vtm", multi_block(R"(<Block index="0" name="g"><Block index="0" name="x">
+        <DataSet index="0" name="m" file="s.vtu"/></Block></Block>)"));
+    for (const char* chosen : {"g", "x", "m", "g/x", "x/m", "g/x/m"}) expect_sample(read_blocks({chosen}, "deep.vtm"));
+    EXPECT_FALSE(read_blocks({"g/m"}, "deep.vtm"));
+}
+
 TEST_F(Blocks, ThatAreNotThereAreAnErrorWithThoseThatAre) {
     for (const char* asked : {"wall", "3", "0", ""}) {
         const auto result = read_blocks({asked});

@@ -17,9 +17,10 @@ namespace isotet::io {
 
 namespace {
 
+/// Whole parts of a name such as "solid/left/wall": "wall", "left", "solid/left".
 bool has_name(const BlockInfo& block, const std::string& asked) {
-    if (block.name.empty() || asked.empty()) return false;
-    return block.name == asked || block.name.ends_with("/" + asked) || block.name.starts_with(asked + "/");
+    return !block.name.empty() && !asked.empty() &&
+           ("/" + block.name + "/").find("/" + asked + "/") != std::string::npos;
 }
 
 /// The numbers of the blocks that one word asks for.
