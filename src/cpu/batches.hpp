@@ -28,15 +28,46 @@ public:
         for (std::size_t first = 0; first < clusters.size();) {
             if (first < brought_first_ || first >= brought_last_)
                 if (auto ok = bring(clusters, first); !ok) return ok;
-            const std::size_t last = brought_last_;
-            selection_.ahead_end = last;
-            work(first, last);
-            first = last;
+            do_batch(work, first, brought_last_);
+            first = brought_last_;
         }
         return {};
     }
 
+    /// The same for work that looks at the clusters of some places alone.
+    /// `needs`   needs(place): at this one's
+    template <class Work, class Needs>
+    Result<void> run(const Work& work, const Needs& needs) {
+        if (has_all()) return run(work);
+        std::vector<std::size_t> places;
+        std::vector<std::uint32_t> clusters;
+        for (std::size_t place = 0; place < selection_.size(); ++place)
+            if (needs(place)) {
+                places.push_back(place);
+                clusters.push_back(selection_.clusters[place]);
+            }
+        std::size_t done = 0;
+        for (std::size_t first = 0; first < clusters.size(); first = brought_last_) {
+            if (auto ok = bring(clusters, first); !ok) return ok;
+            const std::size_t end = brought_last_ < places.size() ? places[brought_last_] : selection_.size();
+            do_batch(work, done, end);
+            done = end;
+        }
+        brought_first_ = brought_last_ = 0; // numbers of `places`
+        if (done < selection_.size()) do_batch(work, done, selection_.size());
+        return {};
+    }
+
 private:
+    /// Nothing lies in a file, or all of it was brought.
+    bool has_all() const { return grids_.empty() || (brought_first_ == 0 && brought_last_ == selection_.size()); }
+
+    template <class Work>
+    void do_batch(const Work& work, std::size_t first, std::size_t last) {
+        selection_.ahead_end = last;
+        work(first, last);
+    }
+
     /// What was brought for the last batch stays until another is wanted: mostly there is one.
     Result<void> bring(std::span<const std::uint32_t> clusters, std::size_t first) {
         brought_.clear();

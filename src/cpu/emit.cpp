@@ -77,6 +77,12 @@ public:
         }
     }
 
+    /// Whether more than the record of a place is looked at.
+    bool needs_cluster(std::size_t place) const {
+        const Record<Real>& record = *counted_.records[place];
+        return needs_points(record) || record.has_tets;
+    }
+
 private:
     /// Whether ends of edges are looked at, as local points.
     static bool needs_points(const Record<Real>& record) { return record.has_ends || !record.lists_seams; }
@@ -286,12 +292,13 @@ Result<void> emit(const Packed& packed, const Wanted<Real>& wanted, const Select
     const Emitter<Real> emitter(packed, wanted, selection, masks, counted, targets);
     tbb::enumerable_thread_specific<std::unique_ptr<Scratch<Real>>> scratch(
         [] { return std::unique_ptr<Scratch<Real>>(new Scratch<Real>); });
-    return batches.run([&](std::size_t first, std::size_t last) {
+    const auto emit_batch = [&](std::size_t first, std::size_t last) {
         core::parallel_ranges(last - first, 64, [&](std::size_t begin, std::size_t end) {
             if (progress.cancelled()) return;
             emit_places(emitter, first + begin, first + end, *scratch.local());
         });
-    });
+    };
+    return batches.run(emit_batch, [&](std::size_t place) { return emitter.needs_cluster(place); });
 }
 
 template <class Real>

@@ -187,6 +187,22 @@ TEST(PackedChunks, StayWithinTheLimit) {
     EXPECT_LE(report.peak_bytes, limit);
 }
 
+TEST(PackedChunks, AreReadOnceForPositionsAlone) {
+    const Grid grid = made_grid("kuhn", 20, {"gyroid"});
+    const PackedGrid packed = pack(grid, point_field(grid)).value();
+    const TemporaryFolder folder;
+    const std::string path = saved(packed, folder, 4'000);
+    const auto pieces_read = [&](bool edge_ends) {
+        const PackedFile file = PackedFile::open(path, {300'000}).value();
+        ExtractOptions options;
+        options.edge_ends = edge_ends;
+        EXPECT_TRUE(bytes_of(extract(file.grid().value(), 0.013, options).value().surface) ==
+                    bytes_of(extract(packed, 0.013, options).value().surface));
+        return file.residency().pieces_read;
+    };
+    EXPECT_LT(static_cast<double>(pieces_read(false)), 0.6 * static_cast<double>(pieces_read(true)));
+}
+
 TEST(PackedChunks, ServeManyThreadsWhileTheyComeAndGo) {
     const Grid grid = made_grid("mixed", 10, {"gyroid"});
     const PackedGrid packed = pack(grid, point_field(grid)).value();
