@@ -8,7 +8,7 @@ contours and writes a VTP, too, without what importing it takes.
     python bench/scale --isotet build/demo/apps/cli/isotet --only tets_30M,hexahedra_27M --rounds 5 --base OTHER/isotet
 
 The last interpreter makes the grids; it needs numpy and VTK 9.4 or later. With Debian's VTK 9.1 and the wheel of VTK 9.7, two
-cores and three rounds all of it takes about an hour by estimate, and 14 GB in --folder, where grids stay for the next run. --quick,
+cores and one round all of it takes 11 minutes, and 14 GB in --folder, where grids stay for the next run. --quick,
 grids of an eighth of the cells and one round, takes a few minutes and 2 GB.
 """
 import argparse
