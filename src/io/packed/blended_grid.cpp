@@ -6,10 +6,12 @@
 #include <cstdint>
 #include <limits>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "base/buffer.hpp"
 #include "base/parallel.hpp"
+#include "io/packed/boundary_piece.hpp"
 #include "io/packed/checks.hpp"
 #include "io/packed/file_arrays.hpp"
 #include "io/packed/file_residency.hpp"
@@ -42,12 +44,14 @@ public:
         if (a_is_infinite && b_is_infinite) return a == b ? a : core::canonical_nan<Real>();
         if (a_is_infinite) return a;
         if (b_is_infinite) return b;
-        const Real of_a = a_ * (a * rescale_a_), of_b = b_ * (b * rescale_b_);
-        const Real sum = of_a + of_b;
-        return std::abs(sum) < Real(core::tiny) ? Real(0) : sum;
+        return stored(a_ * (a * rescale_a_), b_ * (b * rescale_b_));
     }
 
-    /// Holds what values within the two blend to: roundings may leave the union of both by a few units in the last place.
+    /// Of coordinates, which are all finite.
+    Real coordinate(Real a, Real b) const { return stored(a_ * a, b_ * b); }
+
+    /// Holds what values within the two blend to: roundings may leave the union of both by a few units in the last place,
+    /// and what becomes too small to be stored is 0.
     core::Range<Real> range(core::Range<Real> a, core::Range<Real> b) const {
         if (a.lower > a.upper || b.lower > b.upper) // no value has data
             return {std::numeric_limits<Real>::max(), std::numeric_limits<Real>::lowest()};
@@ -55,13 +59,19 @@ public:
         const Real upper = std::max(rescaled_a(a.upper), rescaled_b(b.upper));
         const Real margin =
             std::max({std::abs(lower), std::abs(upper), Real(core::tiny)}) * 4 * std::numeric_limits<Real>::epsilon();
-        return {lower - margin, upper + margin};
+        core::Range<Real> both{lower - margin, upper + margin};
+        if (0 < both.lower && both.lower < Real(core::tiny)) both.lower = 0;
+        if (-Real(core::tiny) < both.upper && both.upper < 0) both.upper = 0;
+        return both;
     }
 
+private:
+    static Real stored(Real of_a, Real of_b) {
+        const Real sum = of_a + of_b;
+        return std::abs(sum) < Real(core::tiny) ? Real(0) : sum;
+    }
     Real rescaled_a(Real a) const { return rescaled(a, rescale_a_); }
     Real rescaled_b(Real b) const { return rescaled(b, rescale_b_); }
-
-private:
     static Real rescaled(Real value, Real scale) {
         return std::abs(value) >= static_cast<Real>(core::stored_infinity) ? value : value * scale;
     }
@@ -110,18 +120,16 @@ std::array<double, 3> blended(const std::array<double, 3>& a, const std::array<d
     return out;
 }
 
-/// As numbers of the user: what the points and values of a boundary become.
-Array blended(const Array& a, const Array& b, double fraction, ScalarType type) {
-    const auto as = [&]<class Real>(Real) {
-        const Blend<Real> blend(fraction);
-        std::vector<Real> out(a.size());
-        for (std::size_t i = 0; i < out.size(); ++i) {
-            const std::size_t tuple = i / a.components(), component = i % a.components();
-            out[i] = blend(static_cast<Real>(a.at(tuple, component)), static_cast<Real>(b.at(tuple, component)));
-        }
-        return Array::own(std::move(out), a.components());
-    };
-    return type == ScalarType::float32 ? as(float{}) : as(double{});
+/// The points of a boundary; `a` becomes what is between.
+void blend_boundary(StoredBoundary& a, const StoredBoundary& b, double fraction) {
+    std::visit(
+        [&]<class Real>(std::vector<Real>& positions) {
+            const Blend<Real> blend(fraction);
+            const auto& next = std::get<std::vector<Real>>(b.positions);
+            for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = blend.coordinate(positions[i], next[i]);
+        },
+        a.positions);
+    a.origin = blended(a.origin, b.origin, fraction);
 }
 
 template <class Real>
@@ -140,7 +148,7 @@ void blend_positions(const Packed& from, const Packed& to, double fraction, std:
     const Real* const a = from.as<Real>().positions.data();
     const Real* const b = to.as<Real>().positions.data();
     Real* const out = packed.as<Real>().positions.data();
-    for (std::uint64_t i = 3 * first; i < 3 * last; ++i) out[i] = blend(a[i], b[i]);
+    for (std::uint64_t i = 3 * first; i < 3 * last; ++i) out[i] = blend.coordinate(a[i], b[i]);
 }
 
 /// Whether both grids have the positions of the same array.
@@ -259,11 +267,9 @@ void BlendedResidency::fill_values(std::size_t chunk) {
         const core::ClusterHeader& h = packed_.headers[c];
         const core::Range<Real> cluster = packed_.as<Real>().ranges[c];
         for (std::size_t g = h.first_group; g < h.first_group + h.groups(); ++g) {
-            const core::Range<Real> a = values_of(from.group_ranges[g], from.as<Real>().ranges[c]);
-            const core::Range<Real> b = values_of(to.group_ranges[g], to.as<Real>().ranges[c]);
-            const Real lower = std::min(both.rescaled_a(a.lower), both.rescaled_b(b.lower));
-            const Real upper = std::max(both.rescaled_a(a.upper), both.rescaled_b(b.upper));
-            const int first = core::quantize(lower, cluster), last = core::quantize(upper, cluster);
+            const core::Range<Real> group = both.range(values_of(from.group_ranges[g], from.as<Real>().ranges[c]),
+                                                       values_of(to.group_ranges[g], to.as<Real>().ranges[c]));
+            const int first = core::quantize(group.lower, cluster), last = core::quantize(group.upper, cluster);
             packed_.group_ranges[g] = {static_cast<std::uint8_t>(std::max(first - 1, 0)),
                                        static_cast<std::uint8_t>(std::min(last + 1, 255))};
         }
@@ -291,21 +297,28 @@ Result<core::Brought> BlendedResidency::bring(std::span<const std::uint32_t> clu
 }
 
 Result<std::optional<Surface>> BlendedResidency::boundary() const {
-    auto boundary = from_->boundary();
-    if (!boundary || !*boundary || !moves_) return boundary;
-    const auto next = to_->boundary();
+    if (!moves_ || !from_->store()->source().directory.boundary) return from_->boundary();
+    auto boundary = read_boundary(from_->store()->source(), from_->field().step);
+    if (!boundary) return boundary.error();
+    const auto next = read_boundary(from_->store()->source(), to_->field().step);
     if (!next) return next.error();
-    (*boundary)->positions =
-        blended((*boundary)->positions, (*next)->positions, fraction_, (*boundary)->positions.type());
-    return boundary;
+    blend_boundary(*boundary, *next, fraction_);
+    return std::optional(surface_of(*std::move(boundary), packed_.point_type));
 }
 
 Result<Array> BlendedResidency::boundary_values() const {
-    const auto a = from_->boundary_values();
-    if (!a) return a;
-    const auto b = to_->boundary_values();
-    if (!b) return b;
-    return blended(*a, *b, fraction_, packed_.field.type());
+    const PackedSource& source = from_->store()->source();
+    return std::visit(
+        [&]<class Real>(const core::Values<Real>&) -> Result<Array> {
+            auto values = read_boundary_values<Real>(source, from_->field());
+            if (!values) return values.error();
+            const auto next = read_boundary_values<Real>(source, to_->field());
+            if (!next) return next.error();
+            const Blend<Real> both = blend<Real>();
+            for (std::size_t i = 0; i < values->size(); ++i) (*values)[i] = both((*values)[i], (*next)[i]);
+            return user_values(*values, packed_.field.type(), packed_.storage);
+        },
+        packed_.reals);
 }
 
 Result<std::shared_ptr<const Packed>> BlendedResidency::whole(const Progress& progress) const {

@@ -68,27 +68,11 @@ Result<void> check_numbers(const PackedDirectory& d, const std::vector<std::uint
     return {};
 }
 
-/// Positions in the user's coordinates.
 template <class Real>
-Result<Array> user_positions(const PackedDirectory& d, const std::array<double, 3>& origin, std::vector<Real> stored) {
+Result<void> check_positions_of(const std::vector<Real>& stored) {
     if (std::ranges::any_of(stored, [](Real x) { return !(std::abs(x) <= largest_position); }))
         return broken_boundary("a coordinate is not finite, or larger than is stored");
-    if (d.point_type == ScalarType::float32) return Array::own(std::move(stored), 3);
-    std::vector<double> out(stored.size());
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = static_cast<double>(stored[i]) + origin[i % 3];
-    return Array::own(std::move(out), 3);
-}
-
-template <class Real>
-Result<Array> user_values(const FieldEntry& field, const std::vector<Real>& stored) {
-    const auto is_stored = [](Real x) { return core::is_nan(x) || std::abs(x) <= core::stored_infinity; };
-    if (!std::ranges::all_of(stored, is_stored)) return broken_boundary("a value is larger than is stored");
-    return Array(field.type, nullptr, 0, 1, nullptr).visit([&]<class T>(std::span<const T>) -> Result<Array> {
-        std::vector<T> out(stored.size());
-        for (std::size_t i = 0; i < out.size(); ++i)
-            out[i] = core::user_value<T>(static_cast<double>(stored[i]), field.storage);
-        return Array::own(std::move(out));
-    });
+    return {};
 }
 
 } // namespace
@@ -117,12 +101,12 @@ std::vector<std::byte> encode_boundary_values(const Packed& packed, const std::v
 
 namespace {
 
-/// Positions of the boundary's points.
-Result<Array> decode_positions(const PackedDirectory& d, const std::array<double, 3>& origin,
-                               std::span<const std::byte>& bytes) {
-    const std::uint64_t points = d.boundary->points;
-    return d.precision == Precision::float32 ? user_positions(d, origin, take_numbers<float>(bytes, 3 * points))
-                                             : user_positions(d, origin, take_numbers<double>(bytes, 3 * points));
+/// Takes the positions of the boundary's points.
+Result<void> decode_positions(std::span<const std::byte>& bytes, const PackedDirectory& d, StoredBoundary& boundary) {
+    const std::size_t count = 3 * d.boundary->points;
+    if (d.precision == Precision::float32) boundary.positions = take_numbers<float>(bytes, count);
+    else boundary.positions = take_numbers<double>(bytes, count);
+    return std::visit([](const auto& stored) { return check_positions_of(stored); }, boundary.positions);
 }
 
 } // namespace
@@ -139,33 +123,64 @@ Result<StoredBoundary> read_boundary(const PackedSource& source, std::uint32_t s
         const auto narrow = take_numbers<std::uint32_t>(left, entry.points);
         boundary.points.assign(narrow.begin(), narrow.end());
     }
-    auto positions = decode_positions(d, d.origin, left);
-    if (!positions) return source.in_file(positions.error());
+    boundary.origin = d.origin;
+    if (auto ok = decode_positions(left, d, boundary); !ok) return source.in_file(ok.error());
     auto triangles = take_numbers<std::uint32_t>(left, 3 * entry.triangles);
     if (auto ok = check_numbers(d, boundary.points, triangles); !ok) return source.in_file(ok.error());
-    if (const PointsEntry* const moved = d.points_at(step)) {
-        const auto bytes =
-            read_summed(source, moved->boundary_offset, 3 * entry.points * d.real_bytes(), moved->boundary_checksum);
-        if (!bytes) return bytes.error();
-        std::span<const std::byte> moved_bytes = *bytes;
-        positions = decode_positions(d, moved->origin, moved_bytes);
-        if (!positions) return source.in_file(positions.error());
-    }
-    boundary.surface.positions = *std::move(positions);
-    boundary.surface.triangles = Array::own(std::move(triangles), 3);
+    boundary.triangles = Array::own(std::move(triangles), 3);
+    const PointsEntry* const moved = d.points_at(step);
+    if (!moved) return boundary;
+    const auto bytes =
+        read_summed(source, moved->boundary_offset, 3 * entry.points * d.real_bytes(), moved->boundary_checksum);
+    if (!bytes) return bytes.error();
+    std::span<const std::byte> moved_bytes = *bytes;
+    boundary.origin = moved->origin;
+    if (auto ok = decode_positions(moved_bytes, d, boundary); !ok) return source.in_file(ok.error());
     return boundary;
 }
 
-Result<Array> read_boundary_values(const PackedSource& source, const FieldEntry& field) {
+Surface surface_of(StoredBoundary boundary, ScalarType type) {
+    Surface surface;
+    surface.triangles = std::move(boundary.triangles);
+    surface.positions = std::visit(
+        [&](auto& stored) {
+            if (type == ScalarType::float32) return Array::own(std::move(stored), 3);
+            std::vector<double> out(stored.size());
+            for (std::size_t i = 0; i < out.size(); ++i)
+                out[i] = static_cast<double>(stored[i]) + boundary.origin[i % 3];
+            return Array::own(std::move(out), 3);
+        },
+        boundary.positions);
+    return surface;
+}
+
+template <class Real>
+Result<std::vector<Real>> read_boundary_values(const PackedSource& source, const FieldEntry& field) {
     const PackedDirectory& d = source.directory;
     const std::uint64_t points = d.boundary->points;
-    const auto piece = read_summed(source, field.boundary_offset, points * d.real_bytes(), field.boundary_checksum);
+    const auto piece = read_summed(source, field.boundary_offset, points * sizeof(Real), field.boundary_checksum);
     if (!piece) return piece.error();
     std::span<const std::byte> left = *piece;
-    auto values = d.precision == Precision::float32 ? user_values(field, take_numbers<float>(left, points))
-                                                    : user_values(field, take_numbers<double>(left, points));
-    if (!values) return source.in_file(values.error());
+    std::vector<Real> values = take_numbers<Real>(left, points);
+    const auto is_stored = [](Real x) { return core::is_nan(x) || std::abs(x) <= core::stored_infinity; };
+    if (!std::ranges::all_of(values, is_stored))
+        return source.in_file(broken_boundary("a value is larger than is stored"));
     return values;
 }
+
+template <class Real>
+Array user_values(const std::vector<Real>& stored, ScalarType type, const core::Storage& storage) {
+    return Array(type, nullptr, 0, 1, nullptr).visit([&]<class T>(std::span<const T>) {
+        std::vector<T> out(stored.size());
+        for (std::size_t i = 0; i < out.size(); ++i)
+            out[i] = core::user_value<T>(static_cast<double>(stored[i]), storage);
+        return Array::own(std::move(out));
+    });
+}
+
+template Result<std::vector<float>> read_boundary_values(const PackedSource&, const FieldEntry&);
+template Result<std::vector<double>> read_boundary_values(const PackedSource&, const FieldEntry&);
+template Array user_values(const std::vector<float>&, ScalarType, const core::Storage&);
+template Array user_values(const std::vector<double>&, ScalarType, const core::Storage&);
 
 } // namespace isotet::io

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <utility>
+#include <variant>
 
 #include "base/parallel.hpp"
 #include "io/files/first_error.hpp"
@@ -170,10 +171,18 @@ Result<std::optional<Surface>> FileResidency::boundary() const {
     if (!store_->source().directory.boundary) return std::optional<Surface>();
     Result<StoredBoundary> stored = read_boundary(store_->source(), field_.step);
     if (!stored) return stored.error();
-    return std::optional(std::move(stored->surface));
+    return std::optional(surface_of(*std::move(stored), packed_.point_type));
 }
 
-Result<Array> FileResidency::boundary_values() const { return read_boundary_values(store_->source(), field_); }
+Result<Array> FileResidency::boundary_values() const {
+    return std::visit(
+        [&]<class Real>(const core::Values<Real>&) -> Result<Array> {
+            const auto stored = read_boundary_values<Real>(store_->source(), field_);
+            if (!stored) return stored.error();
+            return user_values(*stored, field_.type, field_.storage);
+        },
+        packed_.reals);
+}
 
 core::Residency::Use FileResidency::use() const {
     const ResidencyReport report = store_->cache().report();

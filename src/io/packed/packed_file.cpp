@@ -6,6 +6,7 @@
 #include <mutex>
 #include <span>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -90,7 +91,13 @@ Result<void> check_boundary_values(const io::PackedSource& source, const io::Fie
                                    const core::Packed& packed, const std::vector<std::uint64_t>& points) {
     if (auto ok = check_boundary_positions(source, field, packed, points); !ok) return ok;
     if (const auto read = io::read_boundary(source, field.step); !read) return read.error();
-    if (const auto values = io::read_boundary_values(source, field); !values) return values.error();
+    const auto checked = std::visit(
+        [&]<class Real>(const core::Values<Real>&) -> Result<void> {
+            const auto values = io::read_boundary_values<Real>(source, field);
+            return values ? Result<void>() : values.error();
+        },
+        packed.reals);
+    if (!checked) return checked;
     if (io::crc32c(io::encode_boundary_values(packed, points)) == field.boundary_checksum) return {};
     return source.in_file(invalid_data(fmt::format(
         "the boundary is broken: the values of {} there are not those of the points", io::in_quotes(field.name))));

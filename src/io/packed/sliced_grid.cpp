@@ -12,6 +12,7 @@
 #include "grid/points/slice_function.hpp"
 #include "base/parallel.hpp"
 #include "io/files/first_error.hpp"
+#include "io/packed/boundary_piece.hpp"
 #include "io/packed/checks.hpp"
 #include "io/packed/file_arrays.hpp"
 #include "io/packed/file_residency.hpp"
@@ -232,7 +233,15 @@ Result<Array> SlicedResidency::boundary_values() const {
     if (!boundary) return boundary.error();
     auto field = slice_field((*boundary)->positions, shape_);
     if (!field) return field.error();
-    return std::move(field->values);
+    const Array& values = field->values;
+    return std::visit(
+        [&]<class Real>(const core::Values<Real>&) {
+            std::vector<Real> stored(values.size());
+            for (std::size_t i = 0; i < stored.size(); ++i)
+                stored[i] = core::store_value<Real>(values.at(i), packed_.storage);
+            return user_values(stored, packed_.field.type(), packed_.storage);
+        },
+        packed_.reals);
 }
 
 Result<std::shared_ptr<const Packed>> SlicedResidency::whole(const Progress& progress) const {
