@@ -130,6 +130,19 @@ TEST(InterruptedPacking, LeavesTheOldStepsAtEveryWrite) {
     }
 }
 
+TEST(InterruptedPacking, AddsNothingToAFileThatTookThePlace) {
+    const TwoFiles files;
+    files.folder.write("grid.isotet", files.one);
+    PackedWriter writer = PackedWriter::append(files.packed, files.path, 1.0, one_thread).value();
+    files.folder.write("other.isotet", files.one);
+    std::filesystem::rename(files.folder.file("other.isotet"), files.path);
+    const auto committed = writer.commit();
+    ASSERT_FALSE(committed);
+    EXPECT_EQ(committed.error().code, ErrorCode::cannot_write);
+    EXPECT_EQ(committed.error().message, files.path + " was replaced or removed meanwhile: nothing was added to it");
+    EXPECT_TRUE(content_of(files.path) == files.one);
+}
+
 /// What is there after a kill while steps are added: `killed` ends the process that adds them. Returns how often it did.
 template <class Killed>
 int expect_steps_survive(const TwoFiles& files, const Killed& killed) {

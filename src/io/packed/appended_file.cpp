@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -29,14 +30,21 @@ Error AppendedFile::failed(int number) const {
             fmt::format("{}: cannot be written: {}", path_, std::generic_category().message(number))};
 }
 
+/// Whether the file of this name is still the one that is locked.
+Result<void> AppendedFile::check_place() const {
+    struct stat locked{}, named{};
+    if (::fstat(file_.number(), &locked) != 0) return failed(errno);
+    if (::stat(path_.c_str(), &named) == 0 && locked.st_dev == named.st_dev && locked.st_ino == named.st_ino) return {};
+    return Error{ErrorCode::cannot_write,
+                 fmt::format("{} was replaced or removed meanwhile: nothing was added to it", path_)};
+}
+
 Result<OpenedForAppending> AppendedFile::open(const std::string& path) {
-    Result<PlainFile> there = open_plain_file(path);
-    if (!there) return there.error();
+    if (const Result<PlainFile> there = open_plain_file(path); !there) return there.error(); // before a pipe is opened
     OpenedForAppending opened{AppendedFile(), {}, {}};
     AppendedFile& file = opened.file;
-    file.before_ = *std::move(there);
     file.path_ = path;
-    file.file_ = Descriptor(::open(path.c_str(), O_RDWR | O_CLOEXEC));
+    file.file_ = Descriptor(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
     if (!file.file_) return file.failed(errno);
     if (::flock(file.file_.number(), LOCK_EX | LOCK_NB) != 0) {
         if (errno != EWOULDBLOCK) return file.failed(errno);
@@ -44,6 +52,8 @@ Result<OpenedForAppending> AppendedFile::open(const std::string& path) {
     }
     const auto source = PackedSource::open(path); // once it is locked
     if (!source) return source.error();
+    if (auto same = file.check_place(); !same) return same.error(); // which `source` has opened then
+    file.before_ = *source;
     file.next_slot_ = 1 - (*source)->slot_place;
     file.count_ = (*source)->slot.count;
     file.end_ = (*source)->slot.file_bytes;
@@ -78,9 +88,7 @@ Result<void> AppendedFile::write(std::span<const std::byte> bytes) {
     return {};
 }
 
-Result<void> AppendedFile::read(std::uint64_t at, std::span<std::byte> to) const {
-    return read_at(before_, path_, at, to);
-}
+Result<void> AppendedFile::read(std::uint64_t at, std::span<std::byte> to) const { return before_->read(at, to); }
 
 Result<void> AppendedFile::flush_to_disk() {
     while (::fsync(file_.number()) != 0) {
@@ -91,6 +99,7 @@ Result<void> AppendedFile::flush_to_disk() {
 }
 
 Result<void> AppendedFile::commit(DirectorySlot slot) {
+    if (auto same = check_place(); !same) return same;
     if (auto ok = write_at(end_, buffered_); !ok) return ok;
     end_ += buffered_.size();
     buffered_.clear();

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,8 +12,8 @@
 #include <isotet/result.hpp>
 
 #include "io/files/file_kind.hpp"
-#include "io/files/plain_file.hpp"
 #include "io/packed/format.hpp"
+#include "io/packed/piece_reader.hpp"
 
 namespace isotet::io {
 
@@ -22,7 +23,8 @@ struct OpenedForAppending;
 class AppendedFile {
 public:
     /// Locks the file, and cuts off what a writer that did not finish left.
-    /// Errors   as PackedSource::open(); cannot_write: another writer has it, or it cannot be written
+    /// Errors   as PackedSource::open(); cannot_write: another writer has it, it cannot be written, or another file took its
+    ///          place meanwhile
     static Result<OpenedForAppending> open(const std::string& path);
 
     Result<void> write(std::span<const std::byte> bytes);
@@ -31,6 +33,7 @@ public:
     std::uint64_t bytes() const noexcept { return end_ + buffered_.size(); } ///< of the file so far
 
     /// All is on the disk before the other slot is written.
+    /// Errors   cannot_write, also where another file has taken its place
     Result<void> commit(DirectorySlot slot);
 
 private:
@@ -38,10 +41,11 @@ private:
     Result<void> write_at(std::uint64_t at, std::span<const std::byte> bytes);
     Result<void> flush_to_disk();
     Error failed(int number) const;
+    Result<void> check_place() const;
 
     std::string path_;
     Descriptor file_;
-    PlainFile before_;
+    std::shared_ptr<const PackedSource> before_;
     std::uint64_t end_ = 0;
     std::vector<std::byte> buffered_;
     std::size_t next_slot_ = 0; ///< the one that does not hold

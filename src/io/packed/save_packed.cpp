@@ -151,7 +151,7 @@ private:
     }
     Result<void> align();
     Result<void> check_new_field(const Packed& packed, std::uint32_t step) const;
-    Result<bool> has_numbers_of_chunk(std::size_t k) const;
+    Result<bool> has_numbers_of_chunk(std::size_t k, std::uint64_t at) const;
     bool has_points_of_chunks(const Packed& packed) const;
     bool has_points_of(const Packed& packed, std::uint32_t step) const;
     void remember_points(const Packed& packed) {
@@ -249,12 +249,13 @@ Result<void> PackedOutput::write_clusters() {
     return align();
 }
 
-/// Whether the user's numbers and the ranks of a chunk's points are those of the file that is added to.
-Result<bool> PackedOutput::has_numbers_of_chunk(std::size_t k) const {
+/// Whether the user's numbers and the ranks of a chunk's points are those of the file that is added to, which has the points
+/// at `at`.
+Result<bool> PackedOutput::has_numbers_of_chunk(std::size_t k, std::uint64_t at) const {
     const std::uint64_t positions = directory_.positions_bytes(directory_.chunks[k]);
     core::Buffer<std::byte> there(directory_.points_bytes(directory_.chunks[k]) - positions);
-    const std::uint64_t at = PieceOffsets(directory_).points[k] + positions;
-    if (auto ok = std::get<AppendedFile>(file_).read(at, {there.data(), there.size()}); !ok) return ok.error();
+    if (auto ok = std::get<AppendedFile>(file_).read(at + positions, {there.data(), there.size()}); !ok)
+        return ok.error();
     Parts numbers = points_of(*packed_, k);
     numbers.erase(numbers.begin());
     return checksum_of(numbers) == crc32c({there.data(), there.size()});
@@ -277,6 +278,7 @@ Result<void> PackedOutput::compare_cells() const {
                         "new step {} and {} of {} and {}, or another precision",
                         directory_.count(Unit::points), directory_.clusters, directory_.user_points,
                         directory_.user_cells, own.count(Unit::points), own.clusters, own.user_points, own.user_cells));
+    const PieceOffsets there(directory_);
     for (std::size_t k = 0; k < directory_.chunks.size(); ++k) {
         const ChunkEntry& chunk = directory_.chunks[k];
         const std::vector<std::uint16_t> records = clusters_of(k);
@@ -284,7 +286,7 @@ Result<void> PackedOutput::compare_cells() const {
             checksum_of(topology_of(k)) != chunk.topology_checksum)
             return differs(fmt::format("the cells of chunk {} differ", k));
         if (checksum_of(points_of(packed, k)) == chunk.points_checksum) continue;
-        const Result<bool> same = has_numbers_of_chunk(k);
+        const Result<bool> same = has_numbers_of_chunk(k, there.points[k]);
         if (!same) return same.error();
         if (!*same) return differs(fmt::format("the points of chunk {} have other numbers", k));
     }
