@@ -49,7 +49,9 @@ TEST(PackedSlices, AreThoseOfTheGridInMemory) {
             append_bytes(whole, unpack(sliced).value().point_fields[0].values);
             append_bytes(of_expected, unpack(expected).value().point_fields[0].values);
             EXPECT_TRUE(whole == of_expected);
-            EXPECT_EQ(boundary_of(sliced, {sliced}).value().point_fields[0].values.type(), ScalarType::float64);
+            EXPECT_TRUE(bytes_of(boundary_of(sliced, {sliced}).value()) ==
+                        bytes_of(boundary_of(expected, {expected}).value()));
+            EXPECT_EQ(sliced.field().flushed, expected.field().flushed);
         }
     }
 }

@@ -104,6 +104,7 @@ private:
     PointValues point_values_;
     Packed packed_;
     std::unique_ptr<CachedPieces> values_;
+    std::vector<std::uint64_t> flushed_; ///< points of each chunk whose value is stored as 0 and is not
 };
 
 SlicedResidency::SlicedResidency(std::shared_ptr<FileResidency> grid, const SliceShape& shape)
@@ -117,8 +118,9 @@ SlicedResidency::SlicedResidency(std::shared_ptr<FileResidency> grid, const Slic
     packed_.group_ranges = core::SharedBuffer<core::GroupRange>(cache.places().size(Unit::groups));
     kind.fill = [this](std::size_t chunk) {
         const ChunkRange range = range_of(chunk);
-        point_values_.store(packed_, range.first_point, range.first_point + range.points);
+        flushed_[chunk] = point_values_.store(packed_, range.first_point, range.first_point + range.points);
     };
+    flushed_.resize(cache.source().directory.chunks.size());
     values_ = std::make_unique<CachedPieces>(std::move(kind), cache.source().directory.chunks.size());
     cache.add(*values_);
 }
@@ -215,6 +217,7 @@ Result<void> SlicedResidency::make_ranges(const Progress& progress) {
         first = last;
         progress("slice", static_cast<double>(first) / static_cast<double>(clusters.size()));
     }
+    packed_.field_report.flushed = std::accumulate(flushed_.begin(), flushed_.end(), std::uint64_t{0});
     return {};
 }
 
