@@ -109,10 +109,18 @@ Result<std::shared_ptr<const Packed>> grid_of_file(const std::shared_ptr<PackedS
     return std::shared_ptr<const Packed>(std::move(packed));
 }
 
-std::uint64_t bytes_of_whole(const PackedDirectory& d, const FieldEntry& field) {
-    std::uint64_t bytes = d.clusters * sizeof(core::ClusterHeader);
+/// Of what fields do not share.
+static std::uint64_t bytes_of_field(const PackedDirectory& d, const FieldEntry& field) {
+    const bool moved = d.points_at(field.step) != nullptr;
+    std::uint64_t bytes = 0;
     for (const ChunkEntry& chunk : d.chunks)
-        bytes += d.points_bytes(chunk) + d.topology_bytes(chunk) + d.ranges_bytes(chunk) + d.values_bytes(chunk, field);
+        bytes += d.ranges_bytes(chunk) + d.values_bytes(chunk, field) + (moved ? d.positions_bytes(chunk) : 0);
+    return bytes;
+}
+
+std::uint64_t bytes_of_whole(const PackedDirectory& d, const FieldEntry& field) {
+    std::uint64_t bytes = d.clusters * sizeof(core::ClusterHeader) + bytes_of_field(d, field);
+    for (const ChunkEntry& chunk : d.chunks) bytes += d.points_bytes(chunk) + d.topology_bytes(chunk);
     return bytes;
 }
 
@@ -133,8 +141,8 @@ Result<void> check_all_ranges(const Packed& packed, const Progress& progress) {
 Result<std::shared_ptr<const Packed>> whole_grid_of_file(const PackedSource& source, const FieldEntry& field,
                                                          const Packed* same_cells, const Progress& progress) {
     const PackedDirectory& d = source.directory;
-    if (auto ok = core::require_memory(fmt::format("all of {}", source.path), bytes_of_whole(d, field)); !ok)
-        return ok.error();
+    const std::uint64_t bytes = same_cells ? bytes_of_field(d, field) : bytes_of_whole(d, field);
+    if (auto ok = core::require_memory(fmt::format("all of {}", source.path), bytes); !ok) return ok.error();
     const ChunkPlaces places = ChunkPlaces::compact(d);
     const ArrayMaker maker(ArrayMaker::As::memory, places);
     auto packed = std::make_shared<Packed>(same_cells ? *same_cells : packed_of(d));
