@@ -164,7 +164,8 @@ public:
 
     /// The grid of a field between a step and the next: values (1 - fraction) a + fraction b, each product and the sum rounded
     /// once as values are stored; points likewise where they move. A point without data in either step has none. Cell fields
-    /// are those of the steps. There are no gradients; the range in its report is that of both steps.
+    /// are those of the steps. Gradients are there where both steps have them: directions between these, as how steep they are is
+    /// not known. The range in its report is that of both steps.
     ///
     /// Cells may turn over between two steps that move far, as in half a turn: they are not looked at. Where values of a step
     /// are stored with a larger factor, since they are tiny, the smaller one counts.

@@ -382,8 +382,6 @@ Result<void> ExtractRun::open_packed() {
             "all of the packed file is read and unpacked: what was asked for needs its cells, or is not packed");
         return interpolates_unless(true, "what else was asked for needs all of the packed file, or is not packed");
     }
-    if (auto ok = interpolates_unless(needs_gradients, "between steps there are no gradients for `normals`"); !ok)
-        return ok;
     if (auto ok = interpolates_unless(job_.field.shape && !info.moved_points.empty(),
                                       "the points of the file move, and slices are those of a step");
         !ok)

@@ -13,6 +13,7 @@
 
 #include "packed/packed_samples.hpp"
 #include "packed/packed.hpp"
+#include "packed/residency.hpp"
 #include "packed/right_checksums.hpp"
 #include "support/places.hpp"
 #include "support/run_program.hpp"
@@ -353,6 +354,104 @@ TEST(GridsBetweenSteps, BlendValuesThatAreScaledOtherwise) {
     for (std::size_t i = 0; i < surface.vertex_count(); ++i)
         for (std::size_t axis = 0; axis < 3; ++axis)
             EXPECT_NEAR(surface.positions.at(i, axis), expected.positions.at(i, axis), 1e-4);
+}
+
+/// Packed grids of two steps in a file, and the one between them: as it is read in parts, and all in memory.
+struct BetweenTwo {
+    TemporaryFolder folder;
+    PackedGrid blended, whole;
+
+    BetweenTwo(const PackedGrid& first, const PackedGrid& second, double fraction, std::uint64_t memory) {
+        SavePackedOptions saving;
+        saving.chunk_bytes = 500;
+        PackedWriter writer = PackedWriter::create(first, folder.file("a.isotet"), saving).value();
+        writer.add_step(second, std::nullopt).value();
+        writer.commit().value();
+        blended = PackedFile::open(folder.file("a.isotet"), {memory}).value().interpolated("", 0, fraction).value();
+        whole = PackedGrid(core::whole_of(blended.shared_data(), {}).value());
+    }
+    void expect_same_boundary() const {
+        EXPECT_TRUE(bytes_of(boundary_of(blended, {blended}).value()) == bytes_of(boundary_of(whole, {whole}).value()));
+    }
+    void expect_same_surface(double isovalue, Normals normals = Normals::none) const {
+        ExtractOptions options;
+        options.normals = normals;
+        EXPECT_TRUE(bytes_of(extract(blended, isovalue, options).value().surface) ==
+                    bytes_of(extract(whole, isovalue, options).value().surface))
+            << isovalue;
+    }
+};
+
+TEST(GridsBetweenSteps, HaveTheBoundaryOfTheGridInMemory) {
+    const Grid grid = made_grid("mixed", 5, {"gyroid"});
+    Grid far = grid; // values and points that are rounded as they are stored
+    std::vector<double> points, next_points, values, next_values;
+    for (std::size_t i = 0; i < grid.points.tuples(); ++i) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            points.push_back(1e5 + grid.points.at(i, axis) / 3);
+            next_points.push_back(1e5 + grid.points.at(i, axis) / 2.9);
+        }
+        values.push_back(1e6 + grid.point_fields[0].values.at(i) / 7);
+        next_values.push_back(3e-30 * grid.point_fields[0].values.at(i));
+    }
+    far.points = Array::own(std::move(points), 3);
+    for (const Precision precision : {Precision::float32, Precision::float64}) {
+        const PackedGrid first = pack(far, field_of(values), {.precision = precision}).value();
+        const PackedGrid second = first.with_field(field_of(next_values)).value();
+        const PackedGrid moved = second.with_points(Array::own(std::vector<double>(next_points), 3)).value();
+        for (const PackedGrid& next : {second, moved})
+            for (const double fraction : {0.2, 1.0 / 3}) {
+                const BetweenTwo two(first, next, fraction, 1 << 20);
+                two.expect_same_boundary();
+                two.expect_same_surface(1e6 * (1 - fraction));
+            }
+    }
+}
+
+TEST(GridsBetweenSteps, MissNothingWhereValuesBecomeTooSmallToBeStored) {
+    const Grid grid = made_grid("kuhn", 8, {"gyroid"});
+    const std::vector<float> tiny(grid.points.tuples(), -1e-25F); // which is scaled up in its own step
+    std::vector<float> small;
+    for (std::size_t i = 0; i < grid.points.tuples(); ++i)
+        small.push_back(grid.points.at(i) < 0.4 ? -3e-21F : -1.5e-21F);
+    const PackedGrid first = pack(grid, field_of(tiny)).value(), second = first.with_field(field_of(small)).value();
+    ASSERT_GT(first.field().scale, second.field().scale);
+    const BetweenTwo two(first, second, 0.4, 1 << 20);
+    EXPECT_GT(extract(two.whole, 0).value().surface.triangle_count(), 0u);
+    two.expect_same_surface(0);
+}
+
+TEST(GridsBetweenSteps, MissNoGroupWhereValuesLieFarFromZero) {
+    const Grid grid = made_grid("kuhn", 10, {"gyroid"});
+    std::vector<float> values;
+    for (std::size_t i = 0; i < grid.points.tuples(); ++i)
+        values.push_back(1e6F + 0.0625F * std::round(4 * static_cast<float>(grid.point_fields[0].values.at(i))));
+    const PackedGrid packed = pack(grid, field_of(values)).value();
+    for (int i = 1; i < 20; ++i) {
+        const BetweenTwo two(packed, packed, i / 20.0, 1 << 20);
+        for (int k = -6; k < 7; ++k) two.expect_same_surface(1e6 + 0.0625 * k);
+    }
+}
+
+TEST(GridsBetweenSteps, HaveGradientsBetweenThoseOfBoth) {
+    const Grid grid = made_grid("mixed", 5, {"gyroid", "plane"});
+    const PackedGrid first = pack(grid, find_field(grid, "gyroid").value(), {.gradients = true}).value();
+    const PackedGrid second = first.with_field({"gyroid", grid.point_fields[1].values, false, {}}).value();
+    for (const std::uint64_t memory : memory_limits) {
+        const BetweenTwo two(first, second, 0.25, memory), near(first, second, 1e-9, memory);
+        two.expect_same_surface(0.1, Normals::gradient);
+        ExtractOptions options;
+        options.normals = Normals::gradient;
+        const Array normals = extract(near.blended, 0.1, options).value().surface.normals;
+        const Array expected = extract(first, 0.1, options).value().surface.normals;
+        ASSERT_EQ(normals.size(), expected.size());
+        for (std::size_t i = 0; i < normals.tuples(); ++i)
+            for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(normals.at(i, axis), expected.at(i, axis), 1e-3);
+        EXPECT_EQ(two.blended.report().gradient_bytes, 4 * two.blended.report().points);
+    }
+    const PackedGrid plain = pack(grid, find_field(grid, "gyroid").value()).value();
+    const BetweenTwo without(plain, plain, 0.5, 1 << 20);
+    EXPECT_EQ(without.blended.report().gradient_bytes, 0u);
 }
 
 TEST(GridsBetweenSteps, AreRefusedWhereThereIsNone) {

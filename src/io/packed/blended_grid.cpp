@@ -15,6 +15,7 @@
 #include "io/packed/checks.hpp"
 #include "io/packed/file_arrays.hpp"
 #include "io/packed/file_residency.hpp"
+#include "numbers/normal_code.hpp"
 #include "numbers/storage.hpp"
 #include "packed/field_storage.hpp"
 #include "packed/set_field.hpp"
@@ -108,9 +109,25 @@ void set_storage(const Packed& from, const Packed& to, double fraction, Packed& 
     report.offset = packed.storage.offset;
     report.scale = packed.storage.scale;
     report.unchanged = unchanged;
-    packed.gradients = {};
-    packed.report.gradient_bytes = 0;
     packed.storage_cache = std::make_shared<core::StorageCache>();
+}
+
+/// Directions of the gradients of both steps, of unit length each: how steep they are is not known.
+std::uint32_t blended_direction(std::uint32_t a, std::uint32_t b, double fraction) {
+    std::array<double, 3> sum{};
+    for (const auto& [code, part] : {std::pair(a, 1 - fraction), std::pair(b, fraction)}) {
+        const std::array<int, 3> n = core::decode_normal(code);
+        const double x = n[0], y = n[1], z = n[2], length = std::sqrt(x * x + y * y + z * z);
+        if (length == 0) continue;
+        for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += part * n[axis] / length;
+    }
+    return core::encode_normal(sum);
+}
+
+void blend_gradients(const Packed& from, const Packed& to, double fraction, std::uint64_t first, std::uint64_t last,
+                     Packed& packed) {
+    for (std::uint64_t i = first; i < last; ++i)
+        packed.gradients[i] = blended_direction(from.gradients[i], to.gradients[i], fraction);
 }
 
 std::array<double, 3> blended(const std::array<double, 3>& a, const std::array<double, 3>& b, double fraction) {
@@ -190,7 +207,7 @@ private:
 
     std::shared_ptr<FileResidency> from_, to_;
     double fraction_;
-    bool moves_;
+    bool moves_, has_gradients_;
     Packed packed_;
     std::vector<std::unique_ptr<CachedPieces>> made_; ///< values; and positions where points move
 };
@@ -201,11 +218,14 @@ BlendedResidency::BlendedResidency(std::shared_ptr<FileResidency> from, std::sha
       to_(std::move(to)),
       fraction_(fraction),
       moves_(!same_points(from_->packed(), to_->packed())),
+      has_gradients_(from_->field().gradients && to_->field().gradients),
       packed_(from_->packed()) {
     set_storage(from_->packed(), to_->packed(), fraction, packed_);
+    if (!has_gradients_) packed_.report.gradient_bytes = 0;
     const ArrayMaker maker(ArrayMaker::As::reserved, from_->store()->cache().places());
-    FieldEntry without_gradients;
-    std::vector<ChunkedArray> values = make_value_arrays(without_gradients, maker, packed_);
+    FieldEntry field;
+    field.gradients = has_gradients_;
+    std::vector<ChunkedArray> values = make_value_arrays(field, maker, packed_);
     if (packed_.single()) {
         make_ranges<float>();
         add(std::move(values), [this](std::size_t chunk) { fill_values<float>(chunk); });
@@ -262,7 +282,9 @@ void BlendedResidency::fill_values(std::size_t chunk) {
     const ChunkRange range = range_of(chunk);
     const Packed &from = from_->packed(), &to = to_->packed();
     const Blend<Real> both = blend<Real>();
-    blend_values<Real>(from, to, both, range.first_point, range.first_point + range.points, packed_);
+    const std::uint64_t first_point = range.first_point, last_point = first_point + range.points;
+    blend_values<Real>(from, to, both, first_point, last_point, packed_);
+    if (has_gradients_) blend_gradients(from, to, fraction_, first_point, last_point, packed_);
     for (std::uint64_t c = range.first_cluster; c < range.first_cluster + range.clusters; ++c) {
         const core::ClusterHeader& h = packed_.headers[c];
         const core::Range<Real> cluster = packed_.as<Real>().ranges[c];
@@ -336,15 +358,18 @@ Result<std::shared_ptr<const Packed>> BlendedResidency::whole(const Progress& pr
             packed->group_ranges = core::SharedBuffer<core::GroupRange>(packed->groups());
             packed->has_no_data = core::SharedBuffer<std::uint8_t>(packed->clusters());
             if (moves_) reals.positions = core::SharedBuffer<Real>(3 * points);
+            packed->gradients = core::SharedBuffer<std::uint32_t>(has_gradients_ ? points : 0);
             const Blend<Real> both = blend<Real>();
             core::parallel_ranges(points, 1 << 14, [&](std::size_t begin, std::size_t end) {
                 blend_values<Real>(**a, **b, both, begin, end, *packed);
                 if (moves_) blend_positions<Real>(**a, **b, fraction_, begin, end, *packed);
+                if (has_gradients_) blend_gradients(**a, **b, fraction_, begin, end, *packed);
             });
             core::store_ranges<Real>(*packed, 0, packed->clusters(), progress);
         },
         packed->reals);
     packed->origin = packed_.origin;
+    packed->report.gradient_bytes = packed_.report.gradient_bytes;
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "reading was cancelled"};
     return std::shared_ptr<const Packed>(std::move(packed));
 }
