@@ -53,6 +53,7 @@ struct Scratch {
     std::array<Real, max_vertices> weights;
     std::array<std::uint32_t, max_vertices + 32> numbers{}; ///< of vertices, by local number; SIMD code reads more
     std::array<std::uint64_t, max_vertices> wide_numbers;
+    bool seams_differ = false; ///< a triangle has a vertex that is not there
 };
 
 template <class Real>
@@ -139,9 +140,12 @@ private:
         if (record.has_ends) write_vertices({record.ends(), record.weights(), record.listed}, vertex, target, s);
         else Simd::copy(record.positions(), 3u * record.listed, target.positions + 3 * vertex);
 
-        if (target.triangles)
-            write_triangles<Simd>(record, vertex, s.numbers.data(), target.triangles + 3 * start.triangle);
-        else write_triangles<Simd>(record, vertex, s.wide_numbers.data(), target.wide_triangles + 3 * start.triangle);
+        const bool all_there = target.triangles
+                                   ? write_triangles<Simd>(record, vertex, target.vertices, s.numbers.data(),
+                                                           target.triangles + 3 * start.triangle)
+                                   : write_triangles<Simd>(record, vertex, target.vertices, s.wide_numbers.data(),
+                                                           target.wide_triangles + 3 * start.triangle);
+        s.seams_differ |= !all_there;
         if (record.has_tets) write_sources(record, selection_.clusters[place], target.source_cells + start.triangle);
     }
 
@@ -230,17 +234,23 @@ private:
     }
 
     /// `numbers`  room for those of shared vertices
+    /// Returns whether all vertices are there.
     template <class Simd, class Index>
-    void write_triangles(const Record<Real>& record, std::uint64_t first_vertex, Index* numbers, Index* out) const {
+    bool write_triangles(const Record<Real>& record, std::uint64_t first_vertex, std::uint64_t vertices, Index* numbers,
+                         Index* out) const {
         const SharedVertex* const shared = record.shared_vertices();
-        for (std::size_t i = 0; i < record.shared; ++i)
-            numbers[record.listed + i] =
-                static_cast<Index>(counted_.starts[shared[i].owner].vertex + masks_.rank(shared[i]));
+        bool all_there = true;
+        for (std::size_t i = 0; i < record.shared; ++i) {
+            const std::uint64_t vertex = counted_.starts[shared[i].owner].vertex + masks_.rank(shared[i]);
+            all_there &= vertex < vertices;
+            numbers[record.listed + i] = static_cast<Index>(vertex);
+        }
         const auto number = [&]<class Local>(const Local* local) {
             Simd::number(local, 3u * record.triangles, record.listed, first_vertex, numbers, out);
         };
         if (record.wide()) number(static_cast<const std::uint16_t*>(record.corners()));
         else number(static_cast<const std::uint8_t*>(record.corners()));
+        return all_there;
     }
 
     void write_sources(const Record<Real>& record, std::size_t cluster, std::int64_t* out) const {
@@ -298,7 +308,13 @@ Result<void> emit(const Packed& packed, const Wanted<Real>& wanted, const Select
             emit_places(emitter, first + begin, first + end, *scratch.local());
         });
     };
-    return batches.run(emit_batch, [&](std::size_t place) { return emitter.needs_cluster(place); });
+    if (auto ok = batches.run(emit_batch, [&](std::size_t place) { return emitter.needs_cluster(place); }); !ok)
+        return ok;
+    if (std::ranges::any_of(scratch, [](const auto& one) { return one->seams_differ; }))
+        return Error{
+            ErrorCode::invalid_data, // of a grid from a file
+            "a triangle has a vertex that is not there: the seam edges of two clusters differ, but must be the same"};
+    return {};
 }
 
 template <class Real>

@@ -2,7 +2,6 @@
 #include "cpu/extract.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <numeric>
 #include <string_view>
 
@@ -58,26 +57,6 @@ std::vector<const core::Packed*> grids_of(const core::Packed& packed, const ops:
     return grids;
 }
 
-/// Whether all triangles have vertices that are there. Of a grid from a file that is not so where seam edges are others in
-/// their owner than in a cluster that names them.
-template <class Real>
-bool all_below(const Target<Real>& target, const Total& total) {
-    std::atomic<bool> all{true};
-    core::parallel_ranges(3 * total.triangles, 1 << 16, [&](std::size_t begin, std::size_t end) {
-        std::uint64_t largest = 0;
-        for (std::size_t i = begin; i < end; ++i)
-            largest = std::max<std::uint64_t>(largest, target.triangles ? target.triangles[i]
-                                                                        : target.wide_triangles[i]);
-        if (largest >= total.vertices && begin < end) all.store(false, std::memory_order_relaxed);
-    });
-    return all;
-}
-
-Error seams_differ() {
-    return {ErrorCode::invalid_data,
-            "a triangle has a vertex that is not there: the seam edges of two clusters differ, but must be the same"};
-}
-
 /// What is needed is known exactly only once everything has been counted. But a bound is known from the selected
 /// clusters, and mostly there is far more memory. Asking the system how much takes longer than extracting a small
 /// surface.
@@ -131,9 +110,6 @@ Result<ops::RawSurfaces> extract(const core::Packed& packed, const ops::Request<
     if (auto ok = emit(packed, wanted, selection, masks, counted, all_targets, batches, progress); !ok)
         return ok.error();
     if (progress.cancelled()) return cancelled();
-    if (packed.residency)
-        for (std::size_t k = 0; k < totals.size(); ++k)
-            if (!all_below(targets[k], totals[k])) return seams_differ();
 
     out.surfaces.resize(order.size());
     for (std::size_t k = 0; k < order.size(); ++k) {

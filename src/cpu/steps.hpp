@@ -119,6 +119,7 @@ struct Total {
 /// Where the parts of a surface are written; null where not wanted.
 template <class Real>
 struct Target {
+    std::uint64_t vertices = 0; ///< how many there are
     Real* positions = nullptr;
     std::uint32_t* triangles = nullptr;
     std::uint64_t* wide_triangles = nullptr; ///< instead

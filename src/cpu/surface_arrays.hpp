@@ -31,6 +31,7 @@ public:
 
     Target<Real> target(const ops::Request<Real>& request) {
         Target<Real> target;
+        target.vertices = total_.vertices;
         target.positions = positions_.data();
         if (wide_) target.wide_triangles = wide_triangles_.data();
         else target.triangles = triangles_.data();
