@@ -6,6 +6,7 @@
 #include <mutex>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
@@ -74,14 +75,63 @@ private:
     std::size_t count_;
 };
 
+/// Arenas that no call is in, kept for later ones: oneTBB keeps memory of each that a worker was in, and its threads look
+/// through all of them.
+class IdleArenas {
+public:
+    struct Arena {
+        int threads;
+        std::unique_ptr<tbb::task_arena> arena;
+    };
+
+    IdleArenas() { idle_.reserve(most); }
+
+    Arena take(int threads) {
+        const std::lock_guard lock(mutex_);
+        const auto at = std::ranges::find(idle_, threads, &Arena::threads);
+        if (at == idle_.end()) return {threads, std::make_unique<tbb::task_arena>(threads)};
+        Arena arena = std::move(*at);
+        idle_.erase(at);
+        return arena;
+    }
+    void give_back(Arena arena) noexcept {
+        const std::lock_guard lock(mutex_);
+        if (idle_.size() < most) idle_.push_back(std::move(arena));
+    }
+
+private:
+    static constexpr std::size_t most = 64;
+
+    std::mutex mutex_;
+    std::vector<Arena> idle_;
+};
+
+/// An arena of one call.
+class CallArena {
+public:
+    explicit CallArena(int threads) : arena_(all().take(threads)) {}
+    ~CallArena() { all().give_back(std::move(arena_)); }
+    CallArena(const CallArena&) = delete;
+    CallArena& operator=(const CallArena&) = delete;
+
+    void execute(const std::function<void()>& work) { arena_.arena->execute(work); }
+
+private:
+    static IdleArenas& all() {
+        static IdleArenas& kept = *new IdleArenas; // not destroyed: oneTBB may be gone by then
+        return kept;
+    }
+
+    IdleArenas::Arena arena_;
+};
+
 } // namespace
 
 void with_threads(int threads, const std::function<void()>& work) {
     constexpr int most = 1024; // an arena takes memory for each thread it may get
     const int count = threads > 0 ? std::min(threads, most) : tbb::info::default_concurrency();
     const AllowThreads allowed(count);
-    tbb::task_arena arena(count);
-    arena.execute(work);
+    CallArena(count).execute(work);
 }
 
 int threads_here() { return tbb::this_task_arena::max_concurrency(); }

@@ -1,7 +1,10 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Threads for one piece of work, and what is left of them for the rest of the process.
+#include <unistd.h>
+
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <future>
 #include <stdexcept>
 #include <thread>
@@ -52,6 +55,24 @@ TEST(WithThreads, KeepsTheLimitForOthersThatStillNeedIt) {
     large_ended.set_value();
     small.join();
     EXPECT_EQ(allowed(), cores());
+}
+
+/// Bytes of the process that are in memory.
+std::size_t resident() {
+    std::size_t all = 0, in_memory = 0;
+    std::ifstream("/proc/self/statm") >> all >> in_memory;
+    return in_memory * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+}
+
+TEST(WithThreads, TakesNoMemoryForEachCall) {
+    const auto call = [](int times) {
+        for (int i = 0; i < times; ++i)
+            with_threads(2, [] { parallel_ranges(64, 1, [](std::size_t, std::size_t) { std::this_thread::yield(); }); });
+    };
+    call(500);
+    const std::size_t before = resident();
+    call(5000); // 48 MB, when each has an arena of its own
+    EXPECT_LT(resident(), before + (std::size_t{16} << 20));
 }
 
 } // namespace
