@@ -12,18 +12,28 @@
 
 namespace isotet::checking {
 
+/// Of triangles with a corner twice.
+enum class Collapsed : std::uint8_t {
+    no_part,   ///< they are passed over
+    some_part, ///< each is in the part of its first corner, and joins none
+};
+
 /// Numbers the components by their lowest vertex. Unused vertices are in none.
 template <class Index>
 class Components {
 public:
-    explicit Components(const Mesh& mesh) : numbers_(mesh.vertex_count()) {
+    explicit Components(const Mesh& mesh, Collapsed collapsed = Collapsed::no_part) : numbers_(mesh.vertex_count()) {
         constexpr std::size_t grain = 1 << 14;
         core::DisjointSets<Index> sets(mesh.vertex_count());
         std::vector<std::uint8_t> used(mesh.vertex_count());
         core::parallel_each(mesh.triangles(), grain, [&](std::size_t triangle) {
             const Corners corners = mesh.corners(triangle);
-            if (has_equal_corners(corners)) return;
-            for (const std::uint64_t v : corners) std::atomic_ref(used[v]).store(1, std::memory_order_relaxed);
+            const auto use = [&](std::uint64_t v) { std::atomic_ref(used[v]).store(1, std::memory_order_relaxed); };
+            if (has_equal_corners(corners)) {
+                if (collapsed == Collapsed::some_part) use(corners[0]);
+                return;
+            }
+            for (const std::uint64_t v : corners) use(v);
             sets.unite(static_cast<Index>(corners[0]), static_cast<Index>(corners[1]));
             sets.unite(static_cast<Index>(corners[0]), static_cast<Index>(corners[2]));
         });

@@ -182,7 +182,7 @@ Result<SurfaceParts> parts_of(const Surface& surface, const Progress& progress) 
     const Result<Mesh> opened = Mesh::open(surface);
     if (!opened) return opened.error();
     const Mesh& mesh = *opened;
-    const Components<std::uint64_t> components(mesh);
+    const Components<std::uint64_t> components(mesh, Collapsed::some_part);
     if (components.count() > std::numeric_limits<std::uint32_t>::max())
         return invalid_data(fmt::format("the surface has {} parts, but must have fewer than 2^32", components.count()));
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "finding the parts of a surface was cancelled"};

@@ -151,6 +151,19 @@ TEST(Parts, TouchARegionWhereATriangleIsInACellOfIt) {
     EXPECT_EQ(parts_touching(Surface{}, found, {"material", 1, 1}).error().code, ErrorCode::invalid_argument);
 }
 
+TEST(Parts, OfTrianglesWithACornerTwiceAreParts) {
+    Surface surface; // a triangle, one that hangs on it, and two that are alone, of one vertex and of two
+    surface.positions = Array::own(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 5, 5, 6, 5, 5, 7, 7, 7}, 3);
+    surface.triangles = Array::own(std::vector<std::uint32_t>{0, 1, 2, 2, 2, 4, 3, 3, 4, 5, 5, 5}, 3);
+    const SurfaceParts found = find_parts(surface).value();
+    ASSERT_EQ(found.parts.size(), 3u);
+    EXPECT_EQ(found.parts[0].triangles, 2u);
+    EXPECT_EQ(found.parts[0].area, 0.5);
+    EXPECT_EQ(found.parts[1].area, 0);
+    EXPECT_EQ(keep_parts(surface, found, {0}).value().triangle_count(), 2u);
+    EXPECT_EQ(keep_parts(surface, found, {1, 2}).value().triangle_count(), 2u);
+}
+
 TEST(Parts, OfNothingAreNone) { EXPECT_TRUE(find_parts(Surface{}).value().parts.empty()); }
 
 TEST(Parts, AskedForThatAreNotThereAreErrors) {
