@@ -17,6 +17,7 @@
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
 #include "base/memory.hpp"
+#include "grid/orientation.hpp"
 #include "numbers/bounds.hpp"
 #include "numbers/storage.hpp"
 #include "session/linear_input.hpp"
@@ -66,6 +67,30 @@ Result<void> split_all(ContourInput& input, Array& source, const Run& run) {
     input.grid.cell_fields = {};
     source = std::move(cells).to_array();
     return {};
+}
+
+/// Corners of the cells, those of tets of curved cells in the order that faces them outward: nodes of a quadratic wedge go around
+/// it the other way than corners of a linear one.
+Array with_turned_tets(const Cells& curved, const LinearGrid& linear, const Grid& grid, const core::CellReader& cells) {
+    const core::PointReader points(grid.points);
+    const auto is_of_curved_cell = [&](std::size_t cell) {
+        const std::size_t of = linear.source_cells.empty()
+                                   ? cell
+                                   : static_cast<std::size_t>(linear.source_cells.as<std::uint64_t>()[cell]);
+        return is_curved(curved.types.as<std::uint8_t>()[of]);
+    };
+    return grid.cells.connectivity.visit([&](auto typed) {
+        core::Buffer<std::remove_cvref_t<decltype(typed[0])>> out(typed.size());
+        std::ranges::copy(typed, out.begin());
+        core::parallel_each(cells.count(), 1 << 14, [&](std::size_t cell) {
+            if (cells.type(cell) != static_cast<std::uint8_t>(CellType::tetrahedron) || !is_of_curved_cell(cell)) return;
+            auto* const corners = out.data() + cells.first(cell);
+            core::Tet tet;
+            for (std::size_t k = 0; k < 4; ++k) tet[k] = static_cast<std::uint64_t>(corners[k]);
+            if (points.six_volumes(tet) < 0) std::swap(corners[2], corners[3]);
+        });
+        return std::move(out).to_array();
+    });
 }
 
 /// Half of the largest side of the points' box.
@@ -319,6 +344,7 @@ Clipper::~Clipper() = default;
 Result<Clipper> Clipper::create(ContourInput given, const ContourOptions& options, const Run& run) {
     return core::carry_out("starting to clip", run, [&](const Progress& progress) -> Result<Clipper> {
         const Run inside{core::threads_here(), progress};
+        const Cells user_cells = given.grid.cells;
         if (options.normals != Normals::none) return invalid_argument("cells have no normals, but some were asked for");
         Result<solid::SolidInput> taken = solid::take_input(std::move(given), options, inside);
         if (!taken) return taken.error();
@@ -330,9 +356,15 @@ Result<Clipper> Clipper::create(ContourInput given, const ContourOptions& option
         data->options = options;
         if (options.split_cells)
             if (auto ok = split_all(data->input, data->cells_before_splitting, inside); !ok) return ok.error();
-        const auto cells = core::CellReader::open(data->input.grid);
+        auto cells = core::CellReader::open(data->input.grid);
         if (!cells) return cells.error();
         if (auto sound = core::check_cells(data->input.grid, *cells, progress); !sound) return sound.error();
+        if (data->linear && !options.split_cells && has_curved_cells(user_cells)) {
+            data->input.grid.cells.connectivity =
+                with_turned_tets(user_cells, *data->linear, data->input.grid, *cells);
+            cells = core::CellReader::open(data->input.grid);
+            if (!cells) return cells.error();
+        }
         ContourInput of_surfaces = data->input;
         of_surfaces.cell_fields = {};
         ContourOptions surface_options = options;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 #include <string>
 #include <utility>
@@ -11,6 +12,7 @@
 
 #include <isotet/solid.hpp>
 
+#include "grid/orientation.hpp"
 #include "solid/all_cases.hpp"
 #include "solid/cell_boundary.hpp"
 #include "support/mixed_grid.hpp"
@@ -305,6 +307,41 @@ TEST(ClipMisuse, RangesAndOptionsThatMakeNoSenseAreErrors) {
     }
     const Clipper other = std::move(clipper);
     EXPECT_EQ(clipper.clip({0, 1}).error().code, ErrorCode::invalid_argument); // NOLINT
+}
+
+TEST(Clip, TurnsTetsOfCurvedCellsOutward) {
+    Grid grid; // the nodes of a quadratic wedge go around it the other way than those of a linear one
+    grid.points = Array::own(
+        std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 0,  1, 1, .5, 0, 0, .5, .5, 0,
+                            0, .5, 0, .5, 0, 1, .5, .5, 1, 0, .5, 1, 0, 0, .5, 1, 0, .5, 0, 1, .5},
+        3);
+    std::vector<std::int64_t> nodes(15);
+    std::iota(nodes.begin(), nodes.end(), 0);
+    grid.cells.connectivity = Array::own(nodes);
+    grid.cells.offsets = Array::own(std::vector<std::int64_t>{0, 15});
+    grid.cells.types = Array::own(std::vector<std::uint8_t>{26});
+    const PointField x = find_field(grid, "x").value();
+    for (const bool refined : {false, true})
+        for (const double below : {0.6, 5.0}) {
+            SCOPED_TRACE(testing::Message() << refined << " " << below);
+            ContourOptions options;
+            if (refined) options.refine = RefineOptions{};
+            Clipper clipper = Clipper::create({grid, x, {}, {}}, options).value();
+            const Grid clipped = clipper.clip(SolidRange::below(below)).value().grid;
+            const core::PointReader points(clipped.points);
+            const auto cells = core::CellReader::open(clipped).value();
+            double six_volumes = 0;
+            for (std::size_t cell = 0; cell < cells.count(); ++cell) {
+                if (cells.type(cell) != 10) continue;
+                core::Tet tet;
+                for (std::size_t k = 0; k < 4; ++k) tet[k] = cells.corner(cells.first(cell) + k);
+                EXPECT_GT(points.six_volumes(tet), 0);
+                six_volumes += points.six_volumes(tet);
+            }
+            if (below == 5) {
+                EXPECT_NEAR(six_volumes, 3, 1e-12);
+            }
+        }
 }
 
 } // namespace
