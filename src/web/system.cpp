@@ -14,6 +14,7 @@ extern "C" {
 void* __cxa_allocate_exception(std::size_t) { __builtin_trap(); }
 void __cxa_throw(void*, void*, void (*)(void*)) { __builtin_trap(); }
 int madvise(void*, std::size_t, int) { return 0; }
+int mprotect(void*, std::size_t, int) { return 0; } // tests alone ask for it
 int __cxa_thread_atexit(void (*)(void*), void*, void*) { return 0; } // the one thread does not end
 }
 
