@@ -47,7 +47,7 @@ private:
     std::string why_left_out(const FieldInfo& field) const;
     Result<void> take_all_fields();
     Result<void> choose_cell_fields();
-    Result<void> write_cell_fields(const Grid& grid);
+    Result<void> write_cell_fields(const Grid& grid, std::size_t step);
     std::vector<std::string> packed_names(const std::string& name) const;
     Result<void> pack_step(std::size_t step);
     Result<PackedGrid> packed_with(const Grid& grid, PointField field, std::size_t step);
@@ -63,6 +63,7 @@ private:
     std::vector<std::string> names_; ///< of fields
     std::optional<Contour> contour_; ///< which knows what must be packed again
     std::optional<PackedWriter> writer_;
+    std::vector<std::string> written_cell_fields_; ///< of a step so far
     PackNumbers numbers_;
 };
 
@@ -103,6 +104,9 @@ Error PackRun::explain(Error error) const {
 Result<void> PackRun::open() {
     if (ending_of(job_.out) != ".isotet")
         return refusal("OUT, '{}', is a packed file, so its name must end in .isotet", job_.out);
+    constexpr int most_value_bits = 24;
+    if (job_.value_bits && (*job_.value_bits < 1 || *job_.value_bits > most_value_bits))
+        return refusal("`value_bits` is {}, but it must be from 1 to {}", *job_.value_bits, most_value_bits);
     std::vector<std::string> outputs{job_.out};
     outputs.insert(outputs.end(), job_.other_outputs.begin(), job_.other_outputs.end());
     if (auto paths = check_output_paths({job_.grid.file}, outputs); !paths) return paths;
@@ -132,7 +136,8 @@ Result<void> PackRun::look_at_file() {
     job_.precision = info.precision;
     job_.source_cells = info.source_cells;
     job_.gradients = info.fields.back().gradients;
-    for (const PackedCellFieldInfo& field : info.cell_fields) add_names(job_.cell_fields, {field.name});
+    for (const PackedCellFieldInfo& field : info.cell_fields)
+        for (auto* const names : {&job_.cell_fields, &written_cell_fields_}) add_names(*names, {field.name});
     if (!job_.fields.empty()) return {};
     for (const PackedFieldInfo& field : info.fields)
         if (field.step + 1 == info.steps) job_.fields.push_back(field.report.name);
@@ -328,12 +333,19 @@ Result<void> PackRun::write(const PackedGrid& packed, std::size_t step, bool fir
     return written;
 }
 
-Result<void> PackRun::write_cell_fields(const Grid& grid) {
+Result<void> PackRun::write_cell_fields(const Grid& grid, std::size_t step) {
     const core::Stopwatch writing;
     for (const std::string& name : job_.cell_fields) {
         const auto field = std::ranges::find(grid.cell_fields, name, &Field::name);
-        if (field == grid.cell_fields.end()) continue; // not in this step
+        const bool is_there = std::ranges::find(written_cell_fields_, name) != written_cell_fields_.end();
+        if (field == grid.cell_fields.end()) {
+            if (is_there)
+                caller_.note(fmt::format("step {} lacks cell field '{}': in the file it has that of the step before",
+                                         step, name));
+            continue;
+        }
         if (auto written = writer_->add_cell_field(*field); !written) return written;
+        if (!is_there) written_cell_fields_.push_back(name);
     }
     numbers_.write_seconds += writing.seconds();
     return {};
@@ -387,7 +399,7 @@ Result<void> PackRun::pack_step(std::size_t step) {
         numbers_.fields.push_back(packed->field());
         numbers_.pack = packed->report();
     }
-    return write_cell_fields(*grid);
+    return write_cell_fields(*grid, step);
 }
 
 Result<void> PackRun::run() {

@@ -122,6 +122,20 @@ TEST(PackFile, ValuesAreRoundedToBitsOfTheirRange) {
     EXPECT_LE(change, (upper - lower) / (1 << 16));
 }
 
+TEST(PackFile, RefusesBitsThatFloat32DoesNotHave) {
+    const test::TemporaryFolder folder;
+    for (const int bits : {-1, 0, 25}) {
+        PackJob job;
+        job.grid.file = "make:kuhn:2:gyroid";
+        job.out = folder.file("a.isotet");
+        job.value_bits = bits;
+        Listener listener;
+        const auto packed = pack_file(job, listener);
+        ASSERT_FALSE(packed) << bits;
+        EXPECT_EQ(packed.error().code, ErrorCode::invalid_argument);
+    }
+}
+
 TEST(PackFile, RoundedValuesKeepTheirOffset) {
     const test::TemporaryFolder folder;
     Listener listener;
