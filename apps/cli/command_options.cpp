@@ -40,7 +40,8 @@ void add_interpolate(const Command& command, std::uint64_t& between, const std::
         .add_count(
             "--interpolate", {1, most}, [&](std::uint64_t n) { between = n; }, "N",
             "N more " + what +
-                " between two steps of a packed file, of values (1-w)a+wb; points likewise where they move")
+                " between two steps of a packed file, of values (1-w)a+wb; points likewise where they move. {step} in "
+                "OUT then counts all of them")
         .needs(command.option("--all-steps"));
 }
 
