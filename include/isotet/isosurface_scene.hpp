@@ -139,7 +139,9 @@ enum class ExtractOn : std::uint8_t {
 struct PackedScene {
     PackedGrid grid;                  ///< with the field to contour
     std::optional<PackedGrid> colors; ///< with the field of SceneLook::colors or boundary_colors, if it is one of points
-    bool contours = true;             ///< else only the boundary is drawn
+    bool contours = true;             ///< else only boundary and slices are drawn
+    /// Gives the same grid with the field of a plane, as PackedFile::sliced() does, for SceneLook::slices.
+    std::function<Result<PackedGrid>(const Plane& plane, const Run& run)> sliced = {};
 };
 
 /// A grid to contour, and how.
@@ -159,7 +161,7 @@ struct IsosurfaceOptions {
     std::function<Result<Grid>(const Run& run)> all_cells = {};
     std::vector<double> expected_isovalues = {}; ///< these
     Box bounds = {};                             ///< of the points that any cell has; with `packed`, too
-    /// In place of `grid` and `field`. The CPU extracts; there are no slices and solids, and cells colour isosurfaces
+    /// In place of `grid` and `field`. The CPU extracts; there are no solids, and cells colour isosurfaces and slices
     /// only, of a grid that was packed with source cells.
     std::optional<PackedScene> packed = {};
     std::shared_ptr<KnownBoundary> known_boundary = {}; ///< of scenes before, whose grids may have the same cells; or null

@@ -107,6 +107,7 @@ struct PackedFileInfo {
     Precision precision = Precision::float32;
     ScalarType point_type = ScalarType::float32;
     std::uint64_t user_points = 0, user_cells = 0; ///< of the grid that was packed
+    std::uint64_t unpacked_bytes = 0; ///< memory that read() takes for a step with one field: packed arrays, and those of a grid
     PackReport report;
     std::uint64_t chunks = 0;
     bool source_cells = false;

@@ -20,6 +20,7 @@
 #include "base/stopwatch.hpp"
 #include "jobs/extract_notes.hpp"
 #include "jobs/extract_plan.hpp"
+#include "jobs/packed_picture.hpp"
 #include "jobs/part_table.hpp"
 #include "jobs/refinement_record.hpp"
 #include "jobs/refuse.hpp"
@@ -378,8 +379,7 @@ Result<void> ExtractRun::open_packed() {
     const bool has_all = std::ranges::any_of(info.fields, has_field) && (!job_.source_cells || info.source_cells) &&
                          (!plan_.carried || std::ranges::all_of(plan_.carried->components, is_packed)) && !plan_.color;
     if (reworks_cells || !has_all) {
-        caller_.note(
-            "all of the packed file is read and unpacked: what was asked for needs its cells, or is not packed");
+        caller_.note(note_of_unpacking(info));
         return interpolates_unless(true, "what else was asked for needs all of the packed file, or is not packed");
     }
     if (auto ok = interpolates_unless(job_.field.shape && !info.moved_points.empty(),

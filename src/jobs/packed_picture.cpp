@@ -5,14 +5,24 @@
 #include <cmath>
 #include <vector>
 
+#include <fmt/format.h>
+
+#include <isotet/text.hpp>
+
 namespace isotet::jobs {
 
 bool needs_cells(const DrawJob& job) {
     const bool shares = !job.shares.empty() || job.sweep_shares.lower || job.sweep_shares.upper;
-    return shares || !job.slices.empty() || !job.stretch.empty() || job.solid || job.split_cells ||
-           !job.dirac_shares.empty() || job.method.draw || job.method.extract == Method::direct ||
-           job.engine == EngineChoice::vulkan || job.grid.merge_points || !job.grid.displace.empty() ||
-           !job.grid.blocks.empty() || !job.grid.cells.empty();
+    return shares || !job.stretch.empty() || job.solid || job.split_cells || !job.dirac_shares.empty() ||
+           job.method.draw || job.method.extract == Method::direct || job.engine == EngineChoice::vulkan ||
+           job.grid.merge_points || !job.grid.displace.empty() || !job.grid.blocks.empty() || !job.grid.cells.empty();
+}
+
+std::string note_of_unpacking(const PackedFileInfo& file) {
+    return fmt::format(
+        "all of the packed file is read and unpacked, which takes {} of memory: what was asked for needs its "
+        "cells, or is not packed",
+        format_bytes(file.unpacked_bytes));
 }
 
 const PackedFieldInfo* packed_field(const PackedFileInfo& file, std::string_view name, std::size_t step,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <string_view>
 
 #include <isotet/scene.hpp>
@@ -13,6 +14,9 @@ namespace isotet::jobs {
 
 /// Whether a picture needs the cells themselves: else surfaces come from the chunks that isovalues meet.
 bool needs_cells(const DrawJob& job);
+
+/// What is noted before all of a file is unpacked.
+std::string note_of_unpacking(const PackedFileInfo& file);
 
 /// A field that can be contoured and coloured by as it is packed; null where there is none of this name at a step.
 const PackedFieldInfo* packed_field(const PackedFileInfo& file, std::string_view name, std::size_t step,

@@ -116,8 +116,11 @@ Result<void> PictureSource::check_interpolation() const {
     if (!packed_)
         return refusal(
             "`interpolate` is {}, but only packed files have values between steps (isotet pack IN OUT.isotet "
-            "--all-steps), and pictures of their boundary and isosurfaces",
+            "--all-steps), and pictures of their boundary, isosurfaces and slices",
             job_.interpolate);
+    if (!job_.slices.empty() && !packed_->info().moved_points.empty())
+        return refusal("`interpolate` is {}, but the points of the file move, and slices are those of a step",
+                       job_.interpolate);
     for (std::size_t i = 1; i < steps_.size(); ++i)
         if (steps_[i] != steps_[i - 1] + 1)
             return refusal("`interpolate` is {}, but step {} lacks a field that is drawn", job_.interpolate,
@@ -399,8 +402,23 @@ bool PictureSource::is_packed(std::size_t step, const FoundField& contoured, con
     const auto has = [&](const FoundField& field, bool gradients) {
         return field.name.empty() || packed_field(packed_->info(), field.name, step, gradients);
     };
-    const bool of_cells = !contoured.name.empty() && job_.boundary_color_by.empty() && has_cell_field(colored, step);
+    const bool of_cells = (!contoured.name.empty() || !job_.slices.empty()) && job_.boundary_color_by.empty() &&
+                          has_cell_field(colored, step);
     return has(contoured, job_.shade_by == ShadeBy::gradient) && (of_cells || has(colored, false));
+}
+
+/// Of planes with the same normal one serves all, as long as points do not move.
+Result<PackedGrid> PictureSource::sliced(const Plane& plane, std::size_t step, const Run& run) {
+    std::size_t points = 0;
+    for (const PackedPointsInfo& moved : packed_->info().moved_points)
+        if (moved.step <= step) points = moved.step;
+    if (sliced_step_ != points) sliced_.clear();
+    sliced_step_ = points;
+    const auto known = std::ranges::find_if(sliced_, [&](const auto& one) { return one.first.normal == plane.normal; });
+    if (known != sliced_.end()) return known->second;
+    const Result<PackedGrid> made = packed_->sliced(plane, step, run);
+    if (made) sliced_.emplace_back(plane, *made);
+    return made;
 }
 
 /// Whether a field that colours is one of cells, which the packed file has.
@@ -420,11 +438,11 @@ Result<void> PictureSource::take_packed(const FoundField& contoured, const Found
     };
     const bool contours = !contoured.name.empty();
     const auto first = std::ranges::find(info.fields, step, &PackedFieldInfo::step);
-    Result<PackedGrid> grid = grid_of(contours                ? contoured.name
-                                      : !colored.name.empty() ? colored.name
-                                                              : first->report.name);
+    const bool of_points = !colored.name.empty() && !has_cell_field(colored, step);
+    Result<PackedGrid> grid = grid_of(contours ? contoured.name : of_points ? colored.name : first->report.name);
     if (!grid) return grid.error();
-    contents.packed = PackedScene{*grid, {}, contours};
+    const auto cut = [this, step](const Plane& plane, const Run& run) { return sliced(plane, step, run); };
+    contents.packed = PackedScene{*grid, {}, contours, cut};
     contents.cells = info.user_cells;
     contents.bounds = {info.lower, info.upper};
     for (const PackedPointsInfo& points : info.moved_points)
@@ -485,8 +503,8 @@ Result<PictureSource::Contents> PictureSource::read_contents(std::size_t step, b
         return contents;
     }
     if (source_->info().format == "isotet" && !std::exchange(told_of_cells_, true))
-        caller.note(
-            "all of the packed file is read and unpacked: what was asked for needs its cells, or is not packed");
+        if (const auto file = PackedFile::open(job_.grid.file, {}, caller.run()))
+            caller.note(note_of_unpacking(file->info()));
     if (fraction_ > 0)
         return refusal("`interpolate` is {}, but what is drawn needs all of the packed file, or is not packed",
                        job_.interpolate);

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <isotet/jobs/draw_files.hpp>
@@ -59,6 +60,7 @@ private:
     Result<void> take_packed(const FoundField& contoured, const FoundField& colored, std::size_t step,
                              Contents& contents, Caller& caller);
     Result<void> check_interpolation() const;
+    Result<PackedGrid> sliced(const Plane& plane, std::size_t step, const Run& run);
     Result<Grid> read_for(const FoundField& field, std::size_t step, Caller& caller);
     Result<ColorField> colors_at(std::size_t step, const std::string& name, Caller& caller);
     Result<PointField> field_at(std::size_t step, const std::string& name, Caller& caller);
@@ -80,6 +82,8 @@ private:
     std::optional<GridSource> source_;
     std::optional<PackedFile> packed_; ///< that is drawn without its grid
     bool told_of_cells_ = false;       ///< that all of a packed file is needed
+    std::vector<std::pair<Plane, PackedGrid>> sliced_; ///< of a packed file, for planes of each normal
+    std::optional<std::size_t> sliced_step_;           ///< from which on the points are where they are there
     std::vector<std::size_t> steps_;
     double fraction_ = 0; ///< of the way to the next step
     FirstView first_; ///< where no field is named

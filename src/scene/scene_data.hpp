@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -56,6 +57,7 @@ struct IsosurfaceScene::Data {
 
     Result<void> look_around(const Grid& grid, KnownBoundary* known, const Run& run);
     Result<void> look_around_packed(const IsosurfaceOptions& options, const Run& run);
+    Result<void> make_slices(const std::function<Result<Surface>(const Plane& plane)>& cut);
     void take_boundary(Surface found);
     Result<void> add_boundary();
     Result<void> add_fixed(const Surface& one, const ColorField* field, const Color& color, double opacity);

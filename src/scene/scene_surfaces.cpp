@@ -92,12 +92,12 @@ Result<void> IsosurfaceScene::Data::start_packed(const IsosurfaceOptions& wanted
     const auto by_cells = [](const std::optional<ColorField>& field) {
         return field && field->association == Association::cell;
     };
-    const bool reworks = look.solid || !look.slices.empty() || wanted.draw || by_cells(look.boundary_colors) ||
-                         wanted.where == ExtractOn::device;
+    const bool reworks = look.solid || (!look.slices.empty() && !wanted.packed->sliced) || wanted.draw ||
+                         by_cells(look.boundary_colors) || wanted.where == ExtractOn::device;
     const bool by_points = (look.colors && !by_cells(look.colors)) || look.boundary_colors;
     if (reworks || (by_points && !wanted.packed->colors))
-        return invalid_argument("a packed grid is given, of which the CPU draws isosurfaces, and the boundary coloured by "
-                                "packed fields, and nothing else");
+        return invalid_argument("a packed grid is given, of which the CPU draws isosurfaces, slices, and the boundary "
+                                "coloured by packed fields, and nothing else");
     bounds = wanted.bounds;
     if (auto looked = look_around_packed(wanted, run); !looked) return looked;
     if (look.volume && (device || !wanted.packed->contours))

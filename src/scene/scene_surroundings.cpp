@@ -3,6 +3,7 @@
 #include <utility>
 
 #include <isotet/boundary.hpp>
+#include <isotet/extract.hpp>
 
 #include "base/stopwatch.hpp"
 #include "scene/clip_surface.hpp"
@@ -33,8 +34,42 @@ Result<void> IsosurfaceScene::Data::look_around(const Grid& grid, KnownBoundary*
     }
     report.boundary_seconds = looking.seconds();
     const ColorField* colors = look.colors ? &*look.colors : nullptr;
+    const auto cut = [&](const Plane& plane) { return slice_of(grid, plane, colors, run); };
+    if (auto made = make_slices(cut); !made) return made;
+    return add_boundary();
+}
+
+/// The same of a packed grid.
+Result<void> IsosurfaceScene::Data::look_around_packed(const IsosurfaceOptions& options, const Run& run) {
+    const PackedScene& packed = *options.packed;
+    if (look.boundary_opacity > 0) {
+        const core::Stopwatch looking;
+        std::vector<PackedGrid> colors;
+        if (look.boundary_colors) colors.push_back(*packed.colors);
+        Result<Surface> found = boundary_of(packed.grid, colors, run);
+        if (!found) return found.error();
+        take_boundary(*std::move(found));
+        report.boundary_seconds = looking.seconds();
+    }
+    ExtractOptions carried;
+    if (look.colors && look.colors->association == Association::cell)
+        carried.cell_fields = {{look.colors->name, look.colors->values}};
+    else if (look.colors) carried.packed_fields = {*packed.colors};
+    const auto cut = [&](const Plane& plane) -> Result<Surface> {
+        const Result<PackedGrid> heights = packed.sliced(plane, run);
+        if (!heights) return heights.error();
+        Result<Extraction> slice = extract(*heights, plane.offset, carried, run);
+        if (!slice) return slice.error();
+        return std::move(slice->surface);
+    };
+    if (auto made = make_slices(cut); !made) return made;
+    return add_boundary();
+}
+
+/// By cut(plane).
+Result<void> IsosurfaceScene::Data::make_slices(const std::function<Result<Surface>(const Plane& plane)>& cut) {
     for (std::size_t i = 0; i < look.slices.size(); ++i) {
-        Result<Surface> slice = slice_of(grid, look.slices[i], colors, run);
+        Result<Surface> slice = cut(look.slices[i]);
         if (!slice) return slice.error();
         if (slice->triangle_count() == 0) report.empty_slices.push_back(i);
         report.slice_triangles += slice->triangle_count();
@@ -42,21 +77,8 @@ Result<void> IsosurfaceScene::Data::look_around(const Grid& grid, KnownBoundary*
         slices.push_back(*std::move(slice));
     }
     for (const Surface& slice : slices)
-        if (auto added = add_fixed(slice, colors, single_color, 1); !added) return added;
-    return add_boundary();
-}
-
-/// The same of a packed grid, without slices.
-Result<void> IsosurfaceScene::Data::look_around_packed(const IsosurfaceOptions& options, const Run& run) {
-    if (look.boundary_opacity <= 0) return {};
-    const core::Stopwatch looking;
-    std::vector<PackedGrid> colors;
-    if (look.boundary_colors) colors.push_back(*options.packed->colors);
-    Result<Surface> found = boundary_of(options.packed->grid, colors, run);
-    if (!found) return found.error();
-    take_boundary(*std::move(found));
-    report.boundary_seconds = looking.seconds();
-    return add_boundary();
+        if (auto added = add_fixed(slice, look.colors ? &*look.colors : nullptr, single_color, 1); !added) return added;
+    return {};
 }
 
 /// With its field of colours, if it has one.

@@ -12,6 +12,7 @@
 #include <isotet/make.hpp>
 #include <isotet/packed_file.hpp>
 #include <isotet/picture.hpp>
+#include <isotet/text.hpp>
 #include <isotet/write.hpp>
 
 #include "jobs/listener.hpp"
@@ -156,7 +157,15 @@ TEST(DrawFiles, DrawsThePictureOfTheGridFromAPackedFile) {
     points.volume_opacity = parse_opacity("0:0,0.1:0.5,0.2:0").value();
     points.volume_shading = true;
     rays.dirac = {0.1, -0.4};
-    for (DrawJob job : {plain, one, colored, by_boundary, clipped, logarithmic, ramp, points, rays}) {
+    DrawJob sliced = plain, sliced_by = plain;
+    sliced.slices = {{{0, 0, 1}, 0.4}, {{1, 0, 0}, 0.3}, {{0, 0, 1}, 0.7}};
+    sliced.field.name = "";
+    sliced_by = sliced;
+    sliced_by.color_by = "plane";
+    sliced_by.field.name = "gyroid";
+    sliced_by.isovalues = {0.1};
+    for (DrawJob job :
+         {plain, one, colored, by_boundary, clipped, logarithmic, ramp, points, rays, sliced, sliced_by}) {
         Listener from_file, from_grid;
         const DrawReport report = draw_files(job, from_file).value();
         job.stretch = {1, 1, 1};
@@ -169,9 +178,51 @@ TEST(DrawFiles, DrawsThePictureOfTheGridFromAPackedFile) {
         EXPECT_EQ(report.input.cells, expected.input.cells);
         EXPECT_EQ(report.input.isovalues, expected.input.isovalues);
         EXPECT_EQ(report.pictures.camera, expected.pictures.camera);
-        // The boundary's triangles come in another order, and so do the ends of their edges.
-        EXPECT_LE(expected.pictures.differs.value(), job.edges ? 0.02 : 0);
+        // The boundary's triangles come in another order, and so do the ends of their edges; heights of slices are float32.
+        EXPECT_LE(expected.pictures.differs.value(), job.edges || !job.slices.empty() ? 0.02 : 0);
+        EXPECT_EQ(report.input.scene->report().slice_triangles > 0, !job.slices.empty());
     }
+}
+
+TEST(DrawFiles, CellFieldsOfPackedFilesColourSlicesAsThoseOfTheGrid) {
+    const test::TemporaryFolder folder;
+    Grid grid = make_grid({.shape = "mixed", .side = 6, .fields = {"gyroid"}}).value();
+    std::vector<float> numbers(grid.cells.count());
+    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<float>(i % 17);
+    grid.cell_fields = {{"number", Array::own(std::move(numbers))}};
+    write_grid(grid, folder.file("grid.vtu")).value();
+    PackJob pack;
+    pack.grid.file = folder.file("grid.vtu");
+    pack.out = folder.file("grid.isotet");
+    pack.cell_fields = {"number"};
+    Listener listener;
+    pack_file(pack, listener).value();
+    DrawJob job = small_picture(pack.grid.file, folder.file("a.png"));
+    job.slices = {{{1, 2, 3}, 2.1}};
+    job.color_by = "number";
+    draw_files(job, listener).value();
+    job.grid.file = pack.out;
+    job.out = folder.file("b.png");
+    job.reference = folder.file("a.png");
+    Listener told;
+    const DrawReport report = draw_files(job, told).value();
+    EXPECT_LE(report.pictures.differs.value(), 0.01);
+    EXPECT_GT(report.input.scene->report().slice_triangles, 0u);
+    for (const std::string& note : told.noted) EXPECT_EQ(note.find("all of the packed file"), note.npos) << note;
+}
+
+TEST(DrawFiles, TellsHowMuchMemorySolidsOfPackedFilesTake) {
+    const test::TemporaryFolder folder;
+    DrawJob job = small_picture(packed_file(folder), folder.file("a.png"));
+    job.solid = SolidSide::above;
+    job.field.name = "gyroid";
+    job.isovalues = {0.1};
+    Listener told;
+    draw_files(job, told).value();
+    const std::uint64_t bytes = PackedFile::open(job.grid.file).value().info().unpacked_bytes;
+    ASSERT_FALSE(told.noted.empty());
+    EXPECT_NE(told.noted[0].find("unpacked, which takes " + format_bytes(bytes) + " of memory"), std::string::npos)
+        << told.noted[0];
 }
 
 TEST(DrawFiles, NumbersThePicturesOfASweep) {

@@ -124,6 +124,14 @@ std::uint64_t bytes_of_whole(const PackedDirectory& d, const FieldEntry& field) 
     return bytes;
 }
 
+std::uint64_t bytes_of_unpacked(const PackedDirectory& d) {
+    const PackReport& cells = d.report;
+    const std::uint64_t corners = 4 * cells.tets + 5 * cells.pyramids + 6 * cells.wedges + 8 * cells.hexahedra;
+    const std::uint64_t others = cells.pyramids + cells.wedges + cells.hexahedra;
+    return corners * (d.user_points < (std::uint64_t{1} << 31) ? 4 : 8) + (others ? (others + cells.tets) * 9 : 0) +
+           3 * d.user_points * size_of(d.point_type);
+}
+
 namespace {
 
 Result<void> check_all_ranges(const Packed& packed, const Progress& progress) {

@@ -82,6 +82,9 @@ Result<std::shared_ptr<const core::Packed>> sliced_grid_of_file(const std::share
 /// Of the arrays of a field's grid, all in memory.
 std::uint64_t bytes_of_whole(const PackedDirectory& directory, const FieldEntry& field);
 
+/// Of the cells and points that it is unpacked to.
+std::uint64_t bytes_of_unpacked(const PackedDirectory& directory);
+
 /// A grid in memory, all checked.
 /// `same_cells`   null, or one of this file that is in memory already: only values are read
 Result<std::shared_ptr<const core::Packed>> whole_grid_of_file(const PackedSource& source, const FieldEntry& field,

@@ -45,6 +45,8 @@ PackedFileInfo info_of(const io::PackedSource& source) {
     info.point_type = d.point_type;
     info.user_points = d.user_points;
     info.user_cells = d.user_cells;
+    info.unpacked_bytes = io::bytes_of_whole(d, d.fields.front()) + io::bytes_of_unpacked(d) +
+                          d.user_points * size_of(d.fields.front().type);
     info.report = d.report;
     info.chunks = d.chunks.size();
     info.source_cells = d.cell_ids;

@@ -75,17 +75,14 @@ Result<FileInfo> inspect_isotet(const std::string& path, const ReadOptions& opti
 
 /// What a step with the fields that are asked for takes as a grid: the arrays beside the packed ones that they are made of.
 std::uint64_t unpacked_bytes(const PackedDirectory& d, std::size_t step, const ReadOptions& options) {
-    const PackReport& cells = d.report;
-    const std::uint64_t corners = 4 * cells.tets + 5 * cells.pyramids + 6 * cells.wedges + 8 * cells.hexahedra;
-    const std::uint64_t others = cells.pyramids + cells.wedges + cells.hexahedra;
-    std::uint64_t bytes = bytes_of_whole(d, d.fields.front()) +
-                          corners * (d.user_points < (std::uint64_t{1} << 31) ? 4 : 8) +
-                          (others ? (others + cells.tets) * 9 : 0) + 3 * d.user_points * size_of(d.point_type);
+    const PackReport& report = d.report;
+    const std::uint64_t cells = report.tets + report.pyramids + report.wedges + report.hexahedra;
+    std::uint64_t bytes = bytes_of_whole(d, d.fields.front()) + bytes_of_unpacked(d);
     for (const UserField& field : user_fields(d, step))
         if (wanted(options, Association::point, field.name))
             bytes += d.user_points * field.parts.size() * size_of(field.parts.front()->type);
     for (const CellFieldEntry* const field : cell_fields_at(d, step))
-        if (wanted(options, Association::cell, field->name)) bytes += field->bytes(cells.tets + others);
+        if (wanted(options, Association::cell, field->name)) bytes += field->bytes(cells);
     return bytes;
 }
 
