@@ -88,6 +88,10 @@ Result<Surface> GridView::surface_of_pick(const PickMessage& message, const Run&
     with_all.source_cells = !packed || lean_->knows_cells();
     with_all.point_fields = grid_.point_fields;
     with_all.cell_fields = grid_.cell_fields;
+    if (packed && is_of_file()) {
+        with_all.cell_fields.clear();
+        for (const auto& [name, field] : file_cells_) with_all.cell_fields.push_back(field);
+    }
     if (message.boundary) return boundary_of_pick(run);
     const Plane* plane = message.slice ? &message.state.slices[*message.slice] : nullptr;
     if (message.state.solid && !plane) return solid_of_pick(message, run);

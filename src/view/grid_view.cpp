@@ -94,10 +94,11 @@ Result<std::unique_ptr<GridView>> GridView::create(Grid grid, const GridViewOpti
             view->bounds_.lower[axis] = (*places)[axis].lower;
             view->bounds_.upper[axis] = (*places)[axis].upper;
         }
+    view->options_ = options;
+    if (options.packed) grid.cell_fields = view->cell_fields_of_file(options.step);
     view->fields_ = offered_fields(grid);
     view->cell_count_ = grid.cells.count();
     view->grid_ = std::move(grid);
-    view->options_ = options;
     view->step_ = options.step;
     if (options.read_step && options.steps > 1)
         view->steps_ = std::make_unique<StepReader>(options.read_step, options.threads);
@@ -114,6 +115,28 @@ void GridView::open_packed() {
     has_cells_ = false;
     lean_.emplace(*options_.packed);
     is_packed_.store(true, std::memory_order_release);
+}
+
+/// Without values: they are read when they are needed.
+std::vector<Field> GridView::cell_fields_of_file(std::size_t step) const {
+    std::map<std::string, Field> fields;
+    for (const PackedCellFieldInfo& field : options_.packed->info().cell_fields)
+        if (field.step <= step)
+            fields.insert_or_assign(field.name,
+                                    Field{field.name, Array(field.type, nullptr, 0, field.components, nullptr)});
+    std::vector<Field> all;
+    for (auto& [name, field] : fields) all.push_back(std::move(field));
+    return all;
+}
+
+/// The cell field that colours surfaces, by the cells that they know as theirs; null: the field is none of cells.
+Result<const Field*> GridView::cell_colors_at(const std::string& name, const Run& run) {
+    const Field* const cells = cell_colors(grid_, name);
+    if (!cells || !is_of_file() || !cells_.empty()) return cells;
+    if (const auto known = file_cells_.find(name); known != file_cells_.end()) return &known->second;
+    Result<Field> read = options_.packed->cell_field(name, step_, run);
+    if (!read) return read.error();
+    return &file_cells_.insert_or_assign(name, *std::move(read)).first->second;
 }
 
 Result<PointField> GridView::field_of(const std::string& name, const Run& run) {
@@ -147,14 +170,22 @@ Result<ContourInput> GridView::input_of(const std::string& field, const std::str
 
 /// The field that colours as classes; null: it has none, or others are asked for.
 Result<const ColorField*> GridView::classes_of(const ViewState& state, const Run& run) {
-    const Field* cells = state.volume || state.color_by.empty() ? nullptr : cell_colors(grid_, state.color_by);
-    if (!cells || state.range || state.logarithmic) return nullptr;
+    if (state.volume || state.color_by.empty() || state.range || state.logarithmic) return nullptr;
+    const Result<const Field*> colors = cell_colors_at(state.color_by, run);
+    if (!colors) return colors.error();
+    const Field* const cells = *colors;
+    if (!cells) return nullptr;
     const std::string key = fmt::format("{}|{}", step_, state.color_by);
     if (!classes_ || classes_->key != key) {
         ColorOptions options;
         for (const RegionName& region : options_.regions)
             if (region.field == state.color_by) options.names[static_cast<double>(region.number)] = region.name;
-        Result<FoundColors> found = find_colors(grid_, state.color_by, options, run);
+        Grid of_cells = grid_;
+        if (is_of_file()) {
+            of_cells.cells = {};
+            of_cells.cell_fields = {*cells};
+        }
+        Result<FoundColors> found = find_colors(of_cells, state.color_by, options, run);
         if (!found) return found.error();
         classes_ = Classes{key, {}, std::move(found->field)};
         if (!classes_->field.scale.classes.empty()) {
@@ -193,7 +224,9 @@ Result<std::optional<ColorScale>> GridView::scale_of(const ViewState& state, con
     const Result<const ColorField*> classes = classes_of(state, run);
     if (!classes) return classes.error();
     if (*classes) return std::optional((*classes)->scale);
-    if (const Field* cells = state.volume ? nullptr : cell_colors(grid_, name)) values = cells->values;
+    const Result<const Field*> cells = state.volume ? Result<const Field*>(nullptr) : cell_colors_at(name, run);
+    if (!cells) return cells.error();
+    if (*cells) values = (*cells)->values;
     else {
         const Result<PointField> field = field_of(name, run);
         if (!field) return field.error();
@@ -217,7 +250,10 @@ Result<Grid> GridView::grid_of_step(std::optional<std::uint64_t> wanted, const R
         return Error{ErrorCode::invalid_argument,
                      fmt::format("step {} is asked for, but the file has steps 0 to {}", *wanted, options_.steps - 1)};
     Result<Grid> grid = steps_->take(*wanted, run);
-    if (grid && is_of_file()) grid->cells = now.cells; // all steps have the same
+    if (grid && is_of_file()) {
+        grid->cells = now.cells; // all steps have the same
+        grid->cell_fields = cell_fields_of_file(*wanted);
+    }
     return grid;
 }
 
@@ -231,6 +267,14 @@ Result<void> GridView::show_grid(std::optional<std::uint64_t> wanted, const std:
         if (Result<void> here = need_cells(run); !here) return here;
     Result<Grid> grid = grid_of_step(wanted, run);
     if (!grid) return grid.error();
+    if (is_of_file() && !grid->cell_fields.empty() && wanted && *wanted != step_) { // fields of another step
+        if (chosen.empty()) grid->cells = {};
+        else {
+            Result<Grid> there = options_.read_cells(*wanted, run);
+            if (!there) return there.error();
+            grid->cell_fields = std::move(there->cell_fields);
+        }
+    }
     Cells all = grid->cells;
     if (!chosen.empty()) {
         grid = options_.only_cells(*std::move(grid), chosen);
@@ -243,7 +287,9 @@ Result<void> GridView::show_grid(std::optional<std::uint64_t> wanted, const std:
         const std::lock_guard lock(grid_mutex_);
         grid_ = *std::move(grid);
         all_cells_ = chosen.empty() ? std::nullopt : std::optional(std::move(all));
+        if (step_ != wanted.value_or(step_)) file_cells_.clear();
         step_ = wanted.value_or(step_);
+        if (is_of_file()) has_cells_ = grid_.cells.count() > 0;
         if (!same) ++grid_number_;
     }
     if (other_cells) {
@@ -372,6 +418,7 @@ Result<void> GridView::need_cells(const Run& run) {
                      "so what needs its cells cannot be shown. Start isotet view again"};
     const std::lock_guard lock(grid_mutex_);
     grid_.cells = std::move(again->cells);
+    if (is_of_file()) grid_.cell_fields = std::move(again->cell_fields);
     has_cells_ = true;
     return {};
 }
@@ -383,6 +430,7 @@ void GridView::rest() {
         direct_.contour.reset();
         const std::lock_guard lock(grid_mutex_);
         grid_.cells = {};
+        if (is_of_file()) grid_.cell_fields = cell_fields_of_file(step_);
         has_cells_ = false;
     }
     release_memory();
@@ -395,8 +443,10 @@ void GridView::rest() {
 Result<ExtractOptions> GridView::carried_fields(const std::string& color_by, const Run& run) {
     ExtractOptions options;
     if (color_by.empty()) return options;
-    if (const Field* cells = cell_colors(grid_, color_by)) {
-        options.cell_fields = {*cells};
+    const Result<const Field*> cells = cell_colors_at(color_by, run);
+    if (!cells) return cells.error();
+    if (*cells) {
+        options.cell_fields = {**cells};
         return options;
     }
     const Result<PointField> colors = field_of(color_by, run);

@@ -169,6 +169,10 @@ private:
     Array places_in_classes(const Array& numbers) const;
     Result<Surface> colored_boundary(Surface boundary, std::uint64_t number, const ColorField& colors, const Run& run);
     void open_packed();
+    std::vector<Field> cell_fields_of_file(std::size_t step) const;
+    Result<const Field*> cell_colors_at(const std::string& name, const Run& run);
+    bool draws_from_file(const ViewState& state) const;
+    Result<void> draw_from_file(const ViewState& state, IsosurfaceOptions& options, const Run& run);
     Result<void> need_cells(const Run& run);
     bool may_release_cells(const Grid& grid) const;
     Result<ExtractOptions> carried_fields(const std::string& color_by, const Run& run);
@@ -229,7 +233,8 @@ private:
     std::vector<std::string> cells_; ///< as ViewState::cells
     std::optional<Cells> all_cells_; ///< of grid_ where cells are chosen
     std::uint64_t grid_number_ = 0; ///< another one when cells or points are others
-    bool has_cells_ = true;
+    bool has_cells_ = true;         ///< of a packed file: and grid_ has values of its cell fields, by these cells
+    std::map<std::string, Field> file_cells_; ///< of a packed file at this step, by the user's cells: those that colour
     std::uint64_t cell_count_ = 0;
     std::optional<Solids> solids_;     ///< of solids_key_, while solids are shown
     std::string solids_key_;

@@ -343,7 +343,9 @@ Result<Surface> GridView::colored_boundary(Surface boundary, std::uint64_t numbe
         boundary = *std::move(found);
     }
     if (Result<void> cells = find_boundary_cells(boundary, number, run); !cells) return cells.error();
-    color_boundary_by_cells(boundary, boundary_cells_, colors);
+    ColorField now = colors; // of a packed file the values came with the cells
+    if (const Field* const cells = cell_colors(grid_, colors.name)) now.values = cells->values;
+    color_boundary_by_cells(boundary, boundary_cells_, now);
     return boundary;
 }
 

@@ -90,21 +90,23 @@ Result<Surface> PackedSource::boundary(std::size_t step, const Run& run) {
     return boundary_of(*grid, run);
 }
 
+Result<PackedGrid> PackedSource::sliced(const Plane& plane, std::size_t step, const Run& run) {
+    const bool is_known = sliced_ && plane_.normal == plane.normal && same_points(file_->info(), step, sliced_step_);
+    if (is_known) return *sliced_;
+    sliced_.reset();
+    Result<PackedGrid> heights = file_->sliced(plane, step, run);
+    if (heights) sliced_ = *heights;
+    plane_ = plane;
+    sliced_step_ = step;
+    return heights;
+}
+
 Result<Surface> PackedSource::slice(const Array& points, const Plane& plane, std::size_t step,
                                     const ExtractOptions& options, const Run& run) {
     Result<PackedGrid> heights = Error{};
     Result<ExtractOptions> carried = options;
     if (file_) {
-        const bool is_known =
-            sliced_ && plane_.normal == plane.normal && same_points(file_->info(), step, sliced_step_);
-        if (is_known) heights = *sliced_;
-        else {
-            sliced_.reset();
-            heights = file_->sliced(plane, step, run);
-            if (heights) sliced_ = *heights;
-            plane_ = plane;
-            sliced_step_ = step;
-        }
+        heights = sliced(plane, step, run);
         if (heights) carried = with_packed_fields(options, step, run);
     } else {
         const Result<PointField> field = slice_field(points, plane, run);

@@ -42,6 +42,12 @@ public:
     Result<Surface> slice(const Array& points, const Plane& plane, std::size_t step, const ExtractOptions& options,
                           const Run& run);
 
+    /// Of a file: heights over the plane. Cost and errors as above
+    Result<PackedGrid> sliced(const Plane& plane, std::size_t step, const Run& run);
+
+    /// Whether it is of a file that has a field at a step.
+    bool has(const std::string& field, std::size_t step) const;
+
     /// As boundary_of(), of a step. Errors   as there, and as PackedFile::grid()
     Result<Surface> boundary(std::size_t step, const Run& run);
 
@@ -49,7 +55,6 @@ private:
     Result<PackedGrid> grid_of(const PointField& field, std::size_t step, const Run& run);
     Result<PackedGrid> whole(std::size_t step, const Run& run);
     Result<ExtractOptions> with_packed_fields(ExtractOptions options, std::size_t step, const Run& run) const;
-    bool has(const std::string& field, std::size_t step) const;
 
     std::optional<PackedFile> file_;
     std::optional<PackedGrid> packed_; ///< of field_

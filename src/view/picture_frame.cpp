@@ -65,18 +65,29 @@ Result<void> GridView::make_scene(const ShowMessage& message, const std::optiona
     const std::string key = scene_key(message, step_);
     if (!scene_ || scene_key_ != key) {
         scene_.reset();
-        Result<PointField> field = field_of(state.field, run);
-        if (!field) return field.error();
-        if (Result<void> here = need_cells(run); !here) return here;
         IsosurfaceOptions options;
-        options.grid = grid_;
-        if (state.stretch) options.grid.points = stretched(grid_.points, *state.stretch);
-        options.field = *std::move(field);
         options.surfaces = isovalues.size();
         options.where = ExtractOn::cpu;
-        const bool colored = scale && !state.color_by.empty();
+        const bool from_file = draws_from_file(state), colored = scale && !state.color_by.empty();
+        if (from_file) {
+            if (Result<void> taken = draw_from_file(state, options, run); !taken) return taken;
+        } else {
+            Result<PointField> field = field_of(state.field, run);
+            if (!field) return field.error();
+            if (Result<void> here = need_cells(run); !here) return here;
+            options.grid = grid_;
+            if (state.stretch) options.grid.points = stretched(grid_.points, *state.stretch);
+            options.field = *std::move(field);
+        }
         std::optional<ColorField> colors = colored ? color_field(state, *scale, run) : std::nullopt;
-        if (colored && !scale->classes.empty()) colors = classes_->field;
+        if (colors && from_file)
+            if (const auto known = file_cells_.find(colors->name); known != file_cells_.end())
+                colors->values = known->second.values;
+        if (colored && !scale->classes.empty()) {
+            const Array numbers = colors->values;
+            colors = classes_->field;
+            if (is_of_file()) colors->values = places_in_classes(numbers);
+        }
         auto scene = IsosurfaceScene::create({}, std::move(options), look_of(message, std::move(colors), scale), run);
         if (!scene) return scene.error();
         scene_ = *std::move(scene);
@@ -90,6 +101,33 @@ Result<void> GridView::make_scene(const ShowMessage& message, const std::optiona
     if (Result<void> shown = scene_->show(isovalues, run); !shown) return shown;
     scene_isovalues_ = std::move(isovalues);
     scene_volume_ = state.volume;
+    return {};
+}
+
+/// Whether a picture needs nothing of a packed file but what surfaces and rays meet.
+bool GridView::draws_from_file(const ViewState& state) const {
+    if (!is_of_file() || !cells_.empty() || state.stretch || (state.solid && !state.volume)) return false;
+    const bool by_cells = !state.volume && cell_colors(grid_, state.color_by);
+    const bool can_color = by_cells ? !state.colored_boundary && lean_->knows_cells()
+                                    : state.color_by.empty() || lean_->has(state.color_by, step_);
+    return can_color && lean_->has(state.field, step_);
+}
+
+Result<void> GridView::draw_from_file(const ViewState& state, IsosurfaceOptions& options, const Run& run) {
+    const Result<PackedGrid> grid = options_.packed->grid(state.field, step_, run);
+    if (!grid) return grid.error();
+    options.packed = PackedScene{*grid, {}, true, [this](const Plane& plane, const Run& slicing) {
+                                     return lean_->sliced(plane, step_, slicing);
+                                 }};
+    if (lean_->has(state.color_by, step_)) {
+        const Result<PackedGrid> colors = options_.packed->grid(state.color_by, step_, run);
+        if (!colors) return colors.error();
+        options.packed->colors = *colors;
+    }
+    const PackedFileInfo& info = options_.packed->info();
+    options.bounds = {info.lower, info.upper};
+    for (const PackedPointsInfo& points : info.moved_points)
+        if (points.step <= step_) options.bounds = {points.lower, points.upper};
     return {};
 }
 

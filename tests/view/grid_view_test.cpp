@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <numeric>
 
 #include <isotet/boundary.hpp>
@@ -1260,6 +1261,148 @@ TEST_F(GridViewOfFile, ReadsAllCellsForSolidsAndGivesThemBack) {
     EXPECT_FALSE(of_file_->has_cells());
     EXPECT_TRUE(of_file_->spectrum("sphere", {}));
     EXPECT_EQ(reads_, 2);
+}
+
+TEST_F(GridViewOfFile, DrawsVolumesSlicesAndBoundaryWithoutReadingCells) {
+    const auto picture_of = [](GridView& view, const ShowMessage& message) {
+        std::vector<std::string> known;
+        const std::string bytes = view.frame(message, 0, known, {}).value().bytes;
+        return bytes.substr(bytes.find("PNG"));
+    };
+    for (const char* opacity : {"ramp", "0.5:0,0.8:1"}) {
+        const ShowMessage message = show_volume(1, opacity);
+        EXPECT_TRUE(picture_of(*of_file_, message) == picture_of(*full_, message)) << opacity;
+    }
+    ShowMessage message = show_volume(2, "ramp", {0.7});
+    message.state.volume.reset();
+    message.state.isosurfaces = true;
+    message.state.color_by = "gyroid";
+    const std::string surface = picture_of(*of_file_, message);
+    message.state.slices = {Plane{{1, 2, 0.5}, 0.1}};
+    message.state.boundary = 0.5;
+    message.state.colored_boundary = true;
+    EXPECT_FALSE(picture_of(*of_file_, message) == surface);
+    message.state.step = 1;
+    EXPECT_FALSE(picture_of(*of_file_, message) == surface);
+    EXPECT_EQ(reads_, 0);
+    message.state.solid = SolidSide::above;
+    EXPECT_FALSE(picture_of(*of_file_, message).empty());
+    EXPECT_EQ(reads_, 1);
+}
+
+/// The same with two cell fields, one of few whole numbers, which change from one step to the next.
+class GridViewOfCellFields : public GridViewOfFile {
+protected:
+    std::unique_ptr<GridView> of_cells_, all_;
+
+    GridViewOfCellFields() {
+        path_ = folder_.file("cells.isotet");
+        const PackedGrid sphere = pack(grid_, find_field(grid_, "sphere").value(), {.source_cells = true}).value();
+        PackedWriter writer = PackedWriter::create(sphere, path_, {.more_fields = {}, .time = 0}).value();
+        for (const Field& field : cell_fields(0)) writer.add_cell_field(field).value();
+        writer.add_step(sphere.with_field(doubled("sphere")).value(), 1).value();
+        for (const Field& field : cell_fields(1)) writer.add_cell_field(field).value();
+        writer.commit().value();
+        Grid with = grid_;
+        with.cell_fields = cell_fields(0);
+        all_ = GridView::create(std::move(with)).value();
+        EXPECT_TRUE(all_->pack("sphere", {}));
+        EXPECT_TRUE(all_->find_boundary({}));
+        GridViewOptions options;
+        options.steps = 2;
+        options.packed = PackedFile::open(path_).value();
+        options.cells = grid_.cells.count();
+        options.read_step = [this](std::size_t step, const isotet::Run&) { return read_step(step, 100); };
+        options.read_cells = [this](std::size_t step, const isotet::Run&) {
+            ++reads_;
+            return read_step(step, 0);
+        };
+        of_cells_ = GridView::create(read_step(0, 100).value(), options).value();
+        EXPECT_TRUE(of_cells_->find_boundary({}));
+    }
+    std::vector<Field> cell_fields(std::size_t step) const {
+        std::vector<double> numbers(grid_.cells.count());
+        std::vector<std::int32_t> regions(numbers.size());
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+            numbers[i] = static_cast<double>(i) / 3 + static_cast<double>(step);
+            regions[i] = static_cast<std::int32_t>(i % 5 + step);
+        }
+        return {{"number", Array::own(std::move(numbers))}, {"region", Array::own(std::move(regions))}};
+    }
+    static ShowMessage colored_by(const char* color) {
+        ShowMessage message = show(1, {0.7});
+        message.state.color_by = color;
+        message.state.slices = {Plane{{1, 2, 0.5}, 0.1}};
+        return message;
+    }
+};
+
+TEST_F(GridViewOfCellFields, ColoursAsTheGridInMemoryDoesWithoutReadingCells) {
+    ASSERT_EQ(of_cells_->fields().size(), 3u);
+    EXPECT_EQ(of_cells_->fields()[1].name, "number");
+    EXPECT_EQ(of_cells_->fields()[1].association, Association::cell);
+    for (const char* color : {"number", "region"}) {
+        const ShowMessage message = colored_by(color);
+        const Json a = head(*of_cells_, message), b = head(*all_, message);
+        EXPECT_EQ(a["scale"], b["scale"]) << color;
+        EXPECT_EQ(a["scale"].contains("classes"), std::string(color) == "region");
+        EXPECT_EQ(triangles(*of_cells_, message), triangles(*all_, message)) << color;
+        PickMessage pick;
+        pick.state = message.state;
+        pick.point = {0.31, 0.42, 0.53};
+        const Picked picked = of_cells_->pick(pick, {}).value();
+        const auto value = std::ranges::find(picked.values, color, &PickedValue::name);
+        ASSERT_NE(value, picked.values.end()) << color;
+        const auto cell = static_cast<std::size_t>(picked.cell.value());
+        EXPECT_EQ(value->values[0], cell_fields(0)[std::string(color) == "region"].values.at(cell));
+    }
+    ShowMessage next = colored_by("number");
+    next.state.step = 1;
+    EXPECT_EQ(head(*of_cells_, next)["scale"]["lower"], 1);
+    ShowMessage picture = show_volume(2, "ramp", {0.7});
+    picture.state.volume.reset();
+    picture.state.isosurfaces = true;
+    picture.state.color_by = "region";
+    EXPECT_EQ(head(*of_cells_, picture)["picture"]["width"], 60);
+    EXPECT_EQ(reads_, 0);
+}
+
+TEST_F(GridViewOfCellFields, ColoursSolidsAndTheBoundaryWithTheCellsOfTheStep) {
+    for (const char* color : {"number", "region"}) {
+        ShowMessage message = colored_by(color);
+        message.state.slices.clear();
+        message.state.solid = SolidSide::above;
+        EXPECT_EQ(triangles(*of_cells_, message), triangles(*all_, message)) << color;
+        message.state.solid.reset();
+        message.state.boundary = 1;
+        message.state.colored_boundary = true;
+        EXPECT_EQ(triangles(*of_cells_, message), triangles(*all_, message)) << color;
+        ShowMessage picture = show_volume(2, "ramp", {0.7});
+        picture.state.volume.reset();
+        picture.state.isosurfaces = true;
+        picture.state.boundary = 1;
+        picture.state.colored_boundary = true;
+        picture.state.color_by = color;
+        EXPECT_EQ(head(*of_cells_, picture)["picture"]["width"], 60);
+    }
+    EXPECT_EQ(reads_, 1);
+    PickMessage pick;
+    pick.state.boundary = 1;
+    pick.boundary = true;
+    pick.point = {0.31, 0.42, 0};
+    for (const std::uint64_t step : {0, 1}) {
+        ShowMessage message = show(3, {0.7});
+        message.state.step = step;
+        triangles(*of_cells_, message);
+        const Picked picked = of_cells_->pick(pick, {}).value();
+        const auto value = [&](const char* name) {
+            return std::ranges::find(picked.values, name, &PickedValue::name)->values.at(0);
+        };
+        EXPECT_EQ(std::llround(3 * (value("number") - static_cast<double>(step))) % 5 + static_cast<int>(step),
+                  value("region"))
+            << step;
+    }
+    EXPECT_EQ(reads_, 2) << "the cells of the other step came with its fields";
 }
 
 TEST(SampleOfCells, HasCellsOfTheGridAndSaysHowManyEachStandsFor) {
