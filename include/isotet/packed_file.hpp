@@ -181,8 +181,8 @@ public:
     /// The grid with slice_field() of its points as the field: extract() at slice_isovalue() is the cut.
     ///
     /// Guarantees   surfaces are the same bytes as those of the grid in memory with_field(slice_field()), for any limit
-    /// Cost         all of the file but values is read once, and points once or twice before: within the limit of memory; two
-    ///              bytes for each 32 tets stay beside it. Then surfaces need what they meet
+    /// Cost         all of the file but values is read once, and points once or twice before: within the limit of memory;
+    ///              9 bytes a cluster and 4 kB a chunk stay beside it. Then surfaces need what they meet
     /// Errors       as slice_field() and grid()
     Result<PackedGrid> sliced(const SliceShape& shape, std::size_t step = 0, const Run& run = {}) const;
 
