@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -87,8 +88,45 @@ Result<std::unique_ptr<render::VolumeScene>> volumes_of(const Scene& scene, cons
     return placed;
 }
 
-Result<Picture> draw_on_cpu(const Scene& scene, const PictureOptions& options, const render::VolumeTuning& tuning,
-                            const Progress& progress, VolumeWork& work) {
+bool is_clipped(const std::vector<render::PlacedVolume>& volumes) {
+    return std::ranges::any_of(volumes, [](const render::PlacedVolume& one) { return !one.clips().empty(); });
+}
+
+/// Draws all tiles, batch by batch, with rays that something else follows.
+/// `draw_tiles`   (first, last): of the batch, up to the stage of `scene`
+Result<void> draw_batches(render::TileScene& scene, render::RayFollower& follower, std::size_t tiles,
+                          const Progress& progress, const std::function<void(std::size_t, std::size_t)>& draw_tiles) {
+    const render::VolumeScene& volumes = *scene.volumes;
+    if (Result<void> started = follower.start(volumes, progress); !started) return started;
+    render::RayBatch batch;
+    scene.batch = &batch;
+    for (std::size_t first = 0; first < tiles && !progress.cancelled(); first += render::RayBatch::most_tiles) {
+        const std::size_t last = std::min(tiles, first + render::RayBatch::most_tiles);
+        batch.start(first, last - first);
+        if (volumes.surface_bins) {
+            if (is_clipped(volumes.surfaces)) batch.start_windows(volumes.surfaces.size());
+            scene.stage = render::TileStage::to_hits;
+            draw_tiles(first, last);
+            if (Result<void> found = follower.find_hits(batch, progress); !found) return found;
+        }
+        if (volumes.media_bins) {
+            batch.windows.clear();
+            if (is_clipped(volumes.media)) batch.start_windows(volumes.media.size());
+            scene.stage = render::TileStage::to_media;
+            draw_tiles(first, last);
+            batch.join_stops();
+            if (Result<void> composed = follower.compose(batch, progress); !composed) return composed;
+        }
+        scene.stage = render::TileStage::whole;
+        draw_tiles(first, last);
+    }
+    return {};
+}
+
+} // namespace
+
+Result<Picture> render::draw_with(const Scene& scene, const PictureOptions& options, const VolumeTuning& tuning,
+                                  RayFollower* follower, const Progress& progress, VolumeWork& work) {
     if (Result<void> right = render::check_options(options); !right) return right.error();
     const render::Space space(scene.bounds);
     const render::Screen screen{space.look(options.camera, options.width, options.height), options.width,
@@ -128,7 +166,8 @@ Result<Picture> draw_on_cpu(const Scene& scene, const PictureOptions& options, c
             render::Tile tile(shared);
             for (std::size_t i = first + begin; i < first + end && !progress.cancelled(); ++i)
                 tile.draw(i, bins.of(i), picture);
-            progress("draw", static_cast<double>(done += end - begin) / static_cast<double>(tiling.tiles()));
+            if (shared.stage == render::TileStage::whole)
+                progress("draw", static_cast<double>(done += end - begin) / static_cast<double>(tiling.tiles()));
             const VolumeWork part = tile.volume_work();
             const std::lock_guard lock(mutex);
             work.tets += part.tets;
@@ -137,22 +176,26 @@ Result<Picture> draw_on_cpu(const Scene& scene, const PictureOptions& options, c
         });
     };
     if (!*volumes) draw_tiles(0, tiling.tiles());
-    else if (Result<void> drawn = (*volumes)->for_tiles(tiling.tiles(), progress, draw_tiles); !drawn)
+    else if (follower) {
+        if (Result<void> drawn = draw_batches(shared, *follower, tiling.tiles(), progress, draw_tiles); !drawn)
+            return drawn.error();
+        work = follower->work();
+    } else if (Result<void> drawn = (*volumes)->for_tiles(tiling.tiles(), progress, draw_tiles); !drawn)
         return drawn.error();
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "drawing was cancelled"};
     if (*volumes) {
-        work.bytes = work.bytes * static_cast<std::uint64_t>(core::threads_here()) + (*volumes)->bytes();
+        if (!follower) work.bytes *= static_cast<std::uint64_t>(core::threads_here());
+        work.bytes += (*volumes)->bytes();
         work.clusters = (*volumes)->clusters();
     }
     return picture;
 }
 
-} // namespace
-
 Result<Picture> render::draw_tuned(const Scene& scene, const PictureOptions& options, const VolumeTuning& tuning,
                                    const Run& run, VolumeWork& work) {
-    return core::carry_out(
-        "drawing", run, [&](const Progress& progress) { return draw_on_cpu(scene, options, tuning, progress, work); });
+    return core::carry_out("drawing", run, [&](const Progress& progress) {
+        return draw_with(scene, options, tuning, nullptr, progress, work);
+    });
 }
 
 Result<Picture> draw(const Scene& scene, const PictureOptions& options, const Run& run, VolumeWork& work) {

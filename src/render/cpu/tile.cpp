@@ -29,7 +29,7 @@ Tile::Tile(const TileScene& scene)
         down_[i] = static_cast<float>(i / s) - 0.5F * static_cast<float>(s - 1);
     }
     opaque_.resize(count_);
-    if (scene.volumes) volumes_ = std::make_unique<VolumeTile>(*scene.volumes);
+    if (scene.volumes) volumes_ = std::make_unique<VolumeTile>(*scene.volumes, !scene.batch);
 }
 
 void Tile::draw(std::size_t number, std::span<const BinEntry> entries, Picture& picture) {
@@ -42,6 +42,7 @@ void Tile::draw(std::size_t number, std::span<const BinEntry> entries, Picture& 
         }
         add(entry);
     }
+    if (scene_.batch && scene_.stage != TileStage::whole) return give_rays();
     if (volumes_) follow_rays();
     const auto s = static_cast<std::int64_t>(scene_.screen.samples);
     for (std::int32_t y = 0; y < frame_.height; ++y) {

@@ -20,6 +20,9 @@
 
 namespace isotet::render {
 
+/// How far a tile is drawn: to rays that are given to a batch, which seeks isosurfaces or media; or as a whole.
+enum class TileStage : std::uint8_t { to_hits, to_media, whole };
+
 /// What all tiles of a picture share.
 struct TileScene {
     const std::vector<Sheet>& sheets;
@@ -31,6 +34,8 @@ struct TileScene {
     const VolumeScene* volumes = nullptr; ///< or null
     const Occlusion* occlusion = nullptr; ///< or null
     float occlusion_strength = 0;
+    RayBatch* batch = nullptr; ///< of rays that something else follows; null: tiles do
+    TileStage stage = TileStage::whole;
 };
 
 class Tile {
@@ -38,6 +43,7 @@ public:
     explicit Tile(const TileScene& scene);
 
     /// Draws the tile of this number into the picture. `entries`: what is opaque comes before what is translucent.
+    /// In a stage before the last the picture stays as it is.
     void draw(std::size_t number, std::span<const BinEntry> entries, Picture& picture);
 
     VolumeWork volume_work() const { return volumes_ ? volumes_->work() : VolumeWork(); } ///< of all tiles so far
@@ -86,6 +92,7 @@ private:
     Light opaque_color(const Facet& facet, std::int32_t x, std::int32_t y, SampleMask mask) const;
     Blend resolve(std::int32_t x, std::int32_t y);
     void follow_rays();
+    void give_rays();
     void end_rays();
     void cut_rays();
     void take_sheet_distances(std::int32_t x, std::int32_t y, std::size_t ray);

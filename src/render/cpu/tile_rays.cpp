@@ -10,9 +10,20 @@ namespace isotet::render {
 
 void Tile::follow_rays() {
     end_rays();
-    volumes_->find_hits();
+    if (scene_.batch) volumes_->take_hits(*scene_.batch);
+    else volumes_->find_hits();
     cut_rays();
-    volumes_->compose_media();
+    if (scene_.batch) volumes_->take_slabs(*scene_.batch);
+    else volumes_->compose_media();
+}
+
+/// In a stage before the last.
+void Tile::give_rays() {
+    end_rays();
+    if (scene_.stage == TileStage::to_hits) return volumes_->give_rays(Seek::isosurfaces, *scene_.batch);
+    volumes_->take_hits(*scene_.batch);
+    cut_rays();
+    volumes_->give_rays(Seek::medium, *scene_.batch);
 }
 
 /// Behind what is opaque in all samples of a pixel nothing is seen.

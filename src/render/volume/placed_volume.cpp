@@ -99,17 +99,14 @@ PlacedVolume::PlacedVolume(const DrawnVolume& volume, const Space& space, const 
         isosurfaces_.push_back({static_cast<float>(stored - first_isovalue_), linear_light(one.color)});
     }
     const Sight& sight = rays.sight();
-    w_ = row_of(sight.w, space);
-    across_ = row_of(sight.x, space);
-    down_ = row_of(sight.y, space);
-    depth_ = row_of(sight.z, space);
+    rows_ = {row_of(sight.x, space), row_of(sight.y, space), row_of(sight.w, space), row_of(sight.z, space)};
     const auto in_pixels = [&](PictureRow& row, double pixels) {
         for (std::size_t axis = 0; axis < 3; ++axis)
-            row.along[axis] = (row.along[axis] + w_.along[axis]) * 0.5 * pixels;
-        row.shift = (row.shift + w_.shift) * 0.5 * pixels;
+            row.along[axis] = (row.along[axis] + rows_.w.along[axis]) * 0.5 * pixels;
+        row.shift = (row.shift + rows_.w.shift) * 0.5 * pixels;
     };
-    in_pixels(across_, rays.width());
-    in_pixels(down_, rays.height());
+    in_pixels(rows_.across, rays.width());
+    in_pixels(rows_.down, rays.height());
     for (const Plane& plane : volume.clips) {
         clips_.push_back(moved_plane(plane, [&](const Vector& p) { return space.place(p); }));
         stored_clips_.push_back(moved_plane(plane, [&](const Vector& p) { return minus(p, packed_->origin); }));
@@ -131,7 +128,7 @@ float PlacedVolume::value_of(double stored) const {
 }
 
 template <class Real>
-void PlacedVolume::place_as(std::size_t cluster, double x, double y, PlacedPoints& out) const {
+void PlacedVolume::take_points_as(std::size_t cluster, PlacedPoints& out) const {
     const core::Values<Real>& reals = packed_->as<Real>();
     out.count = core::local_points(*packed_, cluster, out.points.data());
     const std::size_t count = out.count;
@@ -140,9 +137,20 @@ void PlacedVolume::place_as(std::size_t cluster, double x, double y, PlacedPoint
         for (std::size_t axis = 0; axis < 3; ++axis) out.position[i][axis] = static_cast<double>(position[axis]);
     }
     for (std::size_t i = 0; i < count; ++i) out.value[i] = value_of(static_cast<double>(reals.values[out.points[i]]));
+}
+
+void PlacedVolume::take_points(std::size_t cluster, PlacedPoints& out) const {
+    if (packed_->single()) take_points_as<float>(cluster, out);
+    else take_points_as<double>(cluster, out);
+}
+
+void PlacedVolume::place(std::size_t cluster, double x, double y, PlacedPoints& out) const {
+    take_points(cluster, out);
+    const std::size_t count = out.count;
     for (std::size_t i = 0; i < count; ++i) {
         const std::array<double, 3>& p = out.position[i];
-        const double w = w_.at(p), across = across_.at(p) - x * w, down = down_.at(p) - y * w, part = 1 / w;
+        const double w = rows_.w.at(p), across = rows_.across.at(p) - x * w, down = rows_.down.at(p) - y * w,
+                     part = 1 / w;
         out.w[i] = w;
         out.across[i] = across;
         out.down[i] = down;
@@ -151,12 +159,7 @@ void PlacedVolume::place_as(std::size_t cluster, double x, double y, PlacedPoint
         out.near[i] = part;
     }
     if (!rays_->parallel()) return;
-    for (std::size_t i = 0; i < count; ++i) out.near[i] = -depth_.at(out.position[i]);
-}
-
-void PlacedVolume::place(std::size_t cluster, double x, double y, PlacedPoints& out) const {
-    if (packed_->single()) place_as<float>(cluster, x, y, out);
-    else place_as<double>(cluster, x, y, out);
+    for (std::size_t i = 0; i < count; ++i) out.near[i] = -rows_.depth.at(out.position[i]);
 }
 
 /// Whether the values of a cluster leave anything to be seen.

@@ -79,6 +79,22 @@ public:
     const TileBox& group(std::size_t which) const { return groups_[which]; }
     std::uint64_t bytes() const { return clusters_.bytes() + groups_.bytes(); }
 
+    /// Places, times w but for `depth`, of stored positions in the picture, in pixels; the depth of parallel pictures.
+    struct PictureRow {
+        std::array<double, 3> along{};
+        double shift = 0;
+        double at(const std::array<double, 3>& p) const {
+            return along[0] * p[0] + along[1] * p[1] + along[2] * p[2] + shift;
+        }
+    };
+    struct PictureRows {
+        PictureRow across, down, w, depth;
+    };
+    const PictureRows& rows() const { return rows_; }
+
+    /// Positions and values alone.
+    void take_points(std::size_t cluster, PlacedPoints& out) const;
+
     /// `x`, `y`   the corner of the tile, pixels
     void place(std::size_t cluster, double x, double y, PlacedPoints& out) const;
 
@@ -91,16 +107,9 @@ public:
     }
 
 private:
-    struct PictureRow {
-        std::array<double, 3> along{};
-        double shift = 0;
-        double at(const std::array<double, 3>& p) const {
-            return along[0] * p[0] + along[1] * p[1] + along[2] * p[2] + shift;
-        }
-    };
     PictureRow row_of(const Row& row, const Space& space) const;
     template <class Real>
-    void place_as(std::size_t cluster, double x, double y, PlacedPoints& out) const;
+    void take_points_as(std::size_t cluster, PlacedPoints& out) const;
     void find_cluster(std::size_t cluster, PlacedPoints& points);
     bool is_clipped(const PlacedPoints& points) const;
     template <class Real>
@@ -114,7 +123,7 @@ private:
     std::optional<Transfer> transfer_;
     std::vector<PlacedIsosurface> isosurfaces_;
     double first_isovalue_ = 0; ///< stored
-    PictureRow across_, down_, w_, depth_;
+    PictureRows rows_;
     std::vector<Plane> clips_, stored_clips_; ///< in the scene; among stored positions
     double lengths_ = 1;
     core::Buffer<ClusterPlace> clusters_;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include <isotet/scene.hpp>
@@ -51,15 +52,17 @@ public:
         return out;
     }
 
-private:
-    static constexpr double margin = 1.0 / 256; ///< ends nearer to each other are moved apart
-
-    float log_place_of(double stored) const;
     /// Integrals up to an entry, and how they go on in it: extinction is linear there.
     struct alignas(64) Row {
         Extinction up_to;
         std::array<float, 4> rise, bend;
     };
+    std::span<const Row> rows() const { return rows_; }
+
+private:
+    static constexpr double margin = 1.0 / 256; ///< ends nearer to each other are moved apart
+
+    float log_place_of(double stored) const;
     static Row row_between(const Extinction& up_to, const Extinction& mean, const Extinction& begin,
                            const Extinction& end);
     Extinction row_at(double place) const {

@@ -32,6 +32,8 @@ std::array<float, 3> in_float(const Vector& v) {
     return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
 
+std::array<float, 3> direction_to_eye(const Ray& ray) { return in_float(plus({}, ray.along, -1 / ray.stretch)); }
+
 /// A number for each of 4 x 4 pixels.
 struct alignas(64) Lane : std::array<float, 16> {};
 
@@ -141,7 +143,8 @@ std::uint64_t VolumeScene::bytes() const {
     return bytes;
 }
 
-VolumeTile::VolumeTile(const VolumeScene& scene) : scene_(scene), lists_(scene.tuning.lists) {}
+VolumeTile::VolumeTile(const VolumeScene& scene, bool follows)
+    : scene_(scene), lists_(follows ? scene.tuning.lists : ListRoom{1, 1}) {}
 
 void VolumeTile::start(std::size_t number, std::uint32_t column, std::uint32_t row) {
     number_ = number;
@@ -195,8 +198,7 @@ RayHit VolumeTile::hit(std::size_t pixel) const {
 
 /// How much light a ray gets from what lies across a gradient, lit on both sides.
 float VolumeTile::light_along(std::size_t index, std::array<float, 3> normal) const {
-    const Ray& ray = rays_[index];
-    const std::array<float, 3> to_eye = in_float(plus({}, ray.along, -1 / ray.stretch));
+    const std::array<float, 3> to_eye = direction_to_eye(rays_[index]);
     const float facing = normal[0] * to_eye[0] + normal[1] * to_eye[1] + normal[2] * to_eye[2];
     if (facing < 0)
         for (float& part : normal) part = -part;
@@ -206,6 +208,47 @@ float VolumeTile::light_along(std::size_t index, std::array<float, 3> normal) co
 void VolumeTile::add_stops(std::span<const float> stops) {
     stops_.insert(stops_.end(), stops.begin(), stops.end());
     first_stops_.push_back(static_cast<std::uint32_t>(stops_.size()));
+}
+
+void VolumeTile::give_rays(Seek seek, RayBatch& batch) {
+    const std::vector<PlacedVolume>& volumes = seek == Seek::medium ? scene_.media : scene_.surfaces;
+    clip_rays(volumes);
+    const bool has_stops = first_stops_.size() > pixels;
+    const auto per_scene = static_cast<float>(volumes.front().lengths());
+    const std::size_t first = batch.pixel_of(number_, 0);
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+        const std::size_t index = index_of(pixel);
+        const Ray& ray = rays_[index];
+        BatchRay& given = batch.rays[first + pixel];
+        given = {ends_[index], per_scene * static_cast<float>(ray.stretch), direction_to_eye(ray), 0, 0};
+        if (!has_stops) continue;
+        given.first_stop = first_stops_[pixel];
+        given.stops = first_stops_[pixel + 1] - first_stops_[pixel];
+    }
+    batch.tile_stops[number_ - batch.first] = stops_;
+    if (parts_.empty()) return;
+    for (std::size_t volume = 0; volume < volumes.size(); ++volume)
+        for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+            const RayPart& part = parts_[volume * pixels + index_of(pixel)];
+            batch.windows[volume * batch.pixels() + first + pixel] = {static_cast<float>(part.from),
+                                                                      static_cast<float>(part.to)};
+        }
+}
+
+void VolumeTile::take_hits(const RayBatch& batch) {
+    if (batch.hits.empty()) return;
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+        const std::size_t index = index_of(pixel);
+        hits_[index] = batch.hits[batch.pixel_of(number_, pixel)];
+        ends_[index] = std::min(ends_[index], std::nextafter(hits_[index].distance, INFINITY));
+    }
+}
+
+void VolumeTile::take_slabs(const RayBatch& batch) {
+    slabs_.assign(stops_.size() + pixels, Slab{});
+    if (batch.slabs.empty()) return;
+    const std::size_t first = batch.first_slab(batch.pixel_of(number_, 0));
+    std::copy_n(batch.slabs.begin() + static_cast<std::ptrdiff_t>(first), slabs_.size(), slabs_.begin());
 }
 
 std::span<const float> VolumeTile::stops(std::size_t pixel) const {

@@ -12,6 +12,7 @@
 #include <isotet/render.hpp>
 
 #include "packed/residency.hpp"
+#include "render/volume/ray_batch.hpp"
 #include "render/volume/segments.hpp"
 #include "render/volume/tet_planes.hpp"
 #include "render/volume/volume_bins.hpp"
@@ -62,7 +63,8 @@ struct RayHit {
 
 class VolumeTile {
 public:
-    explicit VolumeTile(const VolumeScene& scene);
+    /// `follows`   false: rays are given to a batch, and results taken from it
+    explicit VolumeTile(const VolumeScene& scene, bool follows = true);
 
     /// Starts a tile with its rays, which end where nothing is.
     void start(std::size_t number, std::uint32_t column, std::uint32_t row);
@@ -77,6 +79,11 @@ public:
     /// Sheets cut the ray at these distances, ascending: for each pixel, in order.
     void add_stops(std::span<const float> stops);
     void compose_media();
+
+    // In place of find_hits() and compose_media():
+    void give_rays(Seek seek, RayBatch& batch);
+    void take_hits(const RayBatch& batch);
+    void take_slabs(const RayBatch& batch);
 
     std::span<const float> stops(std::size_t pixel) const;
     std::span<const Slab> slabs(std::size_t pixel) const;
@@ -99,13 +106,6 @@ private:
     struct Lanes {
         alignas(64) std::array<float, 16> enter, leave, from, to;
         alignas(64) std::array<std::int32_t, 16> inside;
-    };
-    struct FoundHit {
-        float distance = INFINITY;
-        std::array<float, 3> normal{};
-        std::uint32_t volume = 0, isosurface = 0;
-
-        auto key() const { return std::tie(distance, normal, volume, isosurface); }
     };
 
     void clip_rays(const std::vector<PlacedVolume>& volumes);
