@@ -80,6 +80,7 @@ Result<std::shared_ptr<Context>> Context::adopt_unguarded(const VulkanHandles& h
     capabilities.compute_family = capabilities.transfer_family = handles.queue_family;
     capabilities.features.fragmentStoresAndAtomics = handles.fragment_stores;
     capabilities.external_memory = handles.external_memory;
+    capabilities.features.shaderFloat64 = VK_FALSE;
     capabilities.mesh_shaders = false;
 
     std::shared_ptr<Context> context(new Context);

@@ -46,8 +46,9 @@ Result<std::unique_ptr<LogicalDevice>> LogicalDevice::open(const Instance& insta
     mesh.meshShader = VK_TRUE;
     if (capabilities.mesh_shaders) addresses.pNext = &mesh;
 
-    VkPhysicalDeviceFeatures features{}; // of these none is needed, but for drawing
+    VkPhysicalDeviceFeatures features{}; // of these none is needed, but for drawing, and for rays through volumes
     features.fragmentStoresAndAtomics = capabilities.features.fragmentStoresAndAtomics;
+    features.shaderFloat64 = capabilities.features.shaderFloat64;
 
     VkDeviceCreateInfo create{};
     create.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
