@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <span>
 #include <string_view>
 
 #include <dlfcn.h>
@@ -166,6 +167,7 @@ Result<void> NullDevice::make_device() {
     if (capabilities_.mesh_shaders) figures.pNext = &mesh;
     VkPhysicalDeviceFeatures features{};
     features.fragmentStoresAndAtomics = capabilities_.features.fragmentStoresAndAtomics;
+    features.shaderFloat64 = capabilities_.features.shaderFloat64;
     const float priority = 1;
     VkDeviceQueueCreateInfo queue{};
     queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
@@ -205,6 +207,10 @@ NullDevice::~NullDevice() {
 
 bool NullDevice::takes(const Pipeline& pipeline) const {
     if (pipeline.draws() && !vulkan::why_unable_to_draw(capabilities_).empty()) return false;
+    constexpr std::uint32_t op_capability = 17, float64 = 10; // numbers of the SPIR-V specification
+    const std::span<const std::uint32_t> words = pipeline.stages.front().code->words;
+    for (std::size_t i = 5; i + 1 < words.size() && (words[i] & 0xffff) == op_capability; i += words[i] >> 16)
+        if (words[i + 1] == float64 && !capabilities_.features.shaderFloat64) return false;
     return capabilities_.mesh_shaders || pipeline.stages.front().stage != VK_SHADER_STAGE_MESH_BIT_EXT;
 }
 

@@ -47,7 +47,8 @@ public:
 
     const vulkan::Capabilities& capabilities() const noexcept { return capabilities_; }
 
-    /// Whether the device has what the pipeline needs: of AMD's, those before navi21 have no mesh shaders.
+    /// Whether the device has what the pipeline needs: of AMD's, those before navi21 have no mesh shaders; of others
+    /// some have no double precision.
     bool takes(const Pipeline& pipeline) const;
 
     /// Figures of each stage, in their order.

@@ -87,6 +87,15 @@ void add_tets(std::vector<Pipeline>& all) {
         }
 }
 
+void add_volumes(std::vector<Pipeline>& all) {
+    for (const std::uint32_t parallel : {0u, 1u})
+        for (const std::uint32_t isosurfaces : {0u, 1u}) {
+            std::string variant = isosurfaces ? "isosurfaces" : "media";
+            append(variant, parallel, "parallel");
+            add_compute(all, shaders::volume_rays, std::move(variant), {parallel, isosurfaces});
+        }
+}
+
 } // namespace
 
 std::vector<Pipeline> all_pipelines() {
@@ -96,6 +105,7 @@ std::vector<Pipeline> all_pipelines() {
     add_draw(all, {&shaders::line_corners, VK_SHADER_STAGE_VERTEX_BIT}, shaders::line, true, {}, {});
     add_meshes(all);
     add_tets(all);
+    add_volumes(all);
     return all;
 }
 

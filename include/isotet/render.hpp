@@ -183,16 +183,21 @@ public:
     Renderer& operator=(Renderer&&) noexcept;
     ~Renderer();
 
-    /// Draws a picture.
+    /// Draws a picture. With volumes it is that of draw(), byte for byte: the processor draws it, but for the rays
+    /// through volumes, which the device follows. Surfaces are then in memory.
     ///
     /// Cost     O(triangles) a part of the picture (parts have 16 million samples); device memory 28 bytes a sample of
     ///          a part and 16 a translucent fragment
     /// Errors   invalid_argument when a size, a camera or an opacity is out of range, or colours do not fit their
-    ///          surface; out_of_memory of the device, with the amount needed; device_failed; cancelled
+    ///          surface; out_of_memory of the device, with the amount needed; device_failed; cancelled; with volumes as
+    ///          draw(), and no_device when the device has no double precision, or finds other light in small volumes than
+    ///          the processor
     Result<Picture> draw(const Scene& scene, const PictureOptions& options, const Run& run = {});
 
     /// What the last call of draw() cost.
     const DeviceWork& work() const noexcept;
+    /// What volumes took in the last call that drew some: tets in blocks of 16 x 8 pixels, bytes of the device.
+    const VolumeWork& volume_work() const noexcept;
 
 private:
     struct Data;

@@ -289,7 +289,7 @@ struct Scene {
     std::vector<DrawnSurface> surfaces;
     std::vector<DrawnLines> lines;
     Box bounds;
-    std::vector<DrawnVolume> volumes = {}; ///< that do not overlap; the CPU draws them
+    std::vector<DrawnVolume> volumes = {}; ///< that do not overlap
 };
 
 /// PictureOptions::occlusion of isotet's own pictures.

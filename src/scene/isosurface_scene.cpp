@@ -26,7 +26,7 @@ Result<IsosurfaceScene> IsosurfaceScene::create(const std::optional<Device>& dev
         }
         if (data->look.volume && (device || options.draw || options.field.values.empty()))
             return invalid_argument(options.field.values.empty() ? "a volume without a field"
-                                                                 : "a volume on a device, but the CPU draws volumes");
+                                                                 : "a volume, and surfaces that stay on a device");
         options.grid.point_fields = options.grid.cell_fields = {};
         data->bounds = options.bounds;
         if (!options.all_cells)

@@ -101,8 +101,7 @@ Result<void> IsosurfaceScene::Data::start_packed(const IsosurfaceOptions& wanted
     bounds = wanted.bounds;
     if (auto looked = look_around_packed(wanted, run); !looked) return looked;
     if (look.volume && (device || !wanted.packed->contours))
-        return invalid_argument(device ? "a volume on a device, but the CPU draws volumes"
-                                       : "a volume without a field");
+        return invalid_argument(device ? "a volume, and surfaces that stay on a device" : "a volume without a field");
     if (!wanted.packed->contours) return {};
     if (look.volume) {
         volume_grid = wanted.packed->grid;

@@ -17,6 +17,7 @@ public:
 
 struct Renderer::Data {
     DeviceWork work;
+    VolumeWork volume_work;
 };
 
 namespace {
@@ -50,6 +51,7 @@ Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 Renderer::~Renderer() = default;
 const DeviceWork& Renderer::work() const noexcept { return data_->work; }
+const VolumeWork& Renderer::volume_work() const noexcept { return data_->volume_work; }
 Result<Renderer> Renderer::create(const Device&) { return built_without(); }
 Result<Picture> Renderer::draw(const Scene&, const PictureOptions&, const Run&) { return built_without(); }
 

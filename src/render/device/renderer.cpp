@@ -13,10 +13,12 @@
 #include "packed/packed.hpp"
 #include "packed/residency.hpp"
 #include "render/check_drawing.hpp"
+#include "render/cpu/draw_tuned.hpp"
 #include "render/device/field_buffer.hpp"
 #include "render/device/frame.hpp"
 #include "render/device/mesh_buffers.hpp"
 #include "render/device/view.hpp"
+#include "render/device/volume_rays.hpp"
 
 namespace isotet {
 
@@ -90,10 +92,13 @@ Result<DeviceColors> DeviceColors::of_grid(const Device& device, const PackedGri
 struct Renderer::Data {
     Device device;
     std::unique_ptr<render::Frame> frame;
-    DeviceWork work;
+    DeviceWork work = {};
+    VolumeWork volume_work = {};
+    std::unique_ptr<render::VolumeRays> rays = {}; ///< once there was a volume
 
     Result<render::Draws> plan(const Scene& scene, const PictureOptions& options, const render::Space& space);
     Result<Picture> draw(const Scene& scene, const PictureOptions& options, const Progress& progress);
+    Result<Picture> draw_volumes(const Scene& scene, const PictureOptions& options, const Progress& progress);
 };
 
 Result<render::Draws> Renderer::Data::plan(const Scene& scene, const PictureOptions& options,
@@ -141,8 +146,7 @@ Result<render::Draws> Renderer::Data::plan(const Scene& scene, const PictureOpti
 Result<Picture> Renderer::Data::draw(const Scene& scene, const PictureOptions& options, const Progress& progress) {
     work = {};
     if (Result<void> right = render::check_options(options); !right) return right.error();
-    if (!scene.volumes.empty())
-        return invalid_argument("a scene with a volume on a device, but the CPU draws volumes: draw()");
+    if (!scene.volumes.empty()) return draw_volumes(scene, options, progress);
     const render::Space space(scene.bounds);
     Result<render::Draws> draws = plan(scene, options, space);
     if (!draws) return draws.error();
@@ -177,6 +181,21 @@ Result<Picture> Renderer::Data::draw(const Scene& scene, const PictureOptions& o
     return picture;
 }
 
+Result<Picture> Renderer::Data::draw_volumes(const Scene& scene, const PictureOptions& options,
+                                             const Progress& progress) {
+    if (!rays) {
+        Result<std::unique_ptr<render::VolumeRays>> made = render::VolumeRays::make(device.context());
+        if (!made) return made.error();
+        rays = *std::move(made);
+    }
+    vulkan::Staging& staging = frame->context().staging();
+    const std::uint64_t up = staging.uploaded(), down = staging.downloaded();
+    Result<Picture> picture = render::draw_with(scene, options, {}, rays.get(), progress, volume_work);
+    work.uploaded_bytes = staging.uploaded() - up;
+    work.downloaded_bytes = staging.downloaded() - down;
+    return picture;
+}
+
 Renderer::Renderer(std::unique_ptr<Data> data) : data_(std::move(data)) {}
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
@@ -186,11 +205,16 @@ const DeviceWork& Renderer::work() const noexcept {
     return data_ ? data_->work : none;
 }
 
+const VolumeWork& Renderer::volume_work() const noexcept {
+    static const VolumeWork none;
+    return data_ ? data_->volume_work : none;
+}
+
 Result<Renderer> Renderer::create(const Device& device) {
     return core::guarded("preparing to draw", [&]() -> Result<Renderer> {
         auto frame = render::Frame::make(device.context());
         if (!frame) return frame.error();
-        return Renderer(std::make_unique<Data>(Data{device, *std::move(frame), {}}));
+        return Renderer(std::make_unique<Data>(Data{device, *std::move(frame)}));
     });
 }
 

@@ -16,6 +16,7 @@ namespace isotet::render {
 inline Result<vulkan::Buffer> send(vulkan::Context& context, std::span<const std::byte> bytes, std::string_view name) {
     Result<vulkan::Buffer> buffer = context.memory().take(bytes.size(), vulkan::Where::device, name);
     if (!buffer) return buffer;
+    if (bytes.empty()) return buffer;
     if (Result<void> sent = context.staging().upload(*buffer, 0, bytes); !sent) return sent.error();
     return buffer;
 }
