@@ -68,7 +68,7 @@ private:
 };
 
 /// What packing takes beside arrays, and a few megabytes of each of them.
-std::uint64_t least_memory(std::uint64_t cells, std::uint64_t points) { return 80'000'000 + 5 * cells + 25 * points; }
+std::uint64_t least_memory(std::uint64_t cells, std::uint64_t points) { return 80'000'000 + 4 * cells + 18 * points; }
 
 Result<void> PackRun::check_memory(std::uint64_t cells, std::uint64_t points) const {
     if (!scratch_) return {};

@@ -462,7 +462,7 @@ TEST(PackFile, RefusesLessMemoryThanItNeeds) {
         return refused.error().message;
     };
     EXPECT_EQ(refusal_of(50'000'000), "packing needs at least 80.0 MB of memory, but `memory` is 50.0 MB"); // not read
-    EXPECT_EQ(refusal_of(80'100'000), "packing needs at least 80.5 MB of memory, but `memory` is 80.1 MB");
+    EXPECT_EQ(refusal_of(80'100'000), "packing needs at least 80.4 MB of memory, but `memory` is 80.1 MB");
     job.memory = 100'000'000;
     job.scratch = folder.file("nowhere");
     const auto nowhere = pack_file(job, listener);
