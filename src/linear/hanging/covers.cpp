@@ -18,6 +18,8 @@ namespace isotet::linear {
 namespace {
 
 constexpr double beside_edge = 0.25;    // of its length: a point that curved shapes put beside it
+constexpr double inside_hole = 5e-2;    // of a face's extent: a point inside it that may be the corner of a hole
+constexpr double inside_beside = 2.5;   // of the distance of points from edges: of one inside a face of a curved shape, besides
 constexpr double on_face = 1e-3;        // of a face's extent: one that lies on it
 // The farthest ones may be beside another face that looks the same way: so the nearest are tried first.
 constexpr std::array<double, 4> farthest_shares = {on_face, 1e-2, 5e-2, beside_face};
@@ -174,7 +176,9 @@ public:
         some_.clear();
         for (const Cover::Part& part : cover.by)
             if (part.distance <= farthest && !used[part.face]) some_.push_back(part);
-        if (find_outline(cover)) cover.by.assign(some_.begin(), some_.end());
+        if (!find_outline(cover)) return;
+        cover.is_whole = are_near(cover);
+        if (cover.is_whole) cover.by.assign(some_.begin(), some_.end());
     }
 
 private:
@@ -201,7 +205,26 @@ private:
         }
         if (taken != steps_.size()) return false;
         cover.between.assign(between_.begin(), between_.end());
-        return cover.is_whole = true;
+        return true;
+    }
+
+    /// Whether the points inside are about as near to the face as those on its edges are to these. Else the faces may go around
+    /// a hole, as those of cells around a missing pyramid do.
+    bool are_near(const Cover& cover) const {
+        const auto loop = faces_.loop(cover.face);
+        double beside = 0; // of points on edges
+        for (const Cover::OnEdge& on : between_) {
+            const Point from = points_[loop[on.edge]], to = points_[loop[(on.edge + 1) % loop.size()]];
+            beside = std::max(beside, place_on_edge(from, to, points_[on.point]).distance);
+        }
+        const double most = inside_hole * shapes_.extent(cover.face) + inside_beside * beside;
+        return std::ranges::all_of(some_, [&](const Cover::Part& part) {
+            return std::ranges::all_of(faces_.loop(part.face), [&](std::uint64_t point) {
+                return std::ranges::find(loop, point) != loop.end() ||
+                       std::ranges::find(between_, point, &Cover::OnEdge::point) != between_.end() ||
+                       place_on_face(loop, points_[point], points_).distance <= most;
+            });
+        });
     }
 
     /// The edges of some faces, but for those that two of them have in opposite directions. They look the other way:

@@ -29,6 +29,8 @@ public:
     FaceShapes(const OpenFaces& faces, const core::CellReader& cells, const core::PointReader& points);
 
     const Point& middle(std::size_t face) const { return shapes_[face].middle; }
+    /// The diagonal of its box.
+    double extent(std::size_t face) const { return shapes_[face].extent; }
     /// A loop that is clockwise seen from outside of its cell.
     bool is_turned(std::size_t face) const { return shapes_[face].is_turned; }
 
