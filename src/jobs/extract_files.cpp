@@ -93,6 +93,7 @@ private:
     std::optional<Contour> contour_;
     std::optional<Solids> solids_;                 ///< in its place where solids are made
     Grid grid_;                                    ///< of the step at hand
+    Array cell_numbers_;                           ///< in the file, where they are others
     PointField field_;                             ///< that is contoured there
     std::vector<double> share_isovalues_;          ///< of ExtractJob::shares
     SolidChoice solid_;                            ///< of ExtractJob::solid, with the shares of its range
@@ -220,11 +221,13 @@ Result<std::optional<std::uint64_t>> ExtractRun::read_grid(std::size_t step) {
         Result<ReadResult> read = source_->read_active(plan_.read, step, *plan_.active_cells, caller_);
         if (!read) return read.error();
         grid_ = std::move(read->grid);
+        cell_numbers_ = std::move(read->cell_numbers);
         return read->cells_in_file;
     }
-    Result<Grid> grid = source_->read(plan_.read, step, caller_);
-    if (!grid) return with_way_out(grid.error(), job_, plan_);
-    grid_ = *std::move(grid);
+    Result<ReadResult> read = source_->read_numbered(plan_.read, step, caller_);
+    if (!read) return with_way_out(read.error(), job_, plan_);
+    grid_ = std::move(read->grid);
+    cell_numbers_ = std::move(read->cell_numbers);
     return std::optional<std::uint64_t>{};
 }
 
@@ -594,6 +597,7 @@ Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> is
             if (!numbered) return numbered.error();
             surface = *std::move(numbered);
         }
+        surface.source_cells = numbers_in_file(surface.source_cells, cell_numbers_);
         SurfaceNumbers& numbers = numbers_.surfaces.emplace_back();
         numbers.extract_seconds = seconds;
         if (result->engine == "vulkan") numbers.device = result->work;
@@ -654,6 +658,7 @@ Result<std::vector<Surface>> ExtractRun::extract_solid(double isovalue, std::siz
     note_what_a_solid_is(numbers_, numbers, caller_);
     std::vector<Surface> surfaces;
     surfaces.push_back(std::move(made->surface));
+    surfaces[0].source_cells = numbers_in_file(surfaces[0].source_cells, cell_numbers_);
     if (auto found = find_parts_of(surfaces[0], numbers); !found) return found.error();
     if (auto reduced = reduce_triangles(surfaces[0], numbers); !reduced) return reduced.error();
     if (!plan_.holds_fields) surfaces[0].cell_fields.clear(); // "boundary" alone: no note for that

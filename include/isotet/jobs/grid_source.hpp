@@ -106,6 +106,11 @@ public:
     }
     Result<Grid> read(const FieldsToRead& fields, std::size_t step, Caller& caller, const Run& run) const;
 
+    /// The same, with the numbers that its cells have in the file (ReadResult::cell_numbers).
+    Result<ReadResult> read_numbered(const FieldsToRead& fields, std::size_t step, Caller& caller) const {
+        return read_cells(fields, step, CellsToRead::all, caller, caller.run());
+    }
+
     /// The same, for looking at fields: of a packed file some cells, spread evenly (ReadResult::cells_in_file).
     Result<ReadResult> read_some(const FieldsToRead& fields, std::size_t step, Caller& caller, const Run& run) const;
 
@@ -169,6 +174,11 @@ private:
 enum class Steps { one, all };
 Result<std::vector<std::size_t>> choose_steps(const FileInfo& info, const GridOptions& options, Steps steps,
                                               Caller& caller);
+
+/// Source cells of a surface or a grid by the numbers that the file has.
+/// `cells`     int64; -1: of none
+/// `numbers`   ReadResult::cell_numbers
+Array numbers_in_file(const Array& cells, const Array& numbers);
 
 /// A time step that cannot be read, among others that can.
 struct BrokenStep {

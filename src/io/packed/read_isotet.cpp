@@ -188,6 +188,7 @@ Result<ReadResult> read_isotet(const std::string& path, const ReadOptions& optio
         Result<Grid> grid = unpack(PackedGrid(cells), run);
         if (!grid) return grid.error();
         result.grid = *std::move(grid);
+        if (directory.cell_ids) result.cell_numbers = core::source_cells_of(*cells);
         if (auto taken = take_cell_fields(**source, *step, *cells, options, result.grid, progress); !taken)
             return taken.error();
     }

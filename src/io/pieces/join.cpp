@@ -74,6 +74,14 @@ Result<void> join_arrays(OrderedPieces& all, const PointNumbers& numbers, const 
     return {};
 }
 
+/// The numbers of the cells that are not left out.
+Array kept_numbers(const std::vector<std::uint8_t>& left_out) {
+    std::vector<std::uint64_t> numbers;
+    for (std::uint64_t cell = 0; cell < left_out.size(); ++cell)
+        if (left_out[cell] == 0) numbers.push_back(cell);
+    return Array::own(std::move(numbers));
+}
+
 /// Nothing where `may_free` and pieces that are needed were freed.
 Result<std::optional<ReadResult>> join_loaded(Loaded loaded, const ReadOptions& options, const Progress& progress,
                                               bool may_free) {
@@ -105,6 +113,7 @@ Result<std::optional<ReadResult>> join_loaded(Loaded loaded, const ReadOptions& 
         return std::optional(std::move(result));
     }
 
+    if (pieces.size() == 1) result.cell_numbers = kept_numbers(pieces[0].left_out);
     auto all = checked(std::move(pieces));
     if (!all) return all.error();
     note_left_out(all->pieces, result.notes);

@@ -116,7 +116,7 @@ public:
         });
     }
     void describe(ReadResult& result) {
-        [[maybe_unused]] const auto& [whole, info, step, cells_in_file, bounds, notes] = result;
+        [[maybe_unused]] const auto& [whole, info, step, cells_in_file, bounds, notes, cell_numbers] = result;
         [[maybe_unused]] const auto& [points, cells, point_fields, cell_fields, point_numbers, patches] = result.grid;
         [[maybe_unused]] const auto& [connectivity, offsets, types, uniform_type, faces, face_offsets] = result.grid.cells;
         describe(result.info);
@@ -144,6 +144,7 @@ public:
             out_.number(patch.number);
             out_.text(patch.name);
         });
+        array(result.cell_numbers);
     }
 
 private:
@@ -248,6 +249,7 @@ public:
             patch.number = in_.number<decltype(patch.number)>();
             patch.name = in_.text();
         });
+        result.cell_numbers = array();
         return result;
     }
 
