@@ -125,8 +125,9 @@ struct ReadResult {
     std::optional<std::array<double, 6>> bounds = {}; ///< then, if they were asked for, and not of legacy VTK: least x,
                                                       ///< y and z of the points that any cell has, then the greatest
     std::vector<std::string> notes; ///< sentences for the user: ghost cells left out, blocks joined and so on
-    Array cell_numbers = {}; ///< uint64, where cells have other numbers than in the file that has them: of a piece, of which
-                             ///< some are left out, and of a packed file with source cells. Empty: they are the same
+    Array cell_numbers =
+        {}; ///< uint64, where cells have other numbers than in the file that has them: of a piece, of which
+            ///< some are left out, and of a packed file with source cells. Empty: they are the same
 };
 
 /// Tells what a file holds without reading more of it than the format makes necessary.

@@ -92,7 +92,8 @@ TEST(SourceCells, CountCellsThatTheFileHides) {
     for (const char* shape : {"kuhn", "mixed"}) {
         Grid grid = numbered(shape);
         std::vector<std::uint8_t> ghosts(grid.cells.count());
-        for (std::size_t i = 0; i < ghosts.size(); ++i) ghosts[i] = i < ghosts.size() / 3 ? 32 : 0; // vtkDataSetAttributes::HIDDENCELL
+        for (std::size_t i = 0; i < ghosts.size(); ++i)
+            ghosts[i] = i < ghosts.size() / 3 ? 32 : 0; // vtkDataSetAttributes::HIDDENCELL
         grid.cell_fields.push_back({"vtkGhostType", Array::own(std::move(ghosts))});
         ASSERT_TRUE(write_grid(grid, folder.file("grid.vtu")));
         EXPECT_LT(read(folder.file("grid.vtu")).value().grid.cells.count(), grid.cells.count());

@@ -294,11 +294,12 @@ TEST(CloseHangingPoints, TellsWhatStaysOpen) {
 TEST(CloseHangingPoints, LeavesHolesAsTheyAre) {
     Grid grid; // a cube, and of the one beside it five of six pyramids: the one at the first cube is missing
     for (const double apex : {1.5, 1.25}) {
-        grid.points = Array::own(std::vector<double>{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1,    0,  1,  1, 1,
+        grid.points = Array::own(std::vector<double>{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0,    1,  1, 1,
                                                      1, 0, 1, 1, 2, 0, 0, 2, 1, 0, 2, 0, 1, 2, 1, 1, apex, .5, .5},
                                  3);
-        grid.cells.connectivity = Array::own(std::vector<std::int64_t>{
-            0, 1, 2, 3, 4, 5, 6, 7, 1, 8, 9, 2, 12, 5, 6, 11, 10, 12, 1, 5, 10, 8, 12, 8, 10, 11, 9, 12, 9, 11, 6, 2, 12});
+        grid.cells.connectivity =
+            Array::own(std::vector<std::int64_t>{0,  1, 2, 3,  4, 5,  6, 7,  1,  8, 9,  2, 12, 5, 6, 11, 10,
+                                                 12, 1, 5, 10, 8, 12, 8, 10, 11, 9, 12, 9, 11, 6, 2, 12});
         grid.cells.offsets = Array::own(std::vector<std::int64_t>{0, 8, 13, 18, 23, 28, 33});
         grid.cells.types = Array::own(std::vector<std::uint8_t>{12, 14, 14, 14, 14, 14});
         const ClosedGrid closed = close_hanging_points(grid).value();

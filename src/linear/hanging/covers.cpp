@@ -19,7 +19,8 @@ namespace {
 
 constexpr double beside_edge = 0.25;    // of its length: a point that curved shapes put beside it
 constexpr double inside_hole = 5e-2;    // of a face's extent: a point inside it that may be the corner of a hole
-constexpr double inside_beside = 2.5;   // of the distance of points from edges: of one inside a face of a curved shape, besides
+constexpr double inside_beside =
+    2.5; // of the distance of points from edges: of one inside a face of a curved shape, besides
 constexpr double on_face = 1e-3;        // of a face's extent: one that lies on it
 // The farthest ones may be beside another face that looks the same way: so the nearest are tried first.
 constexpr std::array<double, 4> farthest_shares = {on_face, 1e-2, 5e-2, beside_face};
