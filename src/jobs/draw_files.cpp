@@ -221,7 +221,6 @@ Result<DrawReport> draw_files(const DrawJob& job, Caller& caller) {
     if (!files)
         if (Result<void> opened = open(source->steps()); !opened) return opened.error();
     DrawReport report;
-    if (drawer->device()) report.device = drawer->device()->info();
     Result<DrawInput> input = source->read(0, drawer->device(), caller);
     if (!input) return input.error();
     report.input = *std::move(input);
@@ -232,6 +231,7 @@ Result<DrawReport> draw_files(const DrawJob& job, Caller& caller) {
     const Result<Picture> last =
         draw_frames(*frames, job, *drawer, *source, report.input, *files, report.pictures, caller);
     if (!last) return last.error();
+    report.device = drawer->info();
     source->tell_what_was_read(caller);
     if (reference)
         if (Result<void> compared = compare(*last, *reference, job, report.pictures, caller); !compared)

@@ -339,6 +339,31 @@ TEST_F(Render, DrawsOnTheCpuWhatADeviceDraws) {
     EXPECT_TRUE(is_one_error(run, "--occlusion and a device, but only the CPU darkens folds"));
 }
 
+TEST_F(Render, FollowsRaysThroughVolumesOnADevice) {
+    for (const std::vector<std::string>& what :
+         {std::vector<std::string>{"--opacity", "peaks:2", "-i", "0.2"}, {"--dirac", "0.2,-0.3", "--clip", "x=0.1"}}) {
+        const auto drawn = [&](const char* out) {
+            std::vector<std::string> words{"render", "make:mixed:6:gyroid", "-o", path(out), "--volume", "--size",
+                                           "90x70"};
+            words.insert(words.end(), what.begin(), what.end());
+            return words;
+        };
+        ASSERT_EQ(isotet(drawn("cpu.png")).status, 0);
+        std::vector<std::string> words = drawn("device.png");
+        words.insert(words.end(), {"--device", "software"});
+        const auto report = json_of(words);
+        EXPECT_EQ(report["device"]["kind"], "software");
+        EXPECT_GT(report["volume"]["segments"], 0);
+        EXPECT_GT(report["drawing"]["bytes_up"], 0);
+        EXPECT_TRUE(content(path("device.png")) == content(path("cpu.png")));
+        words.insert(words.end(), {"--device-memory", "4MB"});
+        const RunResult short_of_memory = isotet(words);
+        EXPECT_EQ(short_of_memory.status, 0);
+        EXPECT_NE(short_of_memory.err.find("the CPU draws the volume: "), std::string::npos) << short_of_memory.err;
+        EXPECT_TRUE(content(path("device.png")) == content(path("cpu.png")));
+    }
+}
+
 TEST_F(Render, SweepsThroughIsovaluesIntoNumberedFiles) {
     auto report = json_of(command("make:kuhn:6:sphere", "s{frame}.png", {"--sweep", "0.2,0.8,11", "--plain"}));
     EXPECT_EQ(report["pictures"], 11);
