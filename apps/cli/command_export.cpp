@@ -120,17 +120,20 @@ Json export_report(const ExportCommand& command, const view::SavedSurfaces& save
     return report;
 }
 
-/// Without being asked for it.
+/// Whether the page is to have what fits: the grid, if isosurfaces are not asked for.
 bool may_have_grid(const ExportCommand& command) {
-    return command.isovalues.empty() && command.shares.empty() && command.range.empty() && !command.count &&
-           view::check_grid_pages();
+    return command.content == PageContent::fitting && command.isovalues.empty() && command.shares.empty() &&
+           command.range.empty() && !command.count;
 }
 
 } // namespace
 
 Result<ExitCode> run_export(const ExportCommand& command) {
     Console console(command.common);
-    if (command.content == PageContent::grid || (command.content == PageContent::fitting && may_have_grid(command))) {
+    const bool may = may_have_grid(command), can = static_cast<bool>(view::check_grid_pages());
+    if (may && !can)
+        console.note("this isotet was built without WebAssembly: the page has isosurfaces in place of the grid");
+    if (command.content == PageContent::grid || (may && can)) {
         const Result<std::optional<ExitCode>> done = run_export_grid(command, console);
         if (!done) return done.error();
         if (*done) return **done;
