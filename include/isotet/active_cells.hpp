@@ -25,15 +25,16 @@ namespace isotet {
 ///
 /// For tetrahedra, voxels, hexahedra, wedges and pyramids, without point numbers.
 ///
-/// Memory    a byte a point for each isovalue, and twice the cells that are kept: of smooth fields a few of a hundred
+/// Memory    a byte a point, three where there are several isovalues, and twice the cells that are kept: of smooth fields
+///           a few of a hundred for each isovalue
 /// Threads   add() is safe from many threads
 class ISOTET_API ActiveCellFilter {
 public:
     /// `points`      of the whole grid, as Grid::points
     /// `field`       one scalar a point
-    /// `isovalues`   at least one; those that will be extracted
+    /// `isovalues`   at least one, at most max_isovalues; those that will be extracted
     /// `type`        of all cells, for add(); nothing where cells have types of their own, for add_cells()
-    /// `options`     those of the extraction. Cell fields, source cells and gradient normals need all cells
+    /// `options`     those of the extraction. Cell fields and gradient normals need all cells
     ///
     /// Cost     two passes over points and values for each isovalue
     /// Errors   invalid_argument: no isovalue, one that is not finite, options that need all cells, arrays that do not fit
@@ -56,6 +57,12 @@ public:
     /// Errors   invalid_data: a cell has a type that is not taken, a point that is not there, or one whose coordinates
     ///          are not finite or 2^91 or more; survey() tells which
     Result<Cells> finish();
+
+    /// After finish(), where `options` ask for source cells: of the cells that were kept the numbers in the whole grid,
+    /// uint64. Surfaces of these cells have the places of theirs in it as source cells.
+    Array numbers() const;
+
+    static constexpr std::size_t max_isovalues = 255;
 
     ActiveCellFilter(ActiveCellFilter&&) noexcept;
     ActiveCellFilter& operator=(ActiveCellFilter&&) noexcept;

@@ -5,6 +5,8 @@
 #include <new>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "api/active_cells.hpp"
 #include "api/finish.hpp"
 #include "base/errors.hpp"
@@ -16,8 +18,8 @@ namespace isotet {
 
 Result<void> api::check_active_cells_do(const DirectOptions& options) {
     const ExtractOptions& extract = options.extract;
-    if (extract.source_cells || !extract.cell_fields.empty() || extract.normals == Normals::gradient || options.frame)
-        return invalid_argument("cell fields, source cells, gradient normals and frames need all cells of a grid");
+    if (!extract.cell_fields.empty() || extract.normals == Normals::gradient || options.frame)
+        return invalid_argument("cell fields, gradient normals and frames need all cells of a grid");
     return {};
 }
 
@@ -36,6 +38,9 @@ Result<ActiveCellFilter> ActiveCellFilter::create(const Array& points, const Poi
                                                   std::optional<CellType> type, const DirectOptions& options) {
     return core::guarded("looking for active cells", [&]() -> Result<ActiveCellFilter> {
         if (isovalues.empty()) return invalid_argument("active cells are those that isovalues cut, but there is none");
+        if (isovalues.size() > max_isovalues)
+            return invalid_argument(fmt::format("active cells of {} isovalues, but there may be {}", isovalues.size(),
+                                                max_isovalues));
         if (auto ok = api::check_isovalues(isovalues); !ok) return ok.error();
         const ExtractOptions& extract = options.extract;
         if (auto ok = api::check_active_cells_do(options); !ok) return ok.error();
@@ -50,6 +55,7 @@ Result<ActiveCellFilter> ActiveCellFilter::create(const Array& points, const Poi
         ops::DirectRequest request;
         request.isovalues = isovalues;
         request.ties = extract.ties;
+        request.source_cells = extract.source_cells;
         auto filter = options.precision == Precision::float32 ? cpu::make_active_filter<float>(input, request, type)
                                                               : cpu::make_active_filter<double>(input, request, type);
         auto data = std::make_unique<Data>();
@@ -87,5 +93,7 @@ Result<Cells> ActiveCellFilter::finish() {
         return *std::move(cells);
     });
 }
+
+Array ActiveCellFilter::numbers() const { return data_ ? data_->filter->numbers() : Array(); }
 
 } // namespace isotet

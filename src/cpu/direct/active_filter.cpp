@@ -15,19 +15,21 @@
 #include "base/buffer.hpp"
 #include "base/parallel.hpp"
 #include "cpu/direct/arena.hpp"
-#include "cpu/direct/side_sums.hpp"
+#include "cpu/direct/levels.hpp"
 #include "grid/fixed_corners.hpp"
 
 namespace isotet::cpu::direct {
 
 namespace {
 
-/// `Point` holds every point number.
-template <class Point>
+/// `Point`   holds every point number
+/// `Table`   OneLevel or Levels
+template <class Point, class Table>
 class Filter final : public ActiveFilter {
 public:
-    Filter(std::vector<Sides> sides, std::optional<CellType> type)
-        : sides_(std::move(sides)),
+    Filter(Table table, std::optional<CellType> type, bool keeps_numbers)
+        : table_(std::move(table)),
+          keeps_numbers_(keeps_numbers),
           mixed_(!type),
           type_(static_cast<std::uint8_t>(type.value_or(CellType::tetrahedron))),
           corners_(core::fixed_corners_of(type_)),
@@ -71,9 +73,12 @@ public:
             places.back() ? std::move(connectivity).to_array() : Array(scalar_type_of<Index>(), nullptr, 0, 1, nullptr);
         cells.uniform_type = static_cast<CellType>(type_);
         if (mixed_ && !runs.empty()) add_types(runs, cells);
+        if (keeps_numbers_) take_numbers(runs);
         kept_.clear();
         return cells;
     }
+
+    Array numbers() const override { return numbers_; }
 
 private:
     struct Kept;
@@ -84,7 +89,17 @@ private:
         std::size_t count;
         const Kept* by;
         std::size_t first_type, types; ///< theirs, of those kept; none where all are alike
+        std::size_t first_number = 0, numbers = 0; ///< likewise
     };
+
+    void take_numbers(const std::vector<Run>& runs) {
+        std::vector<std::uint64_t> numbers;
+        for (const Run& run : runs) {
+            const auto own = std::span(run.by->numbers).subspan(run.first_number, run.numbers);
+            numbers.insert(numbers.end(), own.begin(), own.end());
+        }
+        numbers_ = Array::own(std::move(numbers));
+    }
 
     static void add_types(const std::vector<Run>& runs, Cells& cells) {
         std::vector<std::int64_t> offsets{0};
@@ -103,7 +118,8 @@ private:
         std::vector<core::Buffer<Point>> blocks;
         std::size_t left = 0; ///< at the end of the last block
         std::vector<Run> runs;
-        std::vector<std::uint8_t> types; ///< of the cells, where each has its own
+        std::vector<std::uint8_t> types;    ///< of the cells, where each has its own
+        std::vector<std::uint64_t> numbers; ///< of the cells, where they are kept
 
         Point* room(std::size_t count) {
             constexpr std::size_t block = arena_block / sizeof(Point);
@@ -188,16 +204,14 @@ private:
             const Index* const part = corners + n * begin;
             Places keep{};
             if (first_cell + begin == 0 && size) mark(keep, 0); // so that there is a cell to contour
-            for (Sides& sides : sides_) {
-                if (!add_up_sides<n>(sides, part, size, sums.data())) broken_ = true;
-                std::fill(sums.data() + size, sums.data() + looked_at, std::uint16_t{0});
-                const std::size_t found =
-                    find_worth_looking<n>(sums, places.data(), static_cast<std::uint32_t>(looked_at));
-                for (std::size_t i = 0; i < found; ++i) {
-                    const std::uint32_t place = places[i];
-                    const bool asked_for = sums[place] >= 16 && uses_watched(sides, std::span(part + n * place, n));
-                    if (asked_for || has_both_sides<n>(sums[place])) mark(keep, place);
-                }
+            if (!table_.template look_at<n>(part, size, sums.data())) broken_ = true;
+            std::fill(sums.data() + size, sums.data() + looked_at, std::uint16_t{0});
+            const std::size_t found =
+                Table::template find_worth_looking<n>(sums, places.data(), static_cast<std::uint32_t>(looked_at));
+            for (std::size_t i = 0; i < found; ++i) {
+                const std::uint32_t place = places[i];
+                const bool asked_for = Table::asks(sums[place]) && uses_watched(std::span(part + n * place, n));
+                if (asked_for || Table::is_cut(sums[place], n)) mark(keep, place);
             }
             keep_cells(first_cell + begin, keep, {}, [&](std::size_t place) { return std::span(part + n * place, n); });
         }
@@ -236,14 +250,11 @@ private:
         Places keep{};
         if (first_cell == 0) mark(keep, 0); // so that there is a cell to contour
         keep_flat(cells, keep);
-        for (Sides& sides : sides_) {
-            if (!add_up_mixed(sides, cells, sums.data())) broken_ = true;
-            for (std::size_t place = 0; place < cells.types.size(); ++place) {
-                const unsigned sum = sums[place], above = sum % 16, all = cells.begins[place + 1] - cells.begins[place];
-                if (sum == 0 || sum == all) continue;
-                const bool asked_for = sum >= 16 && uses_watched(sides, cells.cell(place));
-                if (asked_for || (above != 0 && above != all)) mark(keep, place);
-            }
+        if (!add_up_mixed(cells, sums.data())) broken_ = true;
+        for (std::size_t place = 0; place < cells.types.size(); ++place) {
+            if (sums[place] == 0) continue;
+            const bool asked_for = Table::asks(sums[place]) && uses_watched(cells.cell(place));
+            if (asked_for || Table::is_cut(sums[place], cells.cell(place).size())) mark(keep, place);
         }
         keep_cells(first_cell, keep, cells.types, [&](std::size_t place) { return cells.cell(place); });
     }
@@ -255,23 +266,23 @@ private:
             if (core::is_contoured(cells.types[place])) continue;
             mark(keep, place);
             for (const Index corner : cells.cell(place))
-                if (static_cast<std::make_unsigned_t<Index>>(corner) >= sides_.front().points()) broken_ = true;
+                if (static_cast<std::make_unsigned_t<Index>>(corner) >= table_.points()) broken_ = true;
         }
     }
 
     /// 0 for cells that are not contoured. False as add_up_sides().
     template <class Index>
-    static bool add_up_mixed(const Sides& sides, const MixedCells<Index>& cells, std::uint16_t* sums) {
+    bool add_up_mixed(const MixedCells<Index>& cells, std::uint16_t* sums) const {
         const std::span<const std::uint8_t> types = cells.types;
         bool sound = true;
         for (std::size_t begin = 0, end = 0; begin < types.size(); begin = end) {
             while (end < types.size() && types[end] == types[begin]) ++end;
             const Index* const corners = cells.corners + cells.begins[begin];
             switch (core::corners_of(types[begin])) {
-            case 4: sound &= add_up_sides<4>(sides, corners, end - begin, sums + begin); break;
-            case 5: sound &= add_up_sides<5>(sides, corners, end - begin, sums + begin); break;
-            case 6: sound &= add_up_sides<6>(sides, corners, end - begin, sums + begin); break;
-            case 8: sound &= add_up_sides<8>(sides, corners, end - begin, sums + begin); break;
+            case 4: sound &= table_.template look_at<4>(corners, end - begin, sums + begin); break;
+            case 5: sound &= table_.template look_at<5>(corners, end - begin, sums + begin); break;
+            case 6: sound &= table_.template look_at<6>(corners, end - begin, sums + begin); break;
+            case 8: sound &= table_.template look_at<8>(corners, end - begin, sums + begin); break;
             default: std::fill(sums + begin, sums + end, std::uint16_t{0});
             }
         }
@@ -280,19 +291,19 @@ private:
 
     /// Of a cell that has a corner which needs attention: whether the cell must be kept for it.
     template <class Index>
-    bool uses_watched(Sides& sides, std::span<const Index> cell) {
+    bool uses_watched(std::span<const Index> cell) {
         unsigned any = 0;
         bool repeated = false; // such a cell may collapse, and use nothing
         for (std::size_t k = 0; k < cell.size(); ++k) {
             const auto point =
-                static_cast<std::size_t>(static_cast<std::make_unsigned_t<Index>>(cell[k])) & sides.mask();
-            any |= sides[point];
+                static_cast<std::size_t>(static_cast<std::make_unsigned_t<Index>>(cell[k])) & table_.mask();
+            any |= table_.flags(point);
             repeated |= std::ranges::find(cell.first(k), cell[k]) != cell.begin() + static_cast<std::ptrdiff_t>(k);
         }
         if (any & side::unsound) broken_ = true;
         if (!(any & side::watched) || broken_) return false;
         if (!repeated)
-            for (const Index corner : cell) sides.saw(static_cast<std::size_t>(corner));
+            for (const Index corner : cell) table_.saw(static_cast<std::size_t>(corner));
         return true;
     }
 
@@ -319,11 +330,16 @@ private:
         kept.left -= count;
         const std::size_t first_type = kept.types.size();
         if (!types.empty()) each([&](std::size_t place) { kept.types.push_back(types[place]); });
-        kept.runs.push_back({first_cell, room, count, &kept, first_type, kept.types.size() - first_type});
+        const std::size_t first_number = kept.numbers.size();
+        if (keeps_numbers_) each([&](std::size_t place) { kept.numbers.push_back(first_cell + place); });
+        kept.runs.push_back({first_cell, room, count, &kept, first_type, kept.types.size() - first_type, first_number,
+                             kept.numbers.size() - first_number});
     }
 
-    std::vector<Sides> sides_; ///< one an isovalue
-    bool mixed_;               ///< each cell has its own type
+    Table table_;
+    bool keeps_numbers_;
+    Array numbers_; ///< when it is finished
+    bool mixed_;    ///< each cell has its own type
     std::uint8_t type_;
     std::size_t corners_; ///< of a cell of the type
     std::atomic<bool> broken_;
@@ -337,20 +353,37 @@ private:
 
 namespace isotet::cpu {
 
+namespace direct {
+namespace {
+
+template <class Table>
+std::unique_ptr<ActiveFilter> filter_with(Table table, std::optional<CellType> type, bool keeps_numbers) {
+    if (table.points() > std::uint64_t{1} << 31)
+        return std::make_unique<Filter<std::uint64_t, Table>>(std::move(table), type, keeps_numbers);
+    return std::make_unique<Filter<std::uint32_t, Table>>(std::move(table), type, keeps_numbers);
+}
+
+} // namespace
+} // namespace direct
+
 template <class Real>
 std::unique_ptr<ActiveFilter> make_active_filter(const ops::DirectInput& input, const ops::DirectRequest& request,
                                                  std::optional<CellType> type) {
     using namespace direct;
     const std::size_t points = input.grid.points.tuples();
     const PointSurvey survey = survey_points<Real>(input, nullptr);
-    std::vector<Sides> sides;
+    Sides sides(points);
+    std::optional<Levels> levels;
+    if (request.isovalues.size() > 1) levels.emplace(points);
+    Watch watch = Watch::deciding;
     for (const double isovalue : request.isovalues) {
         const auto stored = core::store_isovalue<Real>(isovalue, survey.field.storage);
-        const Watch watch = sides.empty() ? Watch::deciding : Watch::nothing;
-        find_sides(input, survey, isovalue, stored, request.ties, watch, sides.emplace_back(points));
+        find_sides(input, survey, isovalue, stored, request.ties, std::exchange(watch, Watch::nothing), sides);
+        if (levels) levels->add(sides);
     }
-    if (points > std::uint64_t{1} << 31) return std::make_unique<Filter<std::uint64_t>>(std::move(sides), type);
-    return std::make_unique<Filter<std::uint32_t>>(std::move(sides), type);
+    if (!levels) return filter_with(OneLevel(std::move(sides)), type, request.source_cells);
+    sides = {};
+    return filter_with(*std::move(levels), type, request.source_cells);
 }
 
 template std::unique_ptr<ActiveFilter> make_active_filter<float>(const ops::DirectInput&, const ops::DirectRequest&,

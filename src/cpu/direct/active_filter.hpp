@@ -27,11 +27,14 @@ public:
 
     /// The cells in their order; nothing where one has a point that is not there, or that no cell may use.
     virtual std::optional<Cells> finish() = 0;
+
+    /// Then, where the request has source cells: their numbers, uint64.
+    virtual Array numbers() const = 0;
 };
 
 /// `input`   the cells are not looked at
 /// `type`    of all cells; nothing: of each its own
-/// Cost      two passes over points and values, a byte a point for each isovalue
+/// Cost      two passes over points and values for each isovalue; a byte a point, three where there are several
 template <class Real>
 std::unique_ptr<ActiveFilter> make_active_filter(const ops::DirectInput& input, const ops::DirectRequest& request,
                                                  std::optional<CellType> type);
