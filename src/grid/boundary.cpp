@@ -1,21 +1,16 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <isotet/boundary.hpp>
 
-#include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <utility>
-#include <vector>
-
-#include <fmt/format.h>
 
 #include <isotet/grid.hpp>
 #include <isotet/linear_cells.hpp>
 
 #include "base/carry_out.hpp"
 #include "base/memory.hpp"
-#include "grid/boundary_faces.hpp"
-#include "grid/faces.hpp"
+#include "grid/boundary_search.hpp"
+#include "grid/cells.hpp"
 #include "grid/sheet.hpp"
 
 namespace isotet {
@@ -24,31 +19,27 @@ namespace core {
 
 namespace {
 
-Surface surface_of(const Array& all_points, const std::vector<BoundaryFace>& faces) {
-    const std::vector<std::uint64_t> points = points_of_faces(faces);
-    Surface surface;
-    place_vertices(surface, all_points, points);
-    surface.triangles = triangles_of_faces(faces, points);
-    return surface;
-}
+constexpr std::size_t cells_per_piece = 1 << 14;
 
 Result<Surface> boundary_of_grid(const Grid& grid, const Progress& progress) {
     const auto cells = CellReader::open(grid);
     if (!cells) return cells.error();
-    if (auto ok = check_cells(grid, *cells, progress); !ok) return ok.error();
-    const TetSurvey tets = survey_tets(grid, *cells, progress);
+    if (auto enough = require_memory("finding the boundary", BoundarySearch::bytes(cells->points())); !enough)
+        return enough.error();
+    BoundarySearch search(grid.points);
+    parallel_pieces(cells->count(), cells_per_piece, progress,
+                    [&](std::size_t begin, std::size_t end) { search.add(grid, *cells, begin, end); });
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "finding the boundary was cancelled"};
-    if (tets.tets == 0) return nothing_to_contour(grid, *cells);
-    constexpr std::uint64_t enough_for_small_grids = 1 << 26;
-    const std::uint64_t memory = std::max(free_memory() / 4, enough_for_small_grids);
-    const auto faces = find_boundary_faces(grid, *cells, tets, {.memory = memory}, progress);
-    if (!faces) return faces.error();
-    constexpr std::uint64_t max_numbers = std::numeric_limits<std::uint32_t>::max();
-    if (3 * faces->size() > max_numbers && grid.points.tuples() > max_numbers)
-        return Error{ErrorCode::invalid_data, fmt::format("the boundary has {} faces, but of a grid of more than 2^32 "
-                                                          "points it must have at most {}",
-                                                          faces->size(), max_numbers / 3)};
-    return surface_of(grid.points, *faces);
+    if (!search.look()) {
+        if (auto ok = check_cells(grid, *cells, progress); !ok) return ok.error();
+        return nothing_to_contour(grid, *cells);
+    }
+    progress("check", 0.75);
+    parallel_pieces(cells->count(), cells_per_piece, progress,
+                    [&](std::size_t begin, std::size_t end) { search.keep(begin, *cells, begin, end); });
+    auto found = std::move(search).finish(progress);
+    if (!found) return found.error();
+    return std::move(found->surface);
 }
 
 } // namespace

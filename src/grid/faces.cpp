@@ -13,9 +13,8 @@
 
 #include "base/dealt.hpp"
 #include "base/parallel.hpp"
-#include "grid/cell/native_cells.hpp"
+#include "grid/cell_sums.hpp"
 #include "grid/face_counter.hpp"
-#include "grid/face_sums.hpp"
 
 namespace isotet::core {
 
@@ -36,6 +35,7 @@ DirectedFace face_of(const Tet& tet, std::size_t f) {
     return {p, odd};
 }
 
+constexpr std::uint64_t max_tets_of_cell = 6;
 constexpr std::uint64_t tets_per_bucket = 1 << 13; ///< faces and tets of a bucket stay in the second cache
 constexpr std::uint64_t max_buckets = 4096;        ///< so many lines that are written at once do, too
 constexpr std::size_t min_chunk = 1 << 14, max_chunks = 256;
@@ -50,7 +50,8 @@ template <class Point>
 class FaceSurveyor {
 public:
     FaceSurveyor(const Grid& grid, const CellReader& cells, const TetSurvey& survey, const Progress& progress)
-        : points_(grid.points),
+        : grid_points_(grid.points),
+          points_(grid.points),
           cells_(cells),
           survey_(survey),
           progress_(progress),
@@ -71,8 +72,14 @@ public:
         return all;
     }
 
+    /// The cells are those with such points.
+    void count_at(Buffer<std::uint8_t> doubted) {
+        doubted_ = std::move(doubted);
+        to_count_ = max_tets_of_cell * cells_.count();
+    }
+
     Result<FaceSurvey> run(std::uint64_t memory) {
-        if (cells_.points() * FaceSums::bytes_per_point <= memory) find_doubted();
+        if (doubted_.empty() && cells_.points() * FaceSums::bytes_per_point <= memory) find_doubted();
         buckets_ = buckets_for(cells_.points(), to_count_);
         bucket_count_ = buckets_.of(cells_.points() - 1) + 1;
         if (most_kept_ > 0) faces_.resize(bucket_count_);
@@ -91,42 +98,16 @@ public:
 private:
     /// Finds the points of which faces must be counted one by one, and how many tets about have them.
     void find_doubted() {
-        FaceSums sums(cells_.points());
-        parallel_pieces(cells_.count(), min_chunk, progress_, [&](std::size_t begin, std::size_t end) {
-            FaceSums::Adder<Point> tets(sums);
-            FaceSums::CellAdder cells(sums);
-            const auto add_tets = [&](std::size_t first, std::size_t last) {
-                for_tets(first, last, [&](const Tet&, const auto& make) { tets.add(make()); });
-            };
-            if (cells_.only_tets()) return add_tets(begin, end);
-            for (std::size_t cell = begin; cell < end; ++cell)
-                if (const auto whole = whole_cell(cell)) cells.add(*whole, is_cell_mirrored(*whole));
-                else {
-                    add_tets(cell, cell + 1);
-                    if (!Orienter::is_whole(cells_.type(cell))) // a tet of it may be one of a whole cell
-                        for (const Tet& tet : cells_.tets(cell))
-                            for (const std::uint64_t corner : tet) sums.doubt(corner);
-                }
-        });
+        CellSums sums(grid_points_, survey_.all_alike());
+        parallel_pieces(cells_.count(), min_chunk, progress_,
+                        [&](std::size_t begin, std::size_t end) { sums.add(cells_, begin, end); });
+        sums.finish();
+        doubted_ = sums.take_doubted();
         const double points = static_cast<double>(cells_.points() - survey_.unused);
         const double tets_of_a_point = 2 * static_cast<double>(survey_.tets) / points;
-        const double tets = tets_of_a_point * static_cast<double>(sums.look());
+        const double tets = tets_of_a_point * static_cast<double>(sums.doubted());
         to_count_ = static_cast<std::uint64_t>(std::min(tets, static_cast<double>(survey_.tets)));
-        doubted_ = std::move(sums).take_doubted();
         report(0);
-    }
-
-    /// A cell of which the tets follow from its faces: nothing for tets, and where corners are repeated.
-    std::optional<WholeCell> whole_cell(std::size_t cell) const {
-        const std::uint8_t type = cells_.type(cell);
-        if (!is_contoured(type) || is_ordered(type) || Orienter::is_whole(type)) return std::nullopt;
-        const WholeCell whole = cells_.whole(cell);
-        if (has_repeated_corner(whole)) return std::nullopt;
-        return whole;
-    }
-
-    bool is_cell_mirrored(const WholeCell& cell) const {
-        return !survey_.all_alike() && Orienter::six_volumes(points_, split_cell(cell)) < 0;
     }
 
     /// Whether some tet of a cell may be counted.
@@ -240,6 +221,7 @@ private:
         return {std::min(a, c), std::min(std::max(a, c), std::min(b, d))};
     }
 
+    const Array& grid_points_;
     PointReader points_;
     const CellReader& cells_;
     const TetSurvey& survey_;
@@ -310,6 +292,18 @@ Result<std::vector<BoundaryFace>> find_boundary_faces(const Grid& grid, const Ce
     FaceSurveyOptions keeping = options;
     keeping.most_faces = std::numeric_limits<std::uint64_t>::max();
     auto found = survey_faces(grid, cells, survey, keeping, progress);
+    if (!found) return found.error();
+    return std::move(found->faces);
+}
+
+Result<std::vector<BoundaryFace>> find_boundary_faces_at(Buffer<std::uint8_t> doubted, const Grid& grid,
+                                                         const CellReader& cells, const TetSurvey& survey,
+                                                         const FaceSurveyOptions& options, const Progress& progress) {
+    auto found = with_surveyor(grid, cells, survey, options.wide, progress, [&](auto&& surveyor) {
+        surveyor.keep_faces(std::numeric_limits<std::uint64_t>::max());
+        surveyor.count_at(std::move(doubted));
+        return surveyor.run(options.memory);
+    });
     if (!found) return found.error();
     return std::move(found->faces);
 }

@@ -9,6 +9,7 @@
 #include <isotet/grid.hpp>
 #include <isotet/progress.hpp>
 
+#include "base/buffer.hpp"
 #include "grid/cells.hpp"
 #include "grid/tet_survey.hpp"
 
@@ -62,5 +63,14 @@ Result<FaceSurvey> survey_faces(const Grid& grid, const CellReader& cells, const
 Result<std::vector<BoundaryFace>> find_boundary_faces(const Grid& grid, const CellReader& cells,
                                                       const TetSurvey& survey, const FaceSurveyOptions& options,
                                                       const Progress& progress);
+
+/// The same of faces whose lowest point is doubted, which all of them are (cell_sums.hpp).
+///
+/// `doubted`   by point
+/// `cells`     at least those with such points; in the order of all
+/// `survey`    of all cells: how tets are turned
+Result<std::vector<BoundaryFace>> find_boundary_faces_at(Buffer<std::uint8_t> doubted, const Grid& grid,
+                                                         const CellReader& cells, const TetSurvey& survey,
+                                                         const FaceSurveyOptions& options, const Progress& progress);
 
 } // namespace isotet::core

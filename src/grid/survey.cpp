@@ -10,9 +10,9 @@
 
 #include "base/carry_out.hpp"
 #include "base/memory.hpp"
+#include "grid/cell_block.hpp"
 #include "grid/cell_survey.hpp"
 #include "grid/faces.hpp"
-#include "grid/fixed_corners.hpp"
 #include "grid/mixed_faces.hpp"
 #include "grid/points/duplicate_points.hpp"
 #include "grid/renumber.hpp"
@@ -134,21 +134,10 @@ CellSurvey::CellSurvey(const Array& points) : tets_(points) {
     points_are_sound_ = all_points_are_sound(block_);
 }
 
-void CellSurvey::add(CellType type, const Array& corners) {
-    Grid block = block_;
-    block.cells.uniform_type = type;
-    block.cells.connectivity = corners;
-    add(block);
-}
+void CellSurvey::add(CellType type, const Array& corners) { add(block_of(block_, type, corners)); }
 
 void CellSurvey::add(std::span<const std::uint8_t> types, const Array& corners) {
-    Grid block = block_;
-    block.cells.types = Array(ScalarType::uint8, types.data(), types.size(), 1, nullptr);
-    std::vector<std::uint64_t> offsets{0};
-    for (const std::uint8_t type : types) offsets.push_back(offsets.back() + fixed_corners_of(type));
-    block.cells.offsets = Array::borrow(offsets);
-    block.cells.connectivity = corners;
-    add(block);
+    add(block_of(block_, types, corners));
 }
 
 void CellSurvey::add(const Grid& block) {

@@ -13,6 +13,7 @@
 #include <isotet/pack.hpp>
 
 #include "base/parallel.hpp"
+#include "grid/boundary_search.hpp"
 #include "grid/faces.hpp"
 #include "grid/mixed_faces.hpp"
 #include "support/mixed_grid.hpp"
@@ -347,6 +348,44 @@ TEST(Survey, FindsTheSameFacesWithAnyMemoryWidthAndThreads) {
                                                    }))
                         << "seed " << seed << ", memory " << memory << ", " << threads << " threads";
                 }
+    }
+}
+
+TEST(Survey, FindsTheBoundaryOfCellsThatGoByInBlocks) {
+    for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+        NastyGrid g = nasty_cells(seed);
+        if (seed == 4) g.grid = make_grid({.shape = "mixed", .side = 7, .fields = {}}).value();
+        if (seed == 5) g.grid = make_grid({.shape = "hex", .side = 9, .fields = {}}).value();
+        if (seed == 6) g.grid = make_grid({.shape = "shuffled", .side = 9, .fields = {}}).value();
+        if (seed % 2) g.grid.points = rounded(g.grid.points);
+        const core::CellReader cells = core::CellReader::open(g.grid).value();
+        const core::TetSurvey tets = core::survey_tets(g.grid, cells);
+        std::map<std::array<std::uint64_t, 3>, int> expected = balance_by_map(g.grid, cells, tets.mostly_negative());
+        std::erase_if(expected, [](const auto& face) { return face.second == 0; });
+        for (const std::size_t block : {1, 7, 100000}) {
+            core::BoundarySearch search(g.grid.points);
+            for (std::size_t begin = 0; begin < cells.count(); begin += block)
+                search.add(g.grid, cells, begin, std::min(begin + block, cells.count()));
+            ASSERT_TRUE(search.look());
+            for (std::size_t end = cells.count(); end > 0; end -= std::min(block, end))
+                search.keep(end - std::min(block, end), cells, end - std::min(block, end), end);
+            const core::FoundBoundary found = std::move(search).finish({}).value();
+            std::vector<std::array<std::uint64_t, 3>> faces;
+            for (std::size_t i = 0; i < found.surface.triangle_count(); ++i) {
+                std::array<std::uint64_t, 3> face{};
+                for (std::size_t k = 0; k < 3; ++k)
+                    face[k] = static_cast<std::uint64_t>(
+                        found.surface.edge_ends.at(static_cast<std::size_t>(found.surface.triangles.at(i, k)), 0));
+                const bool odd = (face[0] > face[1]) ^ (face[0] > face[2]) ^ (face[1] > face[2]);
+                std::ranges::sort(face);
+                const auto known = expected.find(face);
+                ASSERT_NE(known, expected.end()) << "seed " << seed;
+                EXPECT_EQ(odd, known->second < 0) << "seed " << seed;
+                faces.push_back(face);
+            }
+            EXPECT_EQ(faces.size(), expected.size()) << "seed " << seed;
+            EXPECT_TRUE(std::ranges::is_sorted(faces));
+        }
     }
 }
 

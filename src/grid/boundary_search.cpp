@@ -1,0 +1,173 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "grid/boundary_search.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/memory.hpp"
+#include "base/parallel.hpp"
+#include "grid/boundary_faces.hpp"
+#include "grid/cell_block.hpp"
+#include "grid/cell_survey.hpp"
+#include "grid/faces.hpp"
+
+namespace isotet::core {
+
+namespace {
+
+Surface surface_of(const Array& all_points, const std::vector<BoundaryFace>& faces) {
+    const std::vector<std::uint64_t> points = points_of_faces(faces);
+    Surface surface;
+    place_vertices(surface, all_points, points);
+    surface.triangles = triangles_of_faces(faces, points);
+    return surface;
+}
+
+/// Whether a face of a cell may have a doubted point as its lowest one.
+template <class Index>
+bool has_doubted(const Buffer<std::uint8_t>& doubted, std::span<const Index> corners) {
+    return std::ranges::any_of(corners, [&](Index point) { return doubted[static_cast<std::size_t>(point)] != 0; });
+}
+
+/// Of a tet the lowest points of faces are the two lowest of all.
+template <class Index>
+bool has_doubted_tet(const Buffer<std::uint8_t>& doubted, const Index* corners) {
+    const Index a = std::min(corners[0], corners[1]), b = std::max(corners[0], corners[1]);
+    const Index c = std::min(corners[2], corners[3]), d = std::max(corners[2], corners[3]);
+    return (doubted[static_cast<std::size_t>(std::min(a, c))] |
+            doubted[static_cast<std::size_t>(std::min(std::max(a, c), std::min(b, d)))]) != 0;
+}
+
+} // namespace
+
+BoundarySearch::BoundarySearch(const Array& points) : sums_(points, false) {
+    block_.points = points;
+    points_are_sound_ = all_points_are_sound(block_);
+}
+
+BoundarySearch::~BoundarySearch() = default;
+
+void BoundarySearch::add(CellType type, const Array& corners) {
+    const Grid block = block_of(block_, type, corners);
+    const auto cells = CellReader::open(block);
+    if (cells) add(block, *cells, 0, cells->count());
+    else broken_ = true;
+}
+
+void BoundarySearch::add(std::span<const std::uint8_t> types, const Array& corners) {
+    const Grid block = block_of(block_, types, corners);
+    const auto cells = CellReader::open(block);
+    if (cells) add(block, *cells, 0, cells->count());
+    else broken_ = true;
+}
+
+void BoundarySearch::add(const Grid& grid, const CellReader& cells, std::size_t begin, std::size_t end) {
+    if (all_are_sound(grid, cells, begin, end, points_are_sound_)) sums_.add(cells, begin, end);
+    else broken_ = true;
+}
+
+bool BoundarySearch::look() {
+    sums_.finish();
+    if (broken_ || sums_.tets().tets == 0) return false;
+    doubted_ = sums_.take_doubted();
+    return true;
+}
+
+void BoundarySearch::keep(std::uint64_t first, CellType type, const Array& corners) {
+    const Grid block = block_of(block_, type, corners);
+    if (const auto cells = CellReader::open(block)) keep(first, *cells, 0, cells->count());
+}
+
+void BoundarySearch::keep(std::uint64_t first, std::span<const std::uint8_t> types, const Array& corners) {
+    const Grid block = block_of(block_, types, corners);
+    if (const auto cells = CellReader::open(block)) keep(first, *cells, 0, cells->count());
+}
+
+void BoundarySearch::keep(std::uint64_t first, const CellReader& cells, std::size_t begin, std::size_t end) {
+    Run run{first, {}, {}};
+    cells.connectivity().visit([&](const auto* corners) {
+        const auto take = [&](const auto* own, std::size_t count, std::uint8_t type) {
+            for (std::size_t k = 0; k < count; ++k) run.corners.push_back(widened(own[k]));
+            run.types.push_back(type);
+        };
+        if (cells.bare_tets()) {
+            for (const auto* tet = corners + 4 * begin; tet < corners + 4 * end; tet += 4)
+                if (has_doubted_tet(doubted_, tet)) take(tet, 4, static_cast<std::uint8_t>(CellType::tetrahedron));
+            return;
+        }
+        for (std::size_t cell = begin; cell < end; ++cell) {
+            const auto own = std::span(corners + cells.first(cell), cells.corners(cell));
+            if (is_contoured(cells.type(cell)) && has_doubted(doubted_, own))
+                take(own.data(), own.size(), cells.type(cell));
+        }
+    });
+    if (run.types.empty()) return;
+    const std::lock_guard lock(mutex_);
+    runs_.push_back(std::move(run));
+}
+
+/// Ordered types are among them, so that each has its own.
+Cells BoundarySearch::join_runs() {
+    std::ranges::sort(runs_, {}, &Run::first);
+    std::vector<std::size_t> corners{0}, cells{0};
+    for (const Run& run : runs_) {
+        corners.push_back(corners.back() + run.corners.size());
+        cells.push_back(cells.back() + run.types.size());
+    }
+    Cells joined;
+    const auto join = [&]<class Index>(Buffer<Index> connectivity) {
+        Buffer<std::uint8_t> types(cells.back());
+        Buffer<std::uint64_t> offsets(cells.back() + 1);
+        offsets[cells.back()] = corners.back();
+        parallel_each(runs_.size(), 1, [&](std::size_t i) {
+            std::ranges::transform(runs_[i].corners, connectivity.data() + corners[i],
+                                   [](std::uint64_t point) { return static_cast<Index>(point); });
+            std::ranges::copy(runs_[i].types, types.data() + cells[i]);
+            std::uint64_t next = corners[i];
+            for (std::size_t k = 0; k < runs_[i].types.size(); ++k) {
+                offsets[cells[i] + k] = next;
+                next += static_cast<std::uint64_t>(corners_of(runs_[i].types[k]));
+            }
+            runs_[i] = {};
+        });
+        joined.connectivity = std::move(connectivity).to_array();
+        joined.types = std::move(types).to_array();
+        joined.offsets = std::move(offsets).to_array();
+    };
+    if (block_.points.tuples() <= std::uint64_t{1} << 31) join(Buffer<std::int32_t>(corners.back()));
+    else join(Buffer<std::int64_t>(corners.back()));
+    runs_ = {};
+    return joined;
+}
+
+Result<FoundBoundary> BoundarySearch::finish(const Progress& progress) && {
+    if (progress.cancelled()) return Error{ErrorCode::cancelled, "finding the boundary was cancelled"};
+    FoundBoundary found;
+    found.cells = join_runs();
+    if (found.cells.types.empty()) {
+        found.surface = surface_of(block_.points, {});
+        return found;
+    }
+    Grid grid = block_;
+    grid.cells = found.cells;
+    const auto cells = CellReader::open(grid);
+    if (!cells) return cells.error();
+    constexpr std::uint64_t enough_for_small_grids = 1 << 26;
+    const std::uint64_t memory = std::max(free_memory() / 4, enough_for_small_grids);
+    const auto faces =
+        find_boundary_faces_at(std::move(doubted_), grid, *cells, sums_.tets(), {.memory = memory}, progress);
+    if (!faces) return faces.error();
+    constexpr std::uint64_t max_numbers = std::numeric_limits<std::uint32_t>::max();
+    if (3 * faces->size() > max_numbers && grid.points.tuples() > max_numbers)
+        return Error{ErrorCode::invalid_data, fmt::format("the boundary has {} faces, but of a grid of more than 2^32 "
+                                                          "points it must have at most {}",
+                                                          faces->size(), max_numbers / 3)};
+    found.surface = surface_of(grid.points, *faces);
+    return found;
+}
+
+} // namespace isotet::core
