@@ -51,9 +51,10 @@ struct Release {
 Array array_in(const ArrayIn& array) {
     const std::size_t components = array.ndim() == 2 ? array.shape(1) : 1;
     const std::size_t tuples = array.ndim() == 0 ? 1 : array.shape(0);
+    if (components == 0) throw nb::value_error("an array has rows of 0 components");
     const ScalarType type = type_of(array);
     std::shared_ptr<const void> owner(new ArrayIn(array), Release());
-    return {type, array.data(), tuples, components == 0 ? 1 : components, std::move(owner)};
+    return {type, array.data(), tuples, components, std::move(owner)};
 }
 
 Array renewed(const Array& array) {

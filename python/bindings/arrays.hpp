@@ -22,7 +22,7 @@ using ArrayIn = nb::ndarray<nb::ro, nb::c_contig, nb::device::cpu>;
 using FieldsIn = std::vector<std::pair<std::string, ArrayIn>>;
 
 /// Shares the memory of a Python object, which lives at least as long as the Array. Rows of a two-dimensional array are
-/// tuples.
+/// tuples, of at least one component: else a ValueError.
 Array array_in(const ArrayIn& array);
 
 /// The same array with another owner, where Python owns it and may have changed it in place: whoever knows arrays by their

@@ -66,6 +66,8 @@ def values_in(what: str, values) -> np.ndarray:
     array = _native(what, values)
     if array.ndim not in (1, 2):
         raise ValueError(f"{what} has shape {array.shape}, but must have one or two dimensions")
+    if array.ndim == 2 and array.shape[1] == 0:
+        raise ValueError(f"{what} has shape {array.shape}, but must have at least one component")
     return array
 
 

@@ -131,6 +131,9 @@ def test_masked_values_are_no_data(sphere):
         ({"offsets": [0, 4]}, "cells need offsets and types, or neither of them"),
         ({"fields": {"t": np.zeros(5)}}, "'t'"),
         ({"cell_fields": {"t": np.zeros(5)}}, "'t'"),
+        ({"fields": {"t": np.zeros((4, 0))}}, r"fields\['t'\] has shape \(4, 0\), but must have at least one component"),
+        ({"cell_fields": {"t": np.zeros((1, 0))}}, r"cell_fields\['t'\] has shape \(1, 0\)"),
+        ({"values": np.zeros((4, 0))}, "at least one component"),
     ],
 )
 def test_what_is_wrong_is_said(tet, what, message):
