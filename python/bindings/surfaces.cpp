@@ -6,8 +6,11 @@
 #include <nanobind/stl/string_view.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <isotet/check.hpp>
@@ -44,6 +47,44 @@ nb::dict part_out(const SurfacePart& part, const std::vector<std::string>& field
     for (std::size_t i = 0; i < fields.size(); ++i) means[nb::str(fields[i].c_str())] = part.means[i];
     out["means"] = means;
     return out;
+}
+
+[[noreturn]] void refuse(const std::string& sentence) { throw nb::value_error(sentence.c_str()); }
+
+void check_rows(const std::string& what, const Array& array, std::size_t rows, const char* of) {
+    if (array.tuples() != rows)
+        refuse(what + " has " + std::to_string(array.tuples()) + " rows, but the surface has " + std::to_string(rows) +
+               " " + of);
+}
+
+void check_triangles(const Array& triangles, std::size_t vertices) {
+    triangles.visit([&](auto corners) {
+        const auto highest = std::max_element(corners.begin(), corners.end());
+        if (highest != corners.end() && static_cast<std::uint64_t>(*highest) >= vertices)
+            refuse("triangles has the vertex " + std::to_string(*highest) + ", but the surface has " +
+                   std::to_string(vertices) + " vertices, counted from 0");
+    });
+}
+
+/// The library takes the shapes of a surface for granted.
+void check_shapes(const Surface& surface) {
+    const std::size_t vertices = surface.vertex_count(), triangles = surface.triangle_count();
+    check_triangles(surface.triangles, vertices);
+    for (const Field& field : surface.point_fields)
+        check_rows("fields['" + field.name + "']", field.values, vertices, "vertices");
+    for (const Field& field : surface.cell_fields)
+        check_rows("cell_fields['" + field.name + "']", field.values, triangles, "triangles");
+    if (!surface.edge_ends.empty()) {
+        check_rows("edge_ends", surface.edge_ends, vertices, "vertices");
+        check_rows("edge_weights", surface.edge_weights, vertices, "vertices");
+    }
+    if (!surface.source_cells.empty()) check_rows("source_cells", surface.source_cells, triangles, "triangles");
+    if (surface.normals_kind == Normals::none) return;
+    const bool of_faces = surface.normals_kind == Normals::face;
+    check_rows("normals", surface.normals, of_faces ? triangles : vertices, of_faces ? "triangles" : "vertices");
+    if (!surface.normals.empty() && surface.normals.components() != 3)
+        refuse("normals has rows of " + std::to_string(surface.normals.components()) +
+               " numbers, but must have rows of 3");
 }
 
 Array optional_array(const std::optional<ArrayIn>& array) { return array ? array_in(*array) : Array(); }
@@ -91,15 +132,17 @@ void add_surfaces(nb::module_& module) {
                const std::optional<ArrayIn>& edge_weights, const std::optional<ArrayIn>& source_cells,
                const FieldsIn& fields, const FieldsIn& cell_fields) {
                 const Normals kind = choice("normals_kind", normals_kind, words_of_normals);
-                new (self) Surface{array_in(points),
-                                   array_in(triangles),
-                                   kind,
-                                   optional_array(normals),
-                                   optional_array(edge_ends),
-                                   optional_array(edge_weights),
-                                   optional_array(source_cells),
-                                   fields_in(fields),
-                                   fields_in(cell_fields)};
+                Surface made{array_in(points),
+                             array_in(triangles),
+                             kind,
+                             optional_array(normals),
+                             optional_array(edge_ends),
+                             optional_array(edge_weights),
+                             optional_array(source_cells),
+                             fields_in(fields),
+                             fields_in(cell_fields)};
+                check_shapes(made);
+                new (self) Surface(std::move(made));
             },
             "points"_a, "triangles"_a, "normals_kind"_a, "normals"_a.none(), "edge_ends"_a.none(),
             "edge_weights"_a.none(), "source_cells"_a.none(), "fields"_a, "cell_fields"_a)

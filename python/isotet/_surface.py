@@ -43,6 +43,8 @@ class Surface:
     fields, cell_fields
         A mapping from names to arrays: one row a vertex, or one row a triangle.
 
+    Raises ValueError for wrong shapes, and for numbers of vertices that are not there.
+
     >>> import isotet
     >>> triangle = isotet.Surface([[0, 0, 0], [2, 0, 0], [0, 1, 0]], [[0, 1, 2]])
     >>> triangle.area
@@ -64,6 +66,9 @@ class Surface:
         kind = "none"
         if normals is not None:
             normals = values_in("normals", normals).astype(np.float32)
+            if normals.shape not in ((len(points), 3), (len(corners), 3)):
+                raise ValueError(f"normals has shape {normals.shape}, but must have shape ({len(points)}, 3), one a vertex, "
+                                 f"or ({len(corners)}, 3), one a triangle")  # fmt: skip
             kind = "gradient" if len(normals) == len(points) else "face"
         self._surface = _isotet.Surface(
             points, np.ascontiguousarray(corners, np.uint64 if wide else np.uint32), kind, normals, None, None, None,

@@ -397,6 +397,27 @@ def test_own_surfaces():
         isotet.Surface(corners, [[0, 1, -1]])
 
 
+@pytest.mark.parametrize(
+    ("what", "message"),
+    [
+        ({"fields": {"t": [1, 2]}}, r"fields\['t'\] has 2 rows, but the surface has 3 vertices"),
+        ({"fields": {"t": np.zeros((4, 2))}}, r"fields\['t'\] has 4 rows"),
+        ({"cell_fields": {"c": [1, 2]}}, r"cell_fields\['c'\] has 2 rows, but the surface has 1 triangles"),
+        ({"cell_fields": {"c": np.zeros((1, 0))}}, r"cell_fields\['c'\] has shape \(1, 0\)"),
+        ({"normals": np.zeros((2, 3))}, r"normals has shape \(2, 3\), but must have shape \(3, 3\), one a vertex, or \(1, 3\)"),
+        ({"normals": np.zeros(3)}, r"normals has shape \(3,\)"),
+        ({"normals": np.zeros((3, 2))}, r"normals has shape \(3, 2\)"),
+        ({"triangles": [[0, 1, 3]]}, "triangles has the vertex 3, but the surface has 3 vertices"),
+        ({"triangles": np.array([[0, 1, 2**40]])}, f"triangles has the vertex {2**40}"),
+        ({"points": np.empty((0, 3))}, "the surface has 0 vertices"),
+    ],
+)
+def test_surfaces_of_wrong_shapes_are_refused(what, message):
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]])
+    with pytest.raises(ValueError, match=message):
+        isotet.Surface(**({"points": corners, "triangles": [[0, 1, 2]]} | what))
+
+
 def test_threads_change_nothing(sphere):
     assert same(sphere.contour(0.3, "gyroid", threads=1), sphere.contour(0.3, "gyroid", threads=2))
 
