@@ -283,8 +283,36 @@ def keep_active(source, out) -> None:
                 mine.SetActiveAttribute(name, kind)
 
 
+def _polygons_alone(mesh):
+    """A vtkPolyData without its vertices and lines, of which vtkTriangleFilter leaves cell arrays too short."""
+    before = mesh.GetVerts().GetNumberOfCells() + mesh.GetLines().GetNumberOfCells()
+    if before == 0:
+        return mesh
+    out = vtkPolyData()
+    out.SetPoints(mesh.GetPoints())
+    out.GetPointData().ShallowCopy(mesh.GetPointData())
+    out.SetPolys(mesh.GetPolys())
+    out.SetStrips(mesh.GetStrips())
+    for name, values in arrays_of(mesh.GetCellData()):
+        _add_array(out.GetCellData(), name, values[before:], copy=True)
+    return out
+
+
+def _triangulated(mesh):
+    mesh = _polygons_alone(mesh)
+    if mesh.GetStrips().GetNumberOfCells() == 0 and (np.diff(_parts_of(mesh.GetPolys())[1]) == 3).all():
+        return mesh
+    from vtkmodules.vtkFiltersCore import vtkTriangleFilter
+
+    cut = vtkTriangleFilter()
+    cut.SetInputData(mesh)
+    cut.Update()
+    return cut.GetOutput()
+
+
 def surface_of(mesh) -> Surface:
-    """A vtkPolyData of triangles as a surface, with its arrays."""
+    """The faces of a vtkPolyData as a surface, with its arrays. Faces are cut into triangles, lines and vertices left out."""
+    mesh = _triangulated(mesh)
     triangles = _parts_of(mesh.GetPolys())[0].reshape(-1, 3)
     normals = mesh.GetPointData().GetNormals()
     name = None if normals is None else normals.GetName()
