@@ -23,6 +23,7 @@
 #include "arrays.hpp"
 #include "call.hpp"
 #include "choice.hpp"
+#include "linear.hpp"
 #include "parts.hpp"
 
 namespace isotet::python {
@@ -420,20 +421,31 @@ void add_packed_grids(nb::module_& module) {
         .def("report", [](const PackedGrid& self) { return packing_out(self.report()); })
         .def_prop_ro("point_count", &PackedGrid::user_point_count)
         .def_prop_ro("cell_count", &PackedGrid::user_cell_count)
+        .def_prop_ro("has_source_cells", [](const PackedGrid& self) { return self.report().source_bytes > 0; })
         .def_prop_ro("precision", [](const PackedGrid& self) { return word_of(self.precision(), words_of_precision); })
         .def(
             "with_field",
-            [](const PackedGrid& self, const PointField& field, const CallOptions& how) {
-                return call(how, [&](const Run& run) { return self.with_field(field, run); });
+            [](const PackedGrid& self, const PointField& field, const CallOptions& how, const LinearGrid* linear) {
+                return call(how, [&](const Run& run) -> Result<PackedGrid> {
+                    PointField longer = field;
+                    Result<Array> values = of_points(linear, field.values, run);
+                    if (!values) return values.error();
+                    longer.values = *std::move(values);
+                    return self.with_field(longer, run);
+                });
             },
-            "field"_a, "call"_a)
+            "field"_a, "call"_a, "linear"_a.none() = nb::none())
         .def(
             "with_points",
-            [](const PackedGrid& self, const ArrayIn& points, const CallOptions& how) {
-                const Array moved = array_in(points);
-                return call(how, [&](const Run& run) { return self.with_points(moved, run); });
+            [](const PackedGrid& self, const ArrayIn& points, const CallOptions& how, const LinearGrid* linear) {
+                const Array given = array_in(points);
+                return call(how, [&](const Run& run) -> Result<PackedGrid> {
+                    const Result<Array> moved = of_points(linear, given, run);
+                    if (!moved) return moved.error();
+                    return self.with_points(*moved, run);
+                });
             },
-            "points"_a, "call"_a)
+            "points"_a, "call"_a, "linear"_a.none() = nb::none())
         .def(
             "unpack",
             [](const PackedGrid& self, const CallOptions& how) {
@@ -456,25 +468,32 @@ void add_packed_grids(nb::module_& module) {
             "extract",
             [](const PackedGrid& self, const std::vector<double>& isovalues, const FieldsIn& fields,
                const FieldsIn& cell_fields, const ContourOptions& options, const CallOptions& how,
-               std::vector<PackedGrid> packed_fields) {
+               std::vector<PackedGrid> packed_fields, const LinearGrid* linear) {
                 ExtractOptions extraction;
                 extraction.ties = options.ties;
                 extraction.normals = options.normals;
                 extraction.edge_ends = options.edge_ends;
                 extraction.source_cells = options.source_cells;
-                extraction.point_fields = fields_in(fields);
-                extraction.cell_fields = fields_in(cell_fields);
+                const std::vector<Field> of_user = fields_in(fields), of_users_cells = fields_in(cell_fields);
                 extraction.packed_fields = std::move(packed_fields);
                 return call(how, [&](const Run& run) -> Result<Surface> {
                     std::vector<double> values = isovalues;
                     if (isovalues.empty()) values = {some_isovalue(self.field())};
+                    auto carried = of_points(linear, of_user, run);
+                    if (!carried) return carried.error();
+                    extraction.point_fields = *std::move(carried);
+                    auto of_triangles = of_cells(linear, of_users_cells, run);
+                    if (!of_triangles) return of_triangles.error();
+                    extraction.cell_fields = *std::move(of_triangles);
                     Result<std::vector<Extraction>> result = extract(self, values, extraction, run);
                     if (!result) return result.error();
+                    number_by_user(linear, *result);
                     if (isovalues.empty()) return empty_like(std::move(result->front().surface));
                     return join_all(*std::move(result), isovalues);
                 });
             },
-            "isovalues"_a, "fields"_a, "cell_fields"_a, "options"_a, "call"_a, "packed_fields"_a);
+            "isovalues"_a, "fields"_a, "cell_fields"_a, "options"_a, "call"_a, "packed_fields"_a,
+            "linear"_a.none() = nb::none());
 
     module.def(
         "pack",
@@ -486,7 +505,9 @@ void add_packed_grids(nb::module_& module) {
             options.split_cells = split_cells;
             options.gradients = gradients;
             if (frame) options.frame = *frame;
-            return call(how, [&](const Run& run) { return pack(grid, field, options, run); });
+            PackedCells made = call(how, [&](const Run& run) { return pack_linear(grid, field, options, run); });
+            nb::object linear = made.linear ? nb::cast(*std::move(made.linear)) : nb::none();
+            return nb::make_tuple(std::move(made.packed), std::move(linear));
         },
         "grid"_a, "field"_a, "precision"_a, "source_cells"_a, "split_cells"_a, "gradients"_a, "frame"_a.none(),
         "call"_a);

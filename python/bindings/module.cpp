@@ -17,5 +17,6 @@ NB_MODULE(_isotet, module) {
     add_pieces(module);
     add_pictures(module);
     add_contours(module);
+    add_linear(module);
     add_packed_files(module);
 }

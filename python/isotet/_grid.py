@@ -483,15 +483,16 @@ def _restored_grid(points, cells, fields, cell_fields, numbers, told) -> Grid:
 class PackedGrid:
     """A grid in clusters, made by `pack`: the arrays it was made of are not needed any more."""
 
-    __slots__ = ("_packed", "__weakref__")
+    __slots__ = ("_packed", "_linear", "__weakref__")
 
     def __init__(self):
         raise TypeError("use isotet.pack()")
 
     @classmethod
-    def _of(cls, packed: _isotet.PackedGrid) -> PackedGrid:
+    def _of(cls, packed: _isotet.PackedGrid, linear: _isotet.LinearGrid | None = None) -> PackedGrid:
+        """`linear`: how its cells came from the user's, where these were split."""
         self = cls.__new__(cls)
-        self._packed = packed
+        self._packed, self._linear = packed, linear
         return self
 
     def contour(self, isovalues: npt.ArrayLike, *, normals: str = "none",
@@ -509,7 +510,7 @@ class PackedGrid:
         options = _isotet.ContourOptions(normals, edge_ends, source_cells, ties, self._packed.precision, None, 0)
         surface = self._packed.extract(isovalues_in(isovalues), fields_in("fields", fields),
                                        fields_in("cell_fields", cell_fields), options,
-                                       call_options(threads, progress), [])  # fmt: skip
+                                       call_options(threads, progress), [], self._linear)  # fmt: skip
         return Surface._of(surface, {"method": "clusters"})
 
     def save(self, path: str | os.PathLike[str], *, fields: Mapping[str, Any] | None = None, time: float | None = None,
@@ -521,11 +522,17 @@ class PackedGrid:
         time
             Of the step.
 
-        Raises OSError where it cannot be written, ValueError for wrong arrays, MemoryError.
+        Raises OSError where it cannot be written, ValueError for wrong arrays and for source cells of polyhedra and quadratic
+        cells, which a file does not have, MemoryError.
         """
-        call = call_options(threads, progress)
-        more = [self._packed.with_field(_isotet.PointField(name, scalars_in(name, values)), call)
-                for name, values in (fields or {}).items()]  # fmt: skip
+        if self._linear is not None and self._packed.has_source_cells:
+            raise ValueError("source cells of polyhedra and quadratic cells are not kept in packed files: pack without source_cells")
+        more = {name: _isotet.PointField(name, scalars_in(name, values)) for name, values in (fields or {}).items()}
+        self._save(path, more.values(), time, call_options(threads, progress))
+
+    def _save(self, path: str | os.PathLike[str], fields: Iterable[_isotet.PointField], time: float | None,
+              call: _isotet.CallOptions) -> None:  # fmt: skip
+        more = [self._packed.with_field(field, call, self._linear) for field in fields]
         _isotet.save_packed(self._packed, os.fspath(path), more, time, call)
 
     def set_field(self, values: npt.ArrayLike, *, name: str = "values", frame: Frame | None = None, threads: int = 0,
@@ -535,7 +542,7 @@ class PackedGrid:
         Raises ValueError where the number of values is not that of the points; the grid is then as before.
         """
         field = _isotet.PointField(name, scalars_in("values", values))
-        self._packed = self._framed(frame).with_field(field, call_options(threads, progress))
+        self._packed = self._framed(frame).with_field(field, call_options(threads, progress), self._linear)
 
     def _framed(self, frame: Frame | None) -> _isotet.PackedGrid:
         return self._packed if frame is None else self._packed.with_frame(frame._frame)
@@ -546,11 +553,11 @@ class PackedGrid:
 
         Raises ValueError for another number of points, and where a cell turned over: pack again. The grid is then as before.
         """
-        self._packed = self._framed(frame).with_points(points_in(points), call_options(threads, progress))
+        self._packed = self._framed(frame).with_points(points_in(points), call_options(threads, progress), self._linear)
 
     def unpack(self, *, threads: int = 0, progress: Progress | None = None) -> Grid:
         """The grid as arrays again: points by their numbers, cells in the order in which they are packed, and the field, as far
-        as packing kept them.
+        as packing kept them. Cells that were split stay so, and points inside them come last.
         """
         return Grid._of(self._packed.unpack(call_options(threads, progress)))
 
@@ -579,19 +586,19 @@ class PackedGrid:
         """A packed grid is pickled as the bytes of its file."""
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder, "grid.isotet")
-            self.save(path)
-            return _restored_packed, (path.read_bytes(),)
+            self._save(path, (), None, call_options(0, None))
+            return _restored_packed, (path.read_bytes(), self._linear)
 
     def __copy__(self) -> PackedGrid:
         """Shares the clusters, which never change."""
-        return PackedGrid._of(self._packed)
+        return PackedGrid._of(self._packed, self._linear)
 
     def __deepcopy__(self, memo: Any) -> PackedGrid:
-        return PackedGrid._of(self._packed)
+        return self.__copy__()
 
     def __len__(self) -> int:
         """The number of cells of the grid that was packed."""
-        return self._packed.cell_count
+        return self._packed.cell_count if self._linear is None else self._linear.user_cells
 
     def __repr__(self) -> str:
         report = self._packed.report()
@@ -599,13 +606,13 @@ class PackedGrid:
                 f"field {self._packed.field()['name']}, {report['bytes']} bytes>")  # fmt: skip
 
 
-def _restored_packed(data: bytes) -> PackedGrid:
+def _restored_packed(data: bytes, linear: _isotet.LinearGrid | None = None) -> PackedGrid:
     """A packed grid of a pickle."""
     call = call_options(0, None)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "grid.isotet")
         path.write_bytes(data)
-        return PackedGrid._of(_isotet.PackedFile.open(str(path), 0, call).load("", 0, call))
+        return PackedGrid._of(_isotet.PackedFile.open(str(path), 0, call).load("", 0, call), linear)
 
 
 class Contour:
@@ -906,7 +913,8 @@ def pack(points: Any, cells: Any = None, values: npt.ArrayLike | str | None = No
          types: npt.ArrayLike | None = None, gradients: bool = False, source_cells: bool = False, split_cells: bool = False,
          precision: str = "float32", frame: Frame | None = None, threads: int = 0,
          progress: Progress | None = None) -> PackedGrid:  # fmt: skip
-    """Packs a grid once, to contour it many times: about 10 bytes a tetrahedron stay.
+    """Packs a grid once, to contour it many times: about 10 bytes a tetrahedron stay. Polyhedra and quadratic cells are split
+    into linear cells first, as by `contour`.
 
     points, cells, values, offsets, types
         As for `contour`. Or a `Grid`, and `values` the name of a field or one value a point: ``pack(grid, values="p")``.
@@ -930,9 +938,8 @@ def pack(points: Any, cells: Any = None, values: npt.ArrayLike | str | None = No
     call = call_options(threads, progress)
     if values is None and grid is not points:
         raise TypeError("pack() needs values")
-    packed = _isotet.pack(grid._grid, grid._field(values, call, frame is not None), precision, source_cells, split_cells,
-                          gradients, frame and frame._frame, call)  # fmt: skip
-    return PackedGrid._of(packed)
+    return PackedGrid._of(*_isotet.pack(grid._grid, grid._field(values, call, frame is not None), precision, source_cells,
+                                        split_cells, gradients, frame and frame._frame, call))  # fmt: skip
 
 
 def read(path: str | os.PathLike[str], *, fields: Iterable[str] | None = None, cell_fields: Iterable[str] | None = None,

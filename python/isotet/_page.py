@@ -63,10 +63,9 @@ def _unfilled() -> str:
 
 
 def _packed_bytes(packed: PackedGrid, fields: Iterable[_isotet.PointField], call: _isotet.CallOptions) -> bytes:
-    more = [packed._packed.with_field(field, call) for field in fields]
     with tempfile.TemporaryDirectory(prefix="isotet-") as folder:
         path = os.path.join(folder, "grid.isotet")
-        _isotet.save_packed(packed._packed, path, more, None, call)
+        packed._save(path, fields, None, call)
         with open(path, "rb") as file:
             return file.read()
 

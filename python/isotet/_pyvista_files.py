@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import pyvista
 
+from . import _isotet
 from ._grid import Grid, read
 from ._surface import read_surface
 from ._vtk_data import surface_of
@@ -24,7 +25,7 @@ def write_surface_file(mesh: pyvista.DataObject, path: str, **options) -> None:
     """`options` are those of `isotet.Surface.write`. Faces are cut into triangles."""
     if not isinstance(mesh, pyvista.PolyData):
         raise TypeError(f"the mesh is a {type(mesh).__name__}, but this format takes surfaces: pyvista.PolyData")
-    surface_of(mesh if mesh.is_all_triangles else mesh.triangulate()).write(path, **options)
+    surface_of(mesh).write(path, **options)
 
 
 def write_packed_file(mesh: pyvista.DataObject, path: str, *, scalars: str | None = None) -> None:
@@ -35,5 +36,5 @@ def write_packed_file(mesh: pyvista.DataObject, path: str, *, scalars: str | Non
     if first not in fields:
         there = ", ".join(fields) or "none"
         raise ValueError(f"a packed grid has point arrays of one component, but there is no '{first}': there are {there}")
-    packed = grid.pack(first, gradients=True, source_cells=True)
+    packed = grid.pack(first, gradients=True, source_cells=not _isotet.has_cells_to_linearize(grid._grid.cells))
     packed.save(path, fields={name: values for name, values in fields.items() if name != first})

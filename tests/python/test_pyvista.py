@@ -593,6 +593,13 @@ def test_grids_in_formats_of_isotet_are_read(tree):
     assert pv.read(path).n_cells == len(isotet.read(path))
 
 
+def test_polyhedra_are_saved_packed(tmp_path):
+    grid = cubes().isotet.clip_scalar("r", value=3.0)
+    assert 42 in grid.celltypes
+    grid.save(tmp_path / "grid.isotet")
+    assert isotet.open(tmp_path / "grid.isotet").contour(2.9, "r").area == pytest.approx(grid.isotet.contour([2.9], "r").area, rel=1e-5)
+
+
 def test_packed_grids_are_saved_and_read(tmp_path):
     grid = cubes()
     grid.save(tmp_path / "grid.isotet")

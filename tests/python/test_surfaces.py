@@ -128,6 +128,41 @@ def test_packed_grids_say_what_was_not_packed(sphere):
     assert packed.contour(0.5, normals="gradient", source_cells=True).normals is not None
 
 
+def clipped_ball() -> isotet.Grid:
+    """Tetrahedra, wedges, hexahedra and polyhedra."""
+    return isotet.make("hex", 6, ["sphere", "plane"]).clip("sphere", below=0.7)
+
+
+@pytest.mark.parametrize("grid", [clipped_ball(), isotet.make("kelvin", 4, ["sphere", "plane"]), isotet.make("tet10", 4, ["sphere", "plane"])])
+def test_polyhedra_and_quadratic_cells_are_packed_as_linear_cells(grid, tmp_path):
+    numbers = np.arange(len(grid))
+    packed = grid.pack("sphere", source_cells=True)
+    assert len(packed) == len(grid)
+    how = {"fields": {"plane": grid.fields["plane"]}, "cell_fields": {"number": numbers}, "source_cells": True}
+    for level in (0.4, 0.6):
+        wanted = grid.contour(level, "sphere", **how)
+        for some in (packed, copy.copy(packed), pickle.loads(pickle.dumps(packed))):
+            got = some.contour(level, **how)
+            assert got.area == pytest.approx(wanted.area, rel=1e-5) and len(got.triangles) == len(wanted.triangles)
+            assert isotet.check(got).boundary_edges == isotet.check(wanted).boundary_edges
+            assert np.array_equal(got.cell_fields["number"], got.source_cells)
+            assert sorted(got.source_cells) == sorted(wanted.source_cells)
+            assert np.sort(got.fields["plane"]) == pytest.approx(np.sort(wanted.fields["plane"]), abs=1e-5)
+    for some in (packed, pickle.loads(pickle.dumps(packed))):
+        some.set_field(grid.fields["plane"], name="plane")
+        assert some.contour(0.1).area == pytest.approx(grid.contour(0.1, "plane").area, rel=1e-5)
+        some.set_points(2 * np.asarray(grid.points))
+        assert some.contour(0.1).area == pytest.approx(4 * grid.contour(0.1, "plane").area, rel=1e-5)
+    with pytest.raises(ValueError, match="field 'values' has|the array has 3 tuples"):
+        packed.set_field(np.zeros(3))
+    with pytest.raises(ValueError, match="source cells of polyhedra and quadratic cells are not kept"):
+        packed.save(tmp_path / "grid.isotet")
+    grid.pack("sphere").save(tmp_path / "grid.isotet", fields={"plane": grid.fields["plane"]})
+    file = isotet.open(tmp_path / "grid.isotet")
+    for name in ("sphere", "plane"):
+        assert file.contour(0.45, name).area == pytest.approx(grid.contour(0.45, name).area, rel=1e-5)
+
+
 def test_other_cells_are_cut_as_they_are_or_split():
     grid = isotet.make("hex", 6, ["sphere"])
     whole, split = isotet.pack(grid, values="sphere"), isotet.pack(grid, values="sphere", split_cells=True)
