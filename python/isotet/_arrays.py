@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numbers
 import operator
+import re
 import sys
 
 import numpy as np
@@ -19,7 +20,9 @@ VTK_TYPES = {
     "triangle7": 34, "line4": 35, "VTK_LAGRANGE_CURVE": 68, "VTK_LAGRANGE_TRIANGLE": 69, "VTK_LAGRANGE_QUADRILATERAL": 70,
     "VTK_LAGRANGE_TETRAHEDRON": 71, "VTK_LAGRANGE_HEXAHEDRON": 72, "VTK_LAGRANGE_WEDGE": 73, "VTK_LAGRANGE_PYRAMID": 74,
 }  # fmt: skip
-_SOLID = ("tetra", "hexahedron", "wedge", "pyramid", "polyhedron")
+_SOLID = ("tetra", "hexahedron", "wedge", "pyramid")
+_FLAT = re.compile(r"(empty|vertex|line|pixel|triangle|quad|polygon)\d*|VTK_BEZIER_(CURVE|TRIANGLE|QUADRILATERAL)")
+_POLYHEDRON = 42
 _TYPE_OF_CORNERS = {4: 10, 8: 12, 6: 13, 5: 14}
 
 
@@ -103,18 +106,55 @@ def _indices(what: str, array) -> np.ndarray:
     return array if array.dtype.itemsize >= 4 else array.astype(np.int32)
 
 
+def _check_meshio_type(name: str) -> None:
+    if name in VTK_TYPES or _FLAT.fullmatch(name) or re.fullmatch(r"polyhedron\d*", name):
+        return
+    if re.fullmatch(rf"({'|'.join(_SOLID)})\d+", name):
+        raise ValueError(f"cells of the type '{name}' have an order of nodes that isotet does not know: "
+                         "give them as VTK's Lagrange cells")  # fmt: skip
+    raise ValueError(f"there is no type of cells '{name}': there are {', '.join(VTK_TYPES)} and polyhedron")
+
+
+def _corners_in(name: str, corners) -> np.ndarray:
+    corners = _indices(f"cells[{name!r}]", corners)
+    if corners.ndim != 2:
+        raise ValueError(f"cells[{name!r}] has shape {corners.shape}, but must have one row a cell")
+    return corners
+
+
+def _with_polyhedra(blocks) -> _isotet.Cells:
+    """Blocks of which some are polyhedra: for each cell its faces, each the numbers of its points."""
+    corners, sizes, types, stream, places = [], [], [], [], [0]
+    for name, cells in blocks:
+        if not name.startswith("polyhedron"):
+            rows = _corners_in(name, cells)
+            corners.extend(rows)
+            sizes.extend([rows.shape[1]] * len(rows))
+            types.extend([VTK_TYPES.get(name, 0)] * len(rows))
+            places.extend(places[-1:] * len(rows))
+            continue
+        for cell in cells:
+            faces = [_indices(f"a face of cells[{name!r}]", face).reshape(-1) for face in cell]
+            parts = [np.array([len(faces)]), *(part for face in faces for part in ([len(face)], face))]
+            stream.extend(parts)
+            corners.append(np.unique(np.concatenate(faces)) if faces else np.empty(0, np.int64))
+            sizes.append(len(corners[-1]))
+            types.append(_POLYHEDRON)
+            places.append(places[-1] + sum(map(len, parts)))
+    joined = [np.concatenate([np.empty(0, np.int64), *(np.asarray(part, np.int64) for part in parts)]) for parts in (corners, stream)]
+    return _isotet.Cells(joined[0], np.cumsum([0, *sizes], dtype=np.int64), np.array(types, np.uint8), 10, joined[1],
+                         np.array(places, np.int64))  # fmt: skip
+
+
 def _blocks_in(blocks) -> _isotet.Cells:
-    """meshio's cells: pairs of a type and an array of corners, one row a cell."""
-    arrays, types = [], []
-    for name, corners in blocks:
-        corners = _indices(f"cells[{name!r}]", corners)
-        if corners.ndim != 2:
-            raise ValueError(f"cells[{name!r}] has shape {corners.shape}, but must have one row a cell")
-        if name not in VTK_TYPES and name.startswith(_SOLID):
-            raise ValueError(f"cells of the type '{name}' have an order of nodes that isotet does not know: "
-                             "give them as VTK's Lagrange cells")  # fmt: skip
-        arrays.append(corners)
-        types.append(VTK_TYPES.get(name, 0))
+    """meshio's cells: pairs of a type and an array of corners, one row a cell; of polyhedra lists of faces."""
+    blocks = list(blocks)
+    for name, _ in blocks:
+        _check_meshio_type(name)
+    if any(name.startswith("polyhedron") for name, _ in blocks):
+        return _with_polyhedra(blocks)
+    arrays = [_corners_in(name, corners) for name, corners in blocks]
+    types = [VTK_TYPES.get(name, 0) for name, _ in blocks]
     if len(arrays) == 1 and types[0] in _TYPE_OF_CORNERS.values() and _TYPE_OF_CORNERS.get(arrays[0].shape[1]) == types[0]:
         return _isotet.Cells(arrays[0].reshape(-1), None, None, types[0])
     counts = [len(corners) for corners in arrays]

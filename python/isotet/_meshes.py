@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -35,10 +36,25 @@ def grid_of_mesh(mesh, fields, cell_fields, point_numbers) -> _isotet.Grid:
 
 
 def _of_meshio(mesh) -> _isotet.Grid:
-    joined = {name: np.concatenate([np.asarray(part) for part in parts]) for name, parts in mesh.cell_data.items() if parts}
+    points = {name: _flat(values) for name, values in mesh.point_data.items()}
+    joined = {name: _joined(name, [_flat(part) for part in parts]) for name, parts in mesh.cell_data.items() if parts}
     cells = cells_in(mesh.cells if len(mesh.cells) else {})
-    return _isotet.Grid(points_in(mesh.points), cells, fields_in("point_data", mesh.point_data),
-                        fields_in("cell_data", joined))  # fmt: skip
+    return _isotet.Grid(points_in(mesh.points), cells, fields_in("point_data", points), fields_in("cell_data", joined))
+
+
+def _flat(values) -> np.ndarray:
+    """Tensors, of shape (N, 3, 3), as rows of their components."""
+    values = np.asanyarray(values)
+    return values.reshape(len(values), math.prod(values.shape[1:])) if values.ndim > 2 else values
+
+
+def _joined(name: str, parts: list[np.ndarray]) -> np.ndarray:
+    """The cell data of all blocks."""
+    shapes = {part.shape[1:] for part in parts}
+    if len(shapes) > 1:
+        raise ValueError(f"cell_data[{name!r}] has blocks of shape {' and '.join(str(part.shape) for part in parts)}, "
+                         "but a cell must have as many components in all")  # fmt: skip
+    return np.concatenate(parts)
 
 
 def expanded(grid: _isotet.Grid) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -171,7 +171,7 @@ def test_cells_as_meshio_has_them(tet):
     assert same(isotet.contour(points, {"tetra": cells}, values, 0.5), wanted)
     assert np.shares_memory(isotet.Grid(points, {"tetra": cells}).cells, cells), "one kind of cell is not copied"
     assert same(isotet.contour(points, [("tetra", cells)], values, 0.5), wanted)
-    with_faces = {"triangle": [[0, 1, 2]], "tetra": cells, "vertex": [[0]], "unheard_of": [[0, 1]]}
+    with_faces = {"triangle": [[0, 1, 2]], "tetra": cells, "vertex": [[0]], "line12": [[0, 1]]}
     surface = isotet.contour(points, with_faces, values, 0.5, source_cells=True)
     assert surface.source_cells.tolist() == [1], "cells are counted in the order of the blocks"
 

@@ -75,6 +75,39 @@ def test_orders_of_nodes_that_are_not_known_are_named():
     assert isotet.Grid(cells).types.tolist() == [71, 0]
 
 
+@pytest.mark.parametrize("name", ["prism", "tet", "tetrahedron", "hexahedra"])
+def test_types_of_cells_that_meshio_does_not_have_are_an_error(name):
+    with pytest.raises(ValueError, match=f"there is no type of cells '{name}': there are .*wedge"):
+        isotet.Grid(np.zeros((8, 3)), {"hexahedron": np.arange(8)[None], name: np.arange(6)[None]})
+
+
+def test_polyhedra_come_from_meshio():
+    points = isotet.make("hex", 1, ["plane"]).points
+    sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
+    more = np.concatenate([points, points[:4] + [0, 0, 4]])  # a prism of four faces more, of lists of several lengths
+    other = [[4, 6, 10], [5, 11, 7], [4, 5, 7, 6], [4, 10, 11, 5], [6, 7, 11, 10]]
+    blocks = [("polyhedron8", np.array([sides])), ("polyhedron6", [other]), ("tetra", [[0, 1, 2, 4]]), ("line", [[0, 1]])]
+    grid = isotet.Grid(meshio.Mesh(more, blocks))
+    assert grid.types.tolist() == [42, 42, 10, 3] and np.diff(grid.offsets).tolist() == [8, 6, 4, 2]
+    assert np.diff(grid.face_offsets).tolist() == [31, 24, 0, 0]
+    alone = isotet.Grid(more, {"polyhedron8": [sides]})
+    whole = isotet.Grid(more, {"hexahedron": [[0, 1, 3, 2, 4, 5, 7, 6]]})
+    assert alone.contour(0.25, more[:, 0]).area == pytest.approx(whole.contour(0.25, more[:, 0]).area)
+
+
+def test_tensors_of_meshio_are_rows_of_components(tet):
+    points, cells, _ = tet
+    tensors = np.arange(36.0).reshape(4, 3, 3)
+    mesh = meshio.Mesh(points, [("tetra", cells)], point_data={"S": tensors}, cell_data={"c": [tensors[:1]]})
+    grid = isotet.Grid(mesh)
+    assert grid.fields["S"].tolist() == tensors.reshape(4, 9).tolist()
+    assert grid.cell_fields["c"].shape == (1, 9)
+    mesh.cells.append(meshio.CellBlock("tetra", cells))
+    mesh.cell_data["c"].append(np.zeros(1))
+    with pytest.raises(ValueError, match=r"cell_data\['c'\] has blocks of shape \(1, 9\) and \(1,\), but"):
+        isotet.Grid(mesh)
+
+
 class OnlyDlpack:
     def __init__(self, array):
         self.array = array
