@@ -19,7 +19,7 @@ from ._arrays import direction_in, isovalues_in, place_in, tolerances_in
 from ._call import call_options
 from ._grid import Clipper, Grid, Solids
 from ._surface import Surface, parts
-from ._vtk_data import Scalars, arrays_of, carried_of, cells_of, fill, points_of, scalars_of, some_cells, other_cells, surface_of, to_polydata
+from ._vtk_data import Scalars, arrays_of, carried_of, cells_of, fill, fill_unstructured, keep_active, points_of, scalars_of, some_cells, other_cells, surface_of, to_polydata
 from ._vtk_fallback import REASON, Wishes, append, append_other_cells, contour_by_vtk
 from ._vtk_session import Session, contour_all, finish, levels
 
@@ -118,8 +118,10 @@ def _clips(value, invert: bool, both: bool) -> list[dict[str, float]]:
     return (sides if invert else sides[::-1])[: 2 if both else 1]
 
 
-def _keep_active_scalars(mesh, out) -> None:
-    """They are those of `mesh` where `out` has the array, as of PyVista's own filters: what is plotted."""
+def _keep_meta(mesh, out) -> None:
+    """Of the arrays that `out` has of `mesh`, what PyVista's own filters keep: which are active, bool and complex ones."""
+    keep_active(mesh, out)
+    out.copy_meta_from(mesh, deep=True)
     found = mesh.active_scalars_info
     of_cells = found.association == pyvista.FieldAssociation.CELL
     if found.name and found.name in (out.cell_data if of_cells else out.point_data):
@@ -201,6 +203,7 @@ class GridAccessor:
             tolerances=tolerances_in(tolerance, geometry_tolerance, distance))  # fmt: skip
         self._add_others(Wishes(values, compute_normals, compute_scalars, cell_isovalues=True), chosen, of_cells, out)
         out.GetFieldData().PassData(self._grid.GetFieldData())
+        _keep_meta(self._grid, out)
         return out
 
     def _extract(self, scalars: Scalars, values: list[float], out, compute_scalars: bool, *, normals: bool, **how) -> None:
@@ -272,7 +275,7 @@ class GridAccessor:
             self._warn_of_cells("leaves to VTK", others)
         out.GetFieldData().PassData(grid.GetFieldData())
         if not contour or grid.active_scalars_name in out.point_data:
-            _keep_active_scalars(grid, out)
+            _keep_meta(grid, out)
         return out.contour() if contour else out
 
     def slice_orthogonal(self, x=None, y=None, z=None, **tolerances) -> pyvista.MultiBlock:
@@ -319,7 +322,7 @@ class GridAccessor:
         fill(out, surface, copy=False, kinds={name: values.dtype for name, values in fields})
         out.GetFieldData().PassData(grid.GetFieldData())
         out.field_data["volume"] = [surface.solid["volume"]] if surface.solid else [0.0]
-        _keep_active_scalars(grid, out)
+        _keep_meta(grid, out)
         return out
 
     def clip_scalar(self, scalars=None, invert: bool = True, value: float | Sequence[float] = 0.0, inplace: bool = False,
@@ -351,12 +354,13 @@ class GridAccessor:
         whole = Grid._of(_isotet.Grid(points_of(cells), cells_of(cells), fields, cell_fields))
         if grid.n_cells:
             clipper = Clipper(whole, chosen.values, fields=dict(fields), cell_fields=dict(cell_fields))
-            sides = [clipper.clip(**clip).to_pyvista() for clip in clips]
+            kinds = {name: values.dtype for name, values in fields}
+            sides = [fill_unstructured(pyvista.UnstructuredGrid(), clipper.clip(**clip), kinds=kinds) for clip in clips]
         else:
             sides = [pyvista.UnstructuredGrid() for _ in clips]
         for side in sides:
             side.GetFieldData().PassData(grid.GetFieldData())
-            _keep_active_scalars(grid, side)
+            _keep_meta(grid, side)
         if inplace:
             grid.copy_from(sides[0])
             sides[0] = grid
@@ -423,15 +427,14 @@ class PolyDataAccessor(GridAccessor):
         return self._grid.cast_to_unstructured_grid()
 
     def _surface(self) -> Surface:
-        mesh = self._grid if self._grid.is_all_triangles else self._grid.triangulate()
-        return surface_of(mesh)
+        return surface_of(self._grid)
 
     def _polydata(self, surface: Surface) -> pyvista.PolyData:
         out = pyvista.wrap(to_polydata(surface))
         out.GetFieldData().PassData(self._grid.GetFieldData())
         if "volume" in out.field_data and "boundary" in surface.cell_fields:  # a solid's
             out.field_data["volume"] = [_isotet.measure_solid(surface._surface, call_options(0, None))["volume"]]
-        _keep_active_scalars(self._grid, out)
+        _keep_meta(self._grid, out)
         return out
 
     def decimate(self, target_reduction: float = 0.5, *, error: float | None = None) -> pyvista.PolyData:

@@ -344,7 +344,9 @@ def test_blocks():
 def test_several_isovalues_number_their_cells(grid):
     surface = grid.isotet.contour([1.2, 2.5], "r", compute_scalars=False)
     isovalues = surface.cell_data["isovalue"]
-    assert np.unique(isovalues).tolist() == [1.2, 2.5] and surface.active_scalars_name is None
+    assert np.unique(isovalues).tolist() == [1.2, 2.5]
+    theirs = grid.contour([1.2, 2.5], "r", compute_scalars=False)
+    assert surface.active_scalars_name == theirs.active_scalars_name == "number"
     for isovalue in (1.2, 2.5):
         one = grid.isotet.contour([isovalue], "r")
         assert one.n_cells == np.count_nonzero(isovalues == isovalue) and "isovalue" not in one.cell_data
@@ -500,6 +502,42 @@ def test_surfaces_are_decimated_and_split():
     fewer = ball.isotet.decimate(0.5)
     assert 0.3 * ball.n_cells < fewer.n_cells < 0.6 * ball.n_cells
     assert fewer.is_manifold and set(fewer.point_data) == set(ball.point_data)
+
+
+@pytest.mark.parametrize("beside", ["lines", "verts"])
+def test_lines_and_vertices_beside_triangles_are_left_out(beside):
+    ball = pv.Sphere(theta_resolution=8, phi_resolution=8)
+    beside = {"lines": np.array([2, 0, 1, 2, 3, 4])} if beside == "lines" else {"verts": np.array([1, 0, 1, 5])}
+    for faces in (ball.faces, [4, 0, 1, 2, 3, 4, 3, 2, 4, 5]):
+        mesh = pv.PolyData(ball.points, faces=faces, **beside)
+        mesh.cell_data["number"] = np.arange(mesh.n_cells)
+        largest = mesh.isotet.extract_largest()
+        assert largest.n_cells == pv.PolyData(ball.points, faces=faces).triangulate().n_cells
+        assert set(largest["number"]) == set(range(2, mesh.n_cells))
+        assert sum(body.n_cells for body in mesh.isotet.split_bodies()) == largest.n_cells
+
+
+def test_arrays_of_bools_and_complex_numbers_stay_so():
+    grid = cubes()
+    grid["wet"], grid["z"] = grid["x"] > 4, grid["x"] + 1j
+    grid.cell_data["own"] = np.arange(grid.n_cells) % 2 == 0
+    for mesh in (grid.isotet.contour([2.5], "r"), grid.isotet.slice("z"), *grid.isotet.clip_scalar("r", value=3.0, both=True),
+                 grid.isotet.solid("r", below=3.0), grid.isotet.contour([2.5], "r").isotet.extract_largest()):  # fmt: skip
+        assert mesh["wet"].dtype == mesh.cell_data["own"].dtype == bool and mesh["z"].dtype == complex
+        assert mesh["wet"].shape == mesh["z"].shape == (mesh.n_points,)
+        assert mesh["z"] == pytest.approx(mesh["x"] + 1j)
+        assert mesh.points[mesh["wet"]][:, 0].min() > 3.4
+
+
+def test_active_arrays_are_those_of_pyvista():
+    grid = cubes()
+    grid["other"] = grid["r"] * 2
+    grid.set_active_vectors("v")
+    for active in ("r", "other"):
+        grid.set_active_scalars(active)
+        for ours, theirs in ((grid.isotet.contour([2.5], "r"), grid.contour([2.5], "r")), (grid.isotet.slice("z"), grid.slice("z"))):
+            assert ours.active_scalars_name == theirs.active_scalars_name == active
+            assert ours.active_vectors_name == theirs.active_vectors_name == "v"
 
 
 def test_solids_are_closed():
