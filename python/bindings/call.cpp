@@ -3,6 +3,7 @@
 
 #include <pthread.h>
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <exception>
@@ -76,6 +77,8 @@ private:
     const std::function<void()>* asked_ = nullptr;
 };
 
+thread_local Sessions telling; ///< sessions of the calls whose progress functions run on this thread
+
 Worker* worker = nullptr; // never deleted: its thread may outlive everything
 bool worker_is_busy = false;
 
@@ -122,7 +125,19 @@ void raise(const Error& error) {
     throw nb::python_error();
 }
 
-Call::Call(const CallOptions& options) : progress_(options.progress) {
+void refuse_inside(const Sessions& sessions) {
+    for (const void* session : sessions) {
+        if (std::find(telling.begin(), telling.end(), session) == telling.end()) continue;
+        PyErr_SetString(
+            PyExc_RuntimeError,
+            "a progress function uses the session that it is called by, which is at work: use it after the call");
+        throw nb::python_error();
+    }
+}
+
+Call::Call(const CallOptions& options, Sessions sessions)
+    : progress_(options.progress), sessions_(std::move(sessions)) {
+    refuse_inside(sessions_);
     run_.threads = options.threads;
     run_.progress.cancel = &cancel_;
     if (progress_.is_valid() && !progress_.is_none())
@@ -138,11 +153,14 @@ void Call::stop(nb::python_error&& error) {
 void Call::tell(std::string_view step, double fraction) {
     const nb::gil_scoped_acquire held;
     if (cancel_) return;
+    const std::size_t before = telling.size();
+    telling.insert(telling.end(), sessions_.begin(), sessions_.end());
     try {
         progress_(nb::str(step.data(), step.size()), fraction);
     } catch (nb::python_error& error) {
         stop(std::move(error));
     }
+    telling.resize(before);
 }
 
 void Call::report(std::string_view step, double fraction) {

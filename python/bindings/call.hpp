@@ -9,6 +9,7 @@
 #include <mutex>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
@@ -29,10 +30,16 @@ struct CallOptions {
     nb::object progress;
 };
 
+using Sessions = std::vector<const void*>;
+
+/// Throws RuntimeError where this thread is in a progress function of a call of one of the sessions: their locks are held.
+void refuse_inside(const Sessions& sessions);
+
 /// One call of the library, while it runs.
 class Call {
 public:
-    explicit Call(const CallOptions& options);
+    /// `sessions`   whose locks the work holds while it tells its progress
+    explicit Call(const CallOptions& options, Sessions sessions = {});
     Call(const Call&) = delete;
     Call& operator=(const Call&) = delete;
 
@@ -49,6 +56,7 @@ private:
     void wait_for_worker(const std::function<void()>& work);
 
     nb::object progress_;
+    Sessions sessions_;
     Run run_;
     std::atomic<bool> cancel_ = false;
     bool waiting_ = false; ///< the calling thread waits for the worker, and calls the progress function
@@ -58,8 +66,8 @@ private:
 
 /// Calls `function` with a Run, and returns the value of its Result.
 template <class Function>
-auto call(const CallOptions& options, Function&& function) {
-    Call call(options);
+auto call(const CallOptions& options, Function&& function, Sessions sessions = {}) {
+    Call call(options, std::move(sessions));
     std::optional<decltype(function(call.run()))> result;
     call.carry_out([&] { result.emplace(function(call.run())); });
     if (!*result) raise(result->error());

@@ -251,28 +251,32 @@ void add_sessions(nb::module_& module) {
                const FieldsIn& cell_fields, const ContourOptions& options, const CallOptions& how) {
                 ContourInput input = contour_input(grid, field, fields, cell_fields);
                 const ContourUpdate update =
-                    call(how, [&](const Run& run) { return self.set(std::move(input), options, run); });
+                    call(how, [&](const Run& run) { return self.set(std::move(input), options, run); }, {&self});
                 return word_of(update, words_of_update);
             },
             "grid"_a, "field"_a, "fields"_a, "cell_fields"_a, "options"_a, "call"_a)
         .def(
             "extract",
             [](Contour& self, const std::vector<double>& isovalues, const CallOptions& how) {
-                return extracted_out(call(how, [&](const Run& run) { return extract_joined(self, isovalues, run); }));
+                return extracted_out(
+                    call(how, [&](const Run& run) { return extract_joined(self, isovalues, run); }, {&self}));
             },
             "isovalues"_a, "call"_a)
         .def(
             "prepare",
-            [](Contour& self, const CallOptions& how) { call(how, [&](const Run& run) { return self.prepare(run); }); },
+            [](Contour& self, const CallOptions& how) {
+                call(how, [&](const Run& run) { return self.prepare(run); }, {&self});
+            },
             "call"_a)
         .def(
             "field",
             [](Contour& self, const CallOptions& how) {
-                return field_out(call(how, [&](const Run& run) { return self.field(run); }));
+                return field_out(call(how, [&](const Run& run) { return self.field(run); }, {&self}));
             },
             "call"_a)
         .def("packed_bytes",
              [](const Contour& self) -> std::uint64_t {
+                 refuse_inside({&self});
                  const nb::gil_scoped_release released;
                  const std::optional<PackedGrid> packed = self.packed();
                  if (!packed) return 0;
@@ -282,6 +286,7 @@ void add_sessions(nb::module_& module) {
         .def(
             "method",
             [](const Contour& self, std::size_t isovalues) {
+                refuse_inside({&self});
                 const nb::gil_scoped_release released;
                 return word_of(self.method(isovalues), words_of_method);
             },
@@ -294,10 +299,14 @@ void add_contour_blocks(nb::module_& module) {
         "contour_blocks",
         [](const std::vector<Block>& blocks, const std::vector<double>& isovalues, const CallOptions& how) {
             std::vector<BlockIn> in;
-            for (const auto& [session, grid, field, fields, cell_fields, options] : blocks)
+            Sessions sessions;
+            for (const auto& [session, grid, field, fields, cell_fields, options] : blocks) {
                 in.push_back({session, contour_input(*grid, *field, fields, cell_fields), *options});
+                sessions.push_back(session);
+            }
             nb::list out;
-            for (BlockOut& block : call(how, [&](const Run& run) { return contour_blocks(in, isovalues, run); }))
+            for (BlockOut& block :
+                 call(how, [&](const Run& run) { return contour_blocks(in, isovalues, run); }, std::move(sessions)))
                 out.append(
                     nb::make_tuple(word_of(block.update, words_of_update), extracted_out(std::move(block.extracted))));
             return out;

@@ -124,6 +124,30 @@ def test_progress_is_told_in_order():
     assert 0 <= fractions[0] and fractions[-1] <= 1
 
 
+@pytest.mark.parametrize("use", [lambda session: session.contour(0.4), lambda session: session.prepare(), lambda session: session.range,
+                                 lambda session: session.nbytes, repr])  # fmt: skip
+@pytest.mark.parametrize("in_main_thread", [True, False])
+def test_a_progress_function_that_uses_its_session_is_an_error(use, in_main_thread):
+    session = isotet.Contour(isotet.make("kuhn", 20, ["sphere"]), "sphere", surfaces=100)
+    other = isotet.make("kuhn", 6, ["sphere"])
+    failures = []
+
+    def contour():
+        try:
+            session.contour(0.5, progress=lambda *_: (other.contour(0.5), use(session)))
+        except RuntimeError as error:
+            failures.append(str(error))
+
+    thread = threading.Thread(target=contour)
+    if in_main_thread:
+        contour()
+    else:
+        thread.start()
+        thread.join()
+    assert failures == ["a progress function uses the session that it is called by, which is at work: use it after the call"]
+    assert len(session.contour(0.5).triangles) > 0
+
+
 def test_an_exception_of_the_progress_function_stops_the_call():
     grid = isotet.make("kuhn", 24, ["sphere"])
     told = []
