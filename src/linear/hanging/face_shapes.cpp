@@ -38,70 +38,72 @@ Point middle_of(std::span<const std::uint64_t> loop, const core::PointReader& po
     return out;
 }
 
-FaceShapes::FaceShapes(const OpenFaces& faces, const core::CellReader& cells, const core::PointReader& points)
-    : faces_(faces), points_(points), shapes_(faces.size()), twice_areas_(faces.size()) {
-    core::parallel_each(faces.size(), 1 << 10, [&](std::size_t face) {
-        shapes_[face] = shape_of(face, cells);
-        twice_areas_[face] = std::sqrt(dot(shapes_[face].normal, shapes_[face].normal));
-        shapes_[face].is_flat = is_flat(shapes_[face], faces_.loop(face), twice_areas_[face]);
+namespace {
+
+bool is_flat(const FaceShape& shape, std::span<const std::uint64_t> loop, const core::PointReader& points) {
+    return std::ranges::all_of(loop, [&](std::uint64_t point) {
+        const double height = dot(minus(points[point], shape.middle), shape.normal);
+        return std::abs(height) <= flat_face * shape.extent * shape.twice_area;
     });
 }
 
-FaceShapes::Shape FaceShapes::shape_of(std::size_t face, const core::CellReader& cells) const {
-    const auto loop = faces_.loop(face);
-    Shape out;
-    out.normal = normal_of(loop, points_);
-    out.middle = middle_of(loop, points_);
-    Point lower = points_[loop[0]], upper = lower;
+} // namespace
+
+FaceShape shape_of(std::span<const std::uint64_t> loop, const Point& inside, const core::PointReader& points) {
+    FaceShape out;
+    out.normal = normal_of(loop, points);
+    out.twice_area = std::sqrt(dot(out.normal, out.normal));
+    out.middle = middle_of(loop, points);
+    Point lower = points[loop[0]], upper = lower;
     for (const std::uint64_t point : loop) {
-        const Point at = points_[point];
+        const Point at = points[point];
         for (std::size_t axis = 0; axis < 3; ++axis) {
             lower[axis] = std::min(lower[axis], at[axis]);
             upper[axis] = std::max(upper[axis], at[axis]);
         }
     }
     out.extent = std::sqrt(core::squared_distance(lower, upper));
-    const std::uint64_t cell = faces_.place(face).cell, first = cells.first(cell), count = cells.corners(cell);
-    Point inside{};
-    for (std::uint64_t i = 0; i < count; ++i) {
-        const Point at = points_[cells.corner(first + i)];
-        for (std::size_t axis = 0; axis < 3; ++axis) inside[axis] += at[axis] / static_cast<double>(count);
-    }
     out.is_turned = dot(out.normal, minus(out.middle, inside)) < 0;
     if (out.is_turned)
         for (double& x : out.normal) x = -x;
+    out.is_flat = is_flat(out, loop, points);
     return out;
 }
 
-bool FaceShapes::is_flat(const Shape& shape, std::span<const std::uint64_t> loop, double twice_area) const {
-    return std::ranges::all_of(loop, [&](std::uint64_t point) {
-        const double height = dot(minus(points_[point], shape.middle), shape.normal);
-        return std::abs(height) <= flat_face * shape.extent * twice_area;
-    });
-}
-
-bool FaceShapes::looks_at(std::size_t face, std::size_t other) const {
-    const Shape &shape = shapes_[face], &small = shapes_[other];
-    const double twice_area = twice_areas_[face];
-    if (!(dot(shape.normal, small.normal) < most_cosine * twice_area * twice_areas_[other])) return false;
-    if (faces_.place(face).cell == faces_.place(other).cell) return false;
-    const auto loop = faces_.loop(face);
-    Point at = points_[loop.back()];
+bool is_over(const FaceShape& face, std::span<const std::uint64_t> loop, const FaceShape& small,
+             const core::PointReader& points) {
+    const double areas = face.twice_area * small.twice_area;
+    if (!(small.twice_area < largest_share * face.twice_area)) return false;
+    if (!(dot(face.normal, small.normal) < most_cosine * areas)) return false;
+    Point at = points[loop.back()];
     for (const std::uint64_t point : loop) {
-        const Point next = points_[point];
-        const double inside = dot(cross(minus(next, at), minus(small.middle, at)), shape.normal);
-        if (shape.is_turned ? inside > 0 : inside < 0) return false;
+        const Point next = points[point];
+        const double inside = dot(cross(minus(next, at), minus(small.middle, at)), face.normal);
+        if (face.is_turned ? inside > 0 : inside < 0) return false;
         at = next;
     }
-    const double height = std::abs(dot(minus(small.middle, shape.middle), shape.normal)) / twice_area;
-    return height <= 2 * beside_face * shape.extent;
+    const double height = std::abs(dot(minus(small.middle, face.middle), face.normal)) / face.twice_area;
+    return height <= 2 * beside_face * face.extent;
 }
 
-double FaceShapes::distance(std::size_t face, std::size_t other) const {
-    const Shape& shape = shapes_[face];
-    const Point& middle = shapes_[other].middle;
-    if (!shape.is_flat) return place_on_face(faces_.loop(face), middle, points_).distance / shape.extent;
-    return std::abs(dot(minus(middle, shape.middle), shape.normal)) / (twice_areas_[face] * shape.extent);
+double distance(const FaceShape& face, std::span<const std::uint64_t> loop, const FaceShape& small,
+                const core::PointReader& points) {
+    if (!face.is_flat) return place_on_face(loop, small.middle, points).distance / face.extent;
+    return std::abs(dot(minus(small.middle, face.middle), face.normal)) / (face.twice_area * face.extent);
+}
+
+FaceShapes::FaceShapes(const OpenFaces& faces, const core::CellReader& cells, const core::PointReader& points)
+    : faces_(faces), points_(points), shapes_(faces.size()), twice_areas_(faces.size()) {
+    core::parallel_each(faces.size(), 1 << 10, [&](std::size_t face) {
+        const std::uint64_t cell = faces.place(face).cell, first = cells.first(cell), count = cells.corners(cell);
+        Point inside{};
+        for (std::uint64_t i = 0; i < count; ++i) {
+            const Point at = points[cells.corner(first + i)];
+            for (std::size_t axis = 0; axis < 3; ++axis) inside[axis] += at[axis] / static_cast<double>(count);
+        }
+        shapes_[face] = shape_of(faces.loop(face), inside, points);
+        twice_areas_[face] = shapes_[face].twice_area;
+    });
 }
 
 } // namespace isotet::linear

@@ -23,11 +23,30 @@ Point normal_of(std::span<const std::uint64_t> loop, const core::PointReader& po
 /// The mean of its points.
 Point middle_of(std::span<const std::uint64_t> loop, const core::PointReader& points);
 
+/// What tells whether one face may cover another, by their places.
+struct FaceShape {
+    Point middle{}, normal{}; ///< the normal outward, of twice the area
+    double twice_area = 0, extent = 0;
+    bool is_turned = false, is_flat = false; ///< turned: a loop that is clockwise seen from outside; flat: in one plane
+};
+
+/// `inside`   the mean of the corners of the face's cell
+FaceShape shape_of(std::span<const std::uint64_t> loop, const Point& inside, const core::PointReader& points);
+
+/// Whether a smaller face faces the other way, with its middle over a face. `loop` is that of the larger.
+bool is_over(const FaceShape& face, std::span<const std::uint64_t> loop, const FaceShape& small,
+             const core::PointReader& points);
+
+/// Of the middle of a face from one that it is over, in extents of that.
+double distance(const FaceShape& face, std::span<const std::uint64_t> loop, const FaceShape& small,
+                const core::PointReader& points);
+
 class FaceShapes {
 public:
     /// All borrowed.
     FaceShapes(const OpenFaces& faces, const core::CellReader& cells, const core::PointReader& points);
 
+    const FaceShape& operator[](std::size_t face) const { return shapes_[face]; }
     const Point& middle(std::size_t face) const { return shapes_[face].middle; }
     /// The diagonal of its box.
     double extent(std::size_t face) const { return shapes_[face].extent; }
@@ -36,26 +55,20 @@ public:
 
     /// A smaller face of another cell that faces the other way, with its middle over a face.
     bool is_over(std::size_t face, std::size_t other) const {
-        return twice_areas_[other] < largest_share * twice_areas_[face] && looks_at(face, other);
+        return twice_areas_[other] < largest_share * twice_areas_[face] &&
+               faces_.place(face).cell != faces_.place(other).cell &&
+               linear::is_over(shapes_[face], faces_.loop(face), shapes_[other], points_);
     }
 
     /// Of the middle of a face from one that it is over, in extents of that.
-    double distance(std::size_t face, std::size_t other) const;
+    double distance(std::size_t face, std::size_t other) const {
+        return linear::distance(shapes_[face], faces_.loop(face), shapes_[other], points_);
+    }
 
 private:
-    struct Shape {
-        Point middle{}, normal{}; ///< the normal outward
-        double extent = 0;
-        bool is_turned = false, is_flat = false; ///< flat: all corners in one plane
-    };
-
-    Shape shape_of(std::size_t face, const core::CellReader& cells) const;
-    bool is_flat(const Shape& shape, std::span<const std::uint64_t> loop, double twice_area) const;
-    bool looks_at(std::size_t face, std::size_t other) const;
-
     const OpenFaces& faces_;
     const core::PointReader& points_;
-    std::vector<Shape> shapes_;
+    std::vector<FaceShape> shapes_;
     std::vector<double> twice_areas_; ///< looked at more than all else
 };
 
