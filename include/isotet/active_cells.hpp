@@ -11,6 +11,7 @@
 #include <isotet/export.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/grid.hpp>
+#include <isotet/progress.hpp>
 #include <isotet/result.hpp>
 
 namespace isotet {
@@ -71,6 +72,47 @@ public:
 private:
     struct Data;
     explicit ActiveCellFilter(std::unique_ptr<Data> data);
+    std::unique_ptr<Data> data_;
+};
+
+/// Whether surfaces end or go on at hanging points, of a grid of which only the cells that isovalues cut were kept: by the
+/// faces that they cut and that one cell has, and by the cells near these, for which all go by once more.
+///
+///     auto around = CellsAround::of(active, field, isovalues);
+///     if (around->are_needed()) for (each piece of the cells) around->add(types, corners);
+///     if (*around->may_have_hanging_points()) ... // extraction needs the whole grid, closed
+///
+/// Memory    some hundred bytes for each such face
+/// Threads   add() is safe from many threads
+class ISOTET_API CellsAround {
+public:
+    /// `active`   all points, and the cells that were kept
+    /// `field`    one scalar a point
+    ///
+    /// Cost     two passes over these cells, 9 to 17 bytes each; where surfaces end, up to a pass over the points
+    /// Errors   invalid_argument when the field does not fit; else as close_hanging_points() (linear_cells.hpp)
+    static Result<CellsAround> of(const Grid& active, const PointField& field, std::span<const double> isovalues,
+                                  const Run& run = {});
+
+    /// False where surfaces end nowhere, or at few planes that no point is beyond: those of boxes, turned ones too.
+    bool are_needed() const;
+
+    /// Whole linear cells, of VTK's types, and their corners one after another. All calls together have each cell, in any
+    /// order; those with points that the grid does not have are passed over.
+    void add(std::span<const std::uint8_t> types, const Array& corners);
+
+    /// When all were added. True where a cut face lies on a larger one that no further cell has, so also where smaller
+    /// faces do not cover the larger one.
+    /// Errors   out_of_memory; cancelled
+    Result<bool> may_have_hanging_points(const Run& run = {});
+
+    CellsAround(CellsAround&&) noexcept;
+    CellsAround& operator=(CellsAround&&) noexcept;
+    ~CellsAround();
+
+private:
+    struct Data;
+    explicit CellsAround(std::unique_ptr<Data> data);
     std::unique_ptr<Data> data_;
 };
 

@@ -596,7 +596,8 @@ Result<SurveyedGrid> GridSource::read_surveyed(const FieldsToRead& fields, std::
 
 Result<ReadResult> GridSource::read_active(const FieldsToRead& fields, std::size_t step, const ReadActiveCells& active,
                                            Caller& caller) const {
-    if (made_ || surface_ || options_.merge_points || !options_.cells.empty() || names_blocks(fields) ||
+    const bool interpolates = options_.hanging_points == HangingChoice::interpolate; // values of cells that are not cut
+    if (made_ || surface_ || options_.merge_points || !options_.cells.empty() || names_blocks(fields) || interpolates ||
         (kept_ && kept_->is_there())) {
         Result<Grid> grid = read(fields, step, caller);
         if (!grid) return grid.error();
@@ -608,24 +609,6 @@ Result<ReadResult> GridSource::read_active(const FieldsToRead& fields, std::size
     options.active_cells = active;
     Result<ReadResult> result = read_file(fields, step, std::move(options), caller.run());
     if (!result) return result;
-    const bool closes =
-        options_.hanging_points == HangingChoice::close || options_.hanging_points == HangingChoice::interpolate;
-    if (result->cells_in_file && closes) {
-        const Grid& cut = result->grid;
-        const auto field = active.shape ? slice_field(cut.points, *active.shape, caller.run())
-                                        : find_field(cut, active.field, {}, caller.run());
-        if (!field) return field.error();
-        const Result<bool> hanging = may_have_hanging_points(cut, *field, active.isovalues, caller.run());
-        if (!hanging) return hanging.error();
-        if (*hanging) {
-            caller.detail("cells may have hanging points: all are read");
-            Result<Grid> grid = read(fields, step, caller);
-            if (!grid) return grid.error();
-            ReadResult whole;
-            whole.grid = *std::move(grid);
-            return whole;
-        }
-    }
     caller.notes(result->notes);
     if (result->cells_in_file) return result;
     caller.note(coincident_points_note(result->grid));

@@ -5,12 +5,15 @@
 
 namespace isotet::io {
 
+Result<PointField> active_field(const Grid& grid, const ReadActiveCells& active) {
+    return active.shape ? slice_field(grid.points, *active.shape) : find_field(grid, active.field);
+}
+
 std::optional<ActiveCellFilter> active_filter(const Grid& grid, std::optional<CellType> type,
                                               const ReadOptions& options) {
     if (!options.active_cells || !grid.cell_fields.empty() || !options.displace.empty()) return std::nullopt;
     if (may_have_coincident_points(grid.points)) return std::nullopt;
-    const auto& shape = options.active_cells->shape;
-    const auto field = shape ? slice_field(grid.points, *shape) : find_field(grid, options.active_cells->field);
+    const auto field = active_field(grid, *options.active_cells);
     if (!field) return std::nullopt;
     DirectOptions direct = options.active_cells->options;
     direct.extract.point_fields = grid.point_fields;

@@ -9,6 +9,9 @@
 
 namespace isotet::io {
 
+/// The field of which cells are active.
+Result<PointField> active_field(const Grid& grid, const ReadActiveCells& active);
+
 /// The filter for ReadOptions::active_cells; nothing where all cells must be read: the field is one of cells, or not
 /// there, there are cell fields, or points coincide, of which more can only be said with all cells.
 ///

@@ -66,7 +66,7 @@ private:
 class ActivePass {
 public:
     struct Target {
-        ActiveCellFilter* filter = nullptr; ///< null: uses are looked for, and nothing else
+        ActiveCellFilter* filter = nullptr; ///< null, without `around`: uses are looked for, and nothing else
         bool typed = false;                 ///< the filter takes cells with their types
         std::uint64_t first = 0;            ///< number of the piece's first cell in the joined grid
         std::uint32_t piece = 0;
@@ -75,6 +75,7 @@ public:
         std::uint64_t points = 0;       ///< of the piece
         SharedCells* shared = nullptr;  ///< has those instead of the filter that `repeated` marks
         std::span<const std::uint8_t> repeated{};
+        CellsAround* around = nullptr; ///< has all cells instead of the filter
     };
 
     static constexpr std::uint64_t max_points = std::uint64_t{1} << 30; ///< of the joined grid
@@ -103,6 +104,7 @@ private:
     template <class Index>
     void mark(std::uint64_t cell, std::span<const Index> corners);
     void see(std::span<const std::uint64_t> points);
+    bool has_taker() const { return target_.filter || target_.around; }
     bool is_left_out(std::uint64_t cell) const { return !piece_.left_out.empty() && piece_.left_out[cell] != 0; }
     void send(std::uint64_t first_cell, std::span<const std::uint8_t> types,
               std::span<const std::int32_t> corners) const;
@@ -112,7 +114,7 @@ private:
     Target target_;
     const CellPlaces& places_;
     std::uint64_t points_;
-    core::Buffer<std::uint32_t> numbers_;        ///< in the joined grid, and two bits; with a filter
+    core::Buffer<std::uint32_t> numbers_;        ///< in the joined grid, and two bits; with one who takes cells
     core::Buffer<std::uint8_t> kept_, left_out_; ///< 1 for a point of such a cell; without
     std::atomic<bool> broken_{false};
     WholeCells whole_;

@@ -125,20 +125,48 @@ private:
         if (!done) return done.error();
         whole.finish();
         result.cells_in_file = places.cells();
-        return with_cells(*filter, std::move(result));
+        return with_cells(*filter, std::move(result), [&](CellsAround& around) -> Result<void> {
+            WholeCells cells(places, [&](std::uint64_t first, std::uint64_t count, const Array& corners) {
+                const std::vector<std::uint8_t> alike(type_ ? count : 0, places.type(first));
+                around.add(type_ ? std::span(alike) : places.types(first, count), corners);
+            });
+            const auto add = [&](std::uint64_t first, const Array& corners) { cells.add(first, corners); };
+            if (auto passed = piece.unread->each_block(add); !passed) return passed;
+            cells.finish();
+            return {};
+        });
     }
 
-    /// Nothing where cells are broken: that is told when all are there.
-    Result<std::optional<ReadResult>> with_cells(ActiveCellFilter& filter, ReadResult result) const {
+    /// Nothing where cells are broken, which is told when all are there, or may have hanging points.
+    /// `pass_again`   hands all cells to a CellsAround
+    template <class PassAgain>
+    Result<std::optional<ReadResult>> with_cells(ActiveCellFilter& filter, ReadResult result,
+                                                 const PassAgain& pass_again) const {
         auto cells = filter.finish();
         if (!cells && cells.error().code != ErrorCode::invalid_data) return cells.error();
         if (!cells) return std::optional<ReadResult>();
         result.grid.cells = *std::move(cells);
+        const Result<bool> hang = may_have_hanging_points(result.grid, pass_again);
+        if (!hang && hang.error().code != ErrorCode::invalid_data) return hang.error();
+        if (!hang || *hang) return std::optional<ReadResult>();
         if (!used_.empty()) {
             const Box box = box_of(result.grid.points, used_);
             result.bounds = {box.lower[0], box.lower[1], box.lower[2], box.upper[0], box.upper[1], box.upper[2]};
         }
         return std::optional(std::move(result));
+    }
+
+    template <class PassAgain>
+    Result<bool> may_have_hanging_points(const Grid& active, const PassAgain& pass_again) const {
+        const Run run{core::threads_here(), {nullptr, progress_.cancel}};
+        const ReadActiveCells& asked = *options_.active_cells;
+        const Result<PointField> field = active_field(active, asked);
+        if (!field) return field.error();
+        Result<CellsAround> around = CellsAround::of(active, *field, asked.isovalues, run);
+        if (!around) return around.error();
+        if (!around->are_needed()) return false;
+        if (Result<void> done = pass_again(*around); !done) return done.error();
+        return around->may_have_hanging_points(run);
     }
 
     void mark(std::uint64_t point) {
@@ -221,7 +249,10 @@ private:
         note_repeated(repeated, all_.pieces, result.notes);
         std::ranges::move(of_fields, std::back_inserter(result.notes));
         result.cells_in_file = kept_cells() - repeated.left_out;
-        return with_cells(*filter, std::move(result));
+        return with_cells(*filter, std::move(result), [&](CellsAround& around) {
+            for (ActivePass::Target& target : targets) target = {.points = target.points, .around = &around};
+            return pass_all(joined->numbers, targets, again);
+        });
     }
 
     /// Whether pieces have the same points, so that only their cells could tell which comes first.

@@ -11,13 +11,12 @@
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
 #include "base/parallel.hpp"
-#include "grid/cell_faces.hpp"
 #include "linear/curved/curved_kinds.hpp"
 #include "linear/curved/high_degree.hpp"
 #include "linear/derived.hpp"
+#include "linear/hanging/checked_cells.hpp"
 #include "linear/hanging/corner_cells.hpp"
 #include "linear/hanging/covers.hpp"
-#include "linear/hanging/cut_faces.hpp"
 #include "linear/hanging/hanging_rows.hpp"
 #include "linear/hanging/listed_cells.hpp"
 #include "linear/hanging/open_faces.hpp"
@@ -28,22 +27,6 @@ namespace isotet {
 namespace linear {
 
 namespace {
-
-/// The cells of a checked grid.
-struct CheckedCells {
-    core::CellReader cells;
-    core::FaceReader faces;
-};
-
-Result<CheckedCells> checked_cells(const Grid& grid, const Progress& progress) {
-    const auto cells = core::CellReader::open(grid);
-    if (!cells) return cells.error();
-    if (auto sound = core::check_cells(grid, *cells, progress); !sound) return sound.error();
-    if (auto sound = core::check_faces(grid, *cells, progress); !sound) return sound.error();
-    const auto faces = core::FaceReader::open(grid.cells);
-    if (!faces) return faces.error();
-    return CheckedCells{*cells, *faces};
-}
 
 /// A checked grid, and its faces without a neighbour.
 struct OpenGrid {
@@ -256,20 +239,6 @@ std::vector<std::string> HangingReport::notes() const {
         out.push_back(fmt::format("{} faces lie on smaller ones that do not cover them: the surface may be open there",
                                   open_faces));
     return out;
-}
-
-Result<bool> may_have_hanging_points(const Grid& active, const PointField& field, std::span<const double> isovalues,
-                                     const Run& run) {
-    return core::carry_out("looking for hanging points", run, [&](const Progress& progress) -> Result<bool> {
-        if (field.values.tuples() != active.points.tuples() || field.values.components() != 1)
-            return invalid_argument(fmt::format("the field has {} values of {} components, but the grid has {} points",
-                                                      field.values.tuples(), field.values.components(),
-                                                      active.points.tuples()));
-        const auto all = linear::checked_cells(active, progress);
-        if (!all) return all.error();
-        return linear::has_smaller_cut_faces(all->cells, all->faces, core::PointReader(active.points),
-                                             linear::CutRule(field.values, isovalues), progress);
-    });
 }
 
 Result<ClosedGrid> close_hanging_points(const Grid& grid, const Run& run) {

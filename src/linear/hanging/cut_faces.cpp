@@ -7,57 +7,30 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <utility>
 
 #include "base/buffer.hpp"
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
-#include "linear/hanging/face_shapes.hpp"
 #include "linear/hanging/face_walk.hpp"
-#include "linear/hanging/place_tree.hpp"
 
 namespace isotet::linear {
 
 namespace {
 
-constexpr double near_face = 0.1; // of a face's extent: one that may lie on it
 constexpr std::size_t cells_per_list = 1 << 12;
+constexpr double stored_rounding = 0x1p-22; // of a value: what may be stored as another
 
-/// What holds some points, and curved neighbours beside them.
-class Box {
-public:
-    void add(const Point& at) {
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            lower[axis] = std::min(lower[axis], at[axis]);
-            upper[axis] = std::max(upper[axis], at[axis]);
-        }
-    }
-    void widen() {
-        const double more = beside_face * std::sqrt(core::squared_distance(lower, upper));
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            lower[axis] -= more;
-            upper[axis] += more;
-        }
-    }
-
-    Point lower{most, most, most}, upper{-most, -most, -most};
-
-private:
-    static constexpr double most = std::numeric_limits<double>::max();
-};
+/// What is above an isovalue may be this.
+double least_above(double isovalue, double value) {
+    return isovalue - stored_rounding * std::max(std::abs(isovalue), std::abs(value));
+}
 
 class CutFaceFinder {
 public:
-    CutFaceFinder(const core::CellReader& cells, const core::FaceReader& faces, const core::PointReader& points,
-                  const CutRule& rule, const Progress& progress)
-        : cells_(cells),
-          faces_(faces),
-          points_(points),
-          rule_(rule),
-          progress_(progress),
-          sums_(slots(cells)),
-          cut_(cells.count()) {}
+    CutFaceFinder(const core::CellReader& cells, const core::FaceReader& faces, const CutRule& rule,
+                  const Progress& progress)
+        : cells_(cells), faces_(faces), rule_(rule), progress_(progress), sums_(slots(cells)), cut_(cells.count()) {}
 
     /// Of the sums of hashes.
     static std::size_t slots(const core::CellReader& cells) { return std::bit_ceil(cells.count() + 1); }
@@ -69,34 +42,6 @@ public:
         FaceWalk walk(cells_, faces_);
         for (const FoundFace& face : alone_of(collect())) out.add(face.place, walk.loop(face.place));
         return out;
-    }
-
-    /// All faces of cells near the middles of faces of others.
-    std::vector<OpenFaces::Place> beside(const OpenFaces& cut, const PlaceTree& middles) const {
-        constexpr std::size_t together =
-            32; // cells that follow each other are mostly far from all, and near each other
-        using Part = std::vector<OpenFaces::Place>;
-        return gathered<OpenFaces::Place>([&](FaceWalk& walk, std::size_t first, std::size_t last, Part& part) {
-            std::array<Box, together> boxes;
-            for (std::size_t begin = first; begin < last; begin += together) {
-                const std::size_t count = std::min(together, last - begin);
-                Box around;
-                for (std::size_t i = 0; i < count; ++i) {
-                    boxes[i] = box_of(begin + i);
-                    around.add(boxes[i].lower);
-                    around.add(boxes[i].upper);
-                }
-                if (!has_place_in(middles, around, [](std::uint32_t) { return true; })) continue;
-                for (std::size_t i = 0; i < count; ++i) {
-                    const std::size_t cell = begin + i;
-                    if (!has_place_in(middles, boxes[i], [&](std::uint32_t at) { return cut.place(at).cell != cell; }))
-                        continue;
-                    if (!walk.open(cell)) continue;
-                    for (std::size_t face = 0; face < walk.face_count(); ++face)
-                        part.push_back({cell, static_cast<std::uint32_t>(face)});
-                }
-            }
-        });
     }
 
 private:
@@ -119,22 +64,6 @@ private:
             const OpenFaces::Place place{cell, static_cast<std::uint32_t>(face)};
             if (const auto loop = walk.loop(place); rule_.cuts(loop)) use(place, loop);
         }
-    }
-
-    /// Around a cell and its curved neighbours.
-    Box box_of(std::size_t cell) const {
-        Box box;
-        const std::uint64_t first = cells_.first(cell), end = first + cells_.corners(cell);
-        for (std::uint64_t i = first; i < end; ++i) box.add(points_[cells_.corner(i)]);
-        box.widen();
-        return box;
-    }
-
-    template <class Counts>
-    static bool has_place_in(const PlaceTree& middles, const Box& box, const Counts& counts) {
-        bool found = false;
-        middles.each_in(box.lower, box.upper, [&](std::uint32_t at) { found = found || counts(at); });
-        return found;
     }
 
     /// Cells that follow each other have points near each other: places of sums do so, too.
@@ -187,7 +116,6 @@ private:
 
     const core::CellReader& cells_;
     const core::FaceReader& faces_;
-    const core::PointReader& points_;
     const CutRule& rule_;
     const Progress& progress_;
     static constexpr std::uint8_t listed = 0xff; ///< cells have at most six faces, others list them
@@ -195,32 +123,14 @@ private:
     core::Buffer<std::uint8_t> cut_;             ///< cut_faces_of() each cell; 0 where it has no volume
 };
 
-/// Whether one of the places of `middles` is over a face from number `first` on.
-bool is_some_over(const OpenFaces& faces, std::size_t first, const PlaceTree& middles, const core::CellReader& cells,
-                  const core::PointReader& points) {
-    const FaceShapes shapes(faces, cells, points);
-    std::atomic<bool> found{false};
-    const auto look_at = [&](std::size_t face) {
-        Box box;
-        for (const std::uint64_t point : faces.loop(face)) box.add(points[point]);
-        box.widen();
-        middles.each_in(box.lower, box.upper, [&](std::uint32_t other) {
-            if (shapes.is_over(face, other) && shapes.distance(face, other) <= near_face)
-                found.store(true, std::memory_order_relaxed);
-        });
-    };
-    core::parallel_ranges(faces.size() - first, 1 << 9, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t face = begin; face < end && !found.load(std::memory_order_relaxed); ++face)
-            look_at(first + face);
-    });
-    return found;
-}
-
 } // namespace
 
 CutRule::CutRule(const Array& values, std::span<const double> isovalues)
     : values_(values), isovalues_(isovalues.begin(), isovalues.end()) {
-    if (values.type() == ScalarType::float32) singles_ = values.as<float>().data();
+    if (values.type() == ScalarType::float32) {
+        singles_ = values.as<float>().data();
+        for (double& isovalue : isovalues_) isovalue = static_cast<float>(isovalue);
+    }
     if (values.type() == ScalarType::float64) doubles_ = values.as<double>().data();
     std::ranges::sort(isovalues_);
 }
@@ -230,12 +140,11 @@ bool CutRule::cuts(std::span<const std::uint64_t> loop) const {
     double lowest = most, highest = -most;
     for (const std::uint64_t point : loop) {
         const double value = this->value(point);
-        if (std::isnan(value)) return false;
         lowest = std::min(lowest, value);
         highest = std::max(highest, value);
     }
-    const auto next = std::ranges::lower_bound(isovalues_, lowest);
-    return next != isovalues_.end() && *next <= highest;
+    const auto next = std::ranges::upper_bound(isovalues_, lowest);
+    return next != isovalues_.end() && highest >= least_above(*next, highest);
 }
 
 std::uint32_t CutRule::cut_faces(const core::WholeCell& cell) const {
@@ -243,44 +152,37 @@ std::uint32_t CutRule::cut_faces(const core::WholeCell& cell) const {
     const std::size_t corners = core::corner_count(cell.kind);
     std::array<double, 8> values{};
     double lowest = most, highest = -most;
-    std::uint32_t missing = 0;
     for (std::size_t i = 0; i < corners; ++i) {
         values[i] = value(cell.corners[i]);
-        if (std::isnan(values[i])) missing |= 1U << i;
         lowest = std::min(lowest, values[i]);
         highest = std::max(highest, values[i]);
     }
     const auto faces = core::shape_of(cell.kind).faces();
     std::uint32_t cut = 0;
-    for (auto at = std::ranges::lower_bound(isovalues_, lowest); at != isovalues_.end() && *at <= highest; ++at) {
-        std::uint32_t below = 0, above = 0; // those on the isovalue are both
+    const auto end = isovalues_.end();
+    for (auto at = std::ranges::upper_bound(isovalues_, lowest); at != end && highest >= least_above(*at, highest);
+         ++at) {
+        std::uint32_t below = 0, above = 0; // those that may be rounded onto the isovalue are both
         for (std::size_t i = 0; i < corners; ++i) {
-            below |= static_cast<std::uint32_t>(values[i] <= *at) << i;
-            above |= static_cast<std::uint32_t>(values[i] >= *at) << i;
+            below |= static_cast<std::uint32_t>(values[i] < *at) << i;
+            above |= static_cast<std::uint32_t>(values[i] >= least_above(*at, values[i])) << i;
         }
         for (std::size_t face = 0; face < faces.size(); ++face) {
             const std::uint32_t bits = faces[face].bits();
-            if ((bits & below) != 0 && (bits & above) != 0 && (bits & missing) == 0) cut |= 1U << face;
+            if ((bits & below) != 0 && (bits & above) != 0) cut |= 1U << face;
         }
     }
     return cut;
 }
 
-Result<bool> has_smaller_cut_faces(const core::CellReader& cells, const core::FaceReader& faces,
-                                   const core::PointReader& points, const CutRule& rule, const Progress& progress) {
+Result<OpenFaces> find_lone_cut_faces(const core::CellReader& cells, const core::FaceReader& faces, const CutRule& rule,
+                                      const Progress& progress) {
     if (auto fits = core::require_memory("looking for hanging points", 8 * CutFaceFinder::slots(cells) + cells.count());
         !fits)
         return fits.error();
-    CutFaceFinder finder(cells, faces, points, rule, progress);
-    OpenFaces all = finder.alone();
-    const std::size_t cut = all.size();
-    std::vector<Point> middles(cut);
-    for (std::size_t i = 0; i < cut; ++i) middles[i] = middle_of(all.loop(i), points);
-    const PlaceTree tree(std::move(middles));
-    FaceWalk walk(cells, faces);
-    for (const OpenFaces::Place& place : finder.beside(all, tree)) all.add(place, walk.loop(place));
+    OpenFaces found = CutFaceFinder(cells, faces, rule, progress).alone();
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "looking for hanging points was cancelled"};
-    return is_some_over(all, cut, tree, cells, points);
+    return found;
 }
 
 } // namespace isotet::linear

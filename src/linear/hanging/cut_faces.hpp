@@ -2,7 +2,9 @@
 // Where surfaces end among cells of which only those that isovalues cut are there: at the boundary, and at hanging points.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -12,39 +14,41 @@
 
 #include "grid/cell_faces.hpp"
 #include "grid/cells.hpp"
-#include "grid/orientation.hpp"
+#include "linear/hanging/open_faces.hpp"
 
 namespace isotet::linear {
 
-/// Which faces isovalues cut or touch.
+/// Which faces isovalues cut: points on both sides, as extraction tells them (a value on the isovalue is above, none is
+/// below), and values that may be rounded onto an isovalue on both.
 class CutRule {
 public:
     /// `values`   one scalar a point; borrowed
     CutRule(const Array& values, std::span<const double> isovalues);
 
-    /// False where a value is no number.
     bool cuts(std::span<const std::uint64_t> loop) const;
 
     /// A bit for each face of a cell that is cut.
     std::uint32_t cut_faces(const core::WholeCell& cell) const;
 
 private:
+    /// No value is below all isovalues.
     double value(std::uint64_t point) const {
-        if (singles_) return singles_[point];
-        return doubles_ ? doubles_[point] : values_.at(point);
+        const double value = singles_ ? singles_[point] : doubles_ ? doubles_[point] : values_.at(point);
+        return std::isnan(value) ? -std::numeric_limits<double>::infinity() : value;
     }
 
     const Array& values_;
     const float* singles_ = nullptr;  ///< values_, where it is of this type
     const double* doubles_ = nullptr; ///< the same
-    std::vector<double> isovalues_;   ///< ascending
+    std::vector<double> isovalues_;   ///< ascending, as the field's type has them
 };
 
-/// Whether a face that is cut, and that no other cell has, lies on a larger face of another cell.
+/// Faces that are cut, and that one cell has. Of a grid of which only the cells that are cut are there, these are at the
+/// boundary or on larger or smaller faces.
 ///
-/// Cost     two passes over the cells, 9 to 17 bytes each, and their boxes in a tree of the cut faces that one cell has
+/// Cost     two passes over the cells, 9 to 17 bytes each
 /// Errors   out_of_memory; cancelled
-Result<bool> has_smaller_cut_faces(const core::CellReader& cells, const core::FaceReader& faces,
-                                   const core::PointReader& points, const CutRule& rule, const Progress& progress);
+Result<OpenFaces> find_lone_cut_faces(const core::CellReader& cells, const core::FaceReader& faces, const CutRule& rule,
+                                      const Progress& progress);
 
 } // namespace isotet::linear
