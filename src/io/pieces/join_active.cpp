@@ -164,8 +164,8 @@ private:
         if (!field) return field.error();
         Result<CellsAround> around = CellsAround::of(active, *field, asked.isovalues, run);
         if (!around) return around.error();
-        if (!around->are_needed()) return false;
-        if (Result<void> done = pass_again(*around); !done) return done.error();
+        if (around->are_needed())
+            if (Result<void> done = pass_again(*around); !done) return done.error();
         return around->may_have_hanging_points(run);
     }
 

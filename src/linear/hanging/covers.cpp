@@ -178,8 +178,9 @@ public:
         for (const Cover::Part& part : cover.by)
             if (part.distance <= farthest && !used[part.face]) some_.push_back(part);
         if (!find_outline(cover)) return;
-        cover.is_whole = are_near(cover);
-        if (cover.is_whole) cover.by.assign(some_.begin(), some_.end());
+        if (!are_near(cover)) return cover.between.clear();
+        cover.is_whole = true;
+        cover.by.assign(some_.begin(), some_.end());
     }
 
 private:

@@ -23,6 +23,7 @@ constexpr double stored_rounding = 0x1p-22; // of a value: what may be stored as
 
 /// What is above an isovalue may be this.
 double least_above(double isovalue, double value) {
+    if (std::isinf(value)) return isovalue; // there is no data
     return isovalue - stored_rounding * std::max(std::abs(isovalue), std::abs(value));
 }
 
