@@ -106,7 +106,7 @@ struct ReadOptions {
     std::uint64_t memory_limit = 0;          ///< bytes of address space of a reader process; 0: by free memory
     std::chrono::seconds time_limit{3600};
     std::vector<std::string> blocks; ///< names or numbers of FileInfo::blocks to read; empty: all, of CGNS those of the
-                                     ///< first base. A name also stands for the blocks in it ("Base" for "Base/Zone")
+                                     ///< first base. A name is any whole parts of a path: "x" and "g/x" are "g/x/m"
     std::vector<std::string> more_files; ///< of the steps behind that of the path; times are then numbers of the files
     bool patches = false; ///< Grid::patches: of Gmsh, MED, OpenFOAM, Exodus and CGNS
     std::optional<ReadActiveCells> active_cells = {}; ///< where that can be done while reading (VTU, PVTU, VTM, PVD,
@@ -122,8 +122,9 @@ struct ReadResult {
     FileInfo info;
     std::size_t step = 0;                            ///< the step that was read
     std::optional<std::uint64_t> cells_in_file = {}; ///< where only active cells or some were read
-    std::optional<std::array<double, 6>> bounds = {}; ///< then, if they were asked for, and not of legacy VTK: least x,
-                                                      ///< y and z of the points that any cell has, then the greatest
+    std::optional<std::array<double, 6>> bounds =
+        {};                         ///< then, if they were asked for: least x, y and z of the points that any
+                                    ///< cell has, then the greatest
     std::vector<std::string> notes; ///< sentences for the user: ghost cells left out, blocks joined and so on
     Array cell_numbers =
         {}; ///< uint64, where cells have other numbers than in the file that has them: of a piece, of which

@@ -109,7 +109,6 @@ Result<std::optional<ReadResult>> join_loaded(Loaded loaded, const ReadOptions& 
     if (pieces.size() == 1 && pieces[0].left_out.empty()) {
         if (const auto sound = check_shape(pieces[0]); !sound) return sound.error();
         result.grid = std::move(pieces[0].grid);
-        result.cells_in_file = pieces[0].cells_in_file;
         return std::optional(std::move(result));
     }
 

@@ -26,7 +26,6 @@ struct Piece {
     Array point_ids;                                 ///< empty, or a global number for each point
     Array cell_ids;                                  ///< empty, or a global number for each cell
     std::vector<std::uint8_t> left_out;              ///< empty, or nonzero for each ghost or blanked cell
-    std::optional<std::uint64_t> cells_in_file = {}; ///< where the grid has only active cells
     /// Of a structured grid: first and last point along each axis, as the file numbers them.
     std::optional<std::array<std::int64_t, 6>> extent = {};
     std::string flat = {}; ///< of a structured grid without cells that have a volume: "a plane of 3 x 4 points"

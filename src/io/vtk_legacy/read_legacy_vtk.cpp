@@ -16,7 +16,6 @@
 #include "grid/cells.hpp"
 #include "io/files/escape.hpp"
 #include "io/files/text_scanner.hpp"
-#include "io/pieces/active_filter.hpp"
 #include "io/pieces/join.hpp"
 #include "io/pieces/survey_unread.hpp"
 #include "io/pieces/uniform_cells.hpp"
@@ -117,25 +116,6 @@ Result<void> take_structured(const LegacyFile& file, Piece& piece, std::vector<s
     return {};
 }
 
-/// Only the active cells, of corners that are still in the file; nothing where all are needed.
-Result<std::optional<Cells>> active_cells(LegacyValues& values, const LegacyFile& file, const Grid& grid,
-                                          const ReadOptions& options) {
-    std::optional<Cells> cells;
-    if (!says_nothing(file) || file.cell_type_count != file.cells.count || !file.cell_data.empty()) return cells;
-    auto filter = active_filter(grid, static_cast<CellType>(*file.one_type), options);
-    if (!filter) return cells;
-    const auto all = each_of_corners(values, *file.cells.in_file, [&](std::uint64_t first, const Array& corners) {
-        filter->add(first, corners);
-        return true;
-    });
-    if (!all) return all.error();
-    if (!*all) return cells;
-    auto kept = filter->finish();
-    if (kept) cells = *std::move(kept);
-    else if (kept.error().code != ErrorCode::invalid_data) return kept.error();
-    return cells; // what is broken is told when all cells are there
-}
-
 /// Cells of one type whose corners were left in the file.
 class LegacyCellSource final : public CellSource {
 public:
@@ -189,8 +169,8 @@ private:
 /// `piece`   has points and point fields
 Result<void> take_cells(const ByteSource& source, const std::string& path, LegacyFile& file, const ReadOptions& options,
                         const Progress& progress, Piece& piece) {
-    if (file.cells.in_file && are_counted(options) && !path.empty() && says_nothing(file) &&
-        file.cell_type_count == file.cells.count) {
+    if (file.cells.in_file && !path.empty() && says_nothing(file) && file.cell_type_count == file.cells.count &&
+        (are_counted(options) || file.cell_data.empty())) {
         LegacyFile cells;
         cells.cells = file.cells;
         cells.cell_type_count = file.cell_type_count;
@@ -201,13 +181,6 @@ Result<void> take_cells(const ByteSource& source, const std::string& path, Legac
     if (file.cells.in_file) {
         LegacyValues values(source, progress);
         values.set_binary(true);
-        auto active = active_cells(values, file, piece.grid, options);
-        if (!active) return active.error();
-        if (*active) {
-            piece.grid.cells = **std::move(active);
-            piece.cells_in_file = file.cells.count;
-            return {};
-        }
         if (auto read = read_corners(values, file.cells); !read) return read;
     }
     auto cells = cells_of(file);
