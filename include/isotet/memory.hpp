@@ -16,6 +16,8 @@ namespace isotet {
 /// Returns memory that isotet keeps for its next call to the system: large arrays that were given back, at most 1/64 of
 /// the machine's memory. Worth a call before the program does something else for long.
 ///
+/// Threads that wait for the next call are given back to oneTBB, too, so that tbb::finalize() may succeed.
+///
 /// Returns      how many bytes that were; 0 also when there was no memory for that
 /// Guarantees   nothing that an object of yours holds is touched
 /// Threads      safe from many threads, also while operations run

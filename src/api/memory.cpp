@@ -2,9 +2,13 @@
 #include <isotet/memory.hpp>
 
 #include "base/block.hpp"
+#include "base/parallel.hpp"
 
 namespace isotet {
 
-std::size_t release_memory() noexcept { return core::drop_kept_blocks(); }
+std::size_t release_memory() noexcept {
+    core::drop_idle_arenas();
+    return core::drop_kept_blocks();
+}
 
 } // namespace isotet

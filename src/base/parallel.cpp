@@ -1,7 +1,13 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "base/parallel.hpp"
 
+#ifndef __wasm__
+#include <pthread.h>
+#endif
+
 #include <algorithm>
+#include <atomic>
+#include <cfenv>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -87,20 +93,51 @@ public:
     IdleArenas() { idle_.reserve(most); }
 
     Arena take(int threads) {
-        const std::lock_guard lock(mutex_);
-        const auto at = std::ranges::find(idle_, threads, &Arena::threads);
-        if (at == idle_.end()) return {threads, std::make_unique<tbb::task_arena>(threads)};
-        Arena arena = std::move(*at);
-        idle_.erase(at);
-        return arena;
+        std::unique_lock lock(mutex_);
+        if (const auto at = std::ranges::find(idle_, threads, &Arena::threads); at != idle_.end()) {
+            Arena arena = std::move(*at);
+            idle_.erase(at);
+            return arena;
+        }
+        lock.unlock();
+        return {threads, made(threads)};
     }
     void give_back(Arena arena) noexcept {
         const std::lock_guard lock(mutex_);
-        if (idle_.size() < most) idle_.push_back(std::move(arena));
+        if (idle_.size() == most) idle_.erase(idle_.begin());
+        idle_.push_back(std::move(arena));
     }
+    void drop() noexcept {
+        const std::lock_guard lock(mutex_);
+        idle_.clear();
+    }
+
+    static IdleArenas& all() { return *kept().load(); }
 
 private:
     static constexpr std::size_t most = 64;
+
+    /// Work in an arena has the rounding and the treatment of denormals that there were when it was made.
+    static std::unique_ptr<tbb::task_arena> made(int threads) {
+        auto arena = std::make_unique<tbb::task_arena>(threads);
+        std::fenv_t of_caller;
+        std::fegetenv(&of_caller);
+        std::fesetenv(FE_DFL_ENV);
+        arena->initialize();
+        std::fesetenv(&of_caller);
+        return arena;
+    }
+
+    /// Not destroyed: oneTBB may be gone by then. A forked process has none of the threads, and begins anew.
+    static std::atomic<IdleArenas*>& kept() {
+        static std::atomic<IdleArenas*> arenas = [] {
+#ifndef __wasm__
+            ::pthread_atfork(nullptr, nullptr, [] { kept().store(new IdleArenas); });
+#endif
+            return new IdleArenas;
+        }();
+        return arenas;
+    }
 
     std::mutex mutex_;
     std::vector<Arena> idle_;
@@ -109,19 +146,14 @@ private:
 /// An arena of one call.
 class CallArena {
 public:
-    explicit CallArena(int threads) : arena_(all().take(threads)) {}
-    ~CallArena() { all().give_back(std::move(arena_)); }
+    explicit CallArena(int threads) : arena_(IdleArenas::all().take(threads)) {}
+    ~CallArena() { IdleArenas::all().give_back(std::move(arena_)); }
     CallArena(const CallArena&) = delete;
     CallArena& operator=(const CallArena&) = delete;
 
     void execute(const std::function<void()>& work) { arena_.arena->execute(work); }
 
 private:
-    static IdleArenas& all() {
-        static IdleArenas& kept = *new IdleArenas; // not destroyed: oneTBB may be gone by then
-        return kept;
-    }
-
     IdleArenas::Arena arena_;
 };
 
@@ -133,6 +165,8 @@ void with_threads(int threads, const std::function<void()>& work) {
     const AllowThreads allowed(count);
     CallArena(count).execute(work);
 }
+
+void drop_idle_arenas() noexcept { IdleArenas::all().drop(); }
 
 int threads_here() { return tbb::this_task_arena::max_concurrency(); }
 

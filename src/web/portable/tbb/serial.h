@@ -86,6 +86,7 @@ inline int max_concurrency() { return 1; }
 class task_arena {
 public:
     explicit task_arena(int) {}
+    void initialize() {}
     template <class Work>
     void execute(const Work& work) {
         work();
