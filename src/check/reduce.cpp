@@ -70,6 +70,7 @@ struct Simplified {
 Simplified simplify(const Piece& piece, std::size_t wanted, double limit) {
     constexpr std::size_t stride = 3 * sizeof(float);
     constexpr std::size_t least = 4; // of a piece: closed ones of fewer enclose nothing
+    if (piece.indices.size() <= 3 * std::max(wanted, least)) return {piece.indices, 0};
     const auto scale =
         static_cast<double>(meshopt_simplifyScale(piece.positions.data(), piece.vertices.size(), stride));
     Simplified out;

@@ -50,6 +50,23 @@ TEST(Reduce, KeepsSolidsClosedAndTheirVolume) {
 }
 
 /// Where flat faces could lose more than that without an error.
+TEST(Reduce, LeavesSurfacesOfFewTrianglesAsTheyAre) {
+    for (std::uint32_t count = 1; count <= 4; ++count) {
+        Surface surface;
+        std::vector<float> positions;
+        std::vector<std::uint32_t> triangles;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            for (const float x : {0.F, 1.F, 0.F})
+                positions.insert(positions.end(), {x, static_cast<float>(i), x * x - x + 1});
+            positions[positions.size() - 1] += 1;
+            for (std::uint32_t k = 0; k < 3; ++k) triangles.push_back(3 * i + k);
+        }
+        surface.positions = Array::own(std::move(positions), 3);
+        surface.triangles = Array::own(std::move(triangles), 3);
+        EXPECT_EQ(reduce(surface, {.share = 0.9}).value().surface.triangle_count(), count);
+    }
+}
+
 TEST(Reduce, LeavesOutNoMoreThanTheShare) {
     ContourInput input;
     input.grid = made_grid("kuhn", 12, {"sphere"});
