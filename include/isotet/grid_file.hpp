@@ -53,14 +53,15 @@ public:
     /// kept, where nothing needs the others. The notes begin with those of reading.
     ///
     /// `field`      as find_field() takes it
-    /// Guarantees   the bytes of a session on the grid that read() gives, closed at hanging points
+    /// Guarantees   the bytes of a session on the grid that read() gives, closed at hanging points; of a packed file those of
+    ///              extract() from it, where it has all that is asked for
     /// Cost         one surface of a raw VTU: reading it, and memory for points, the field and the surface
     /// Errors       as read(), find_field() and Contour::extract()
     Result<ContourResult> contour(const std::string& field, std::span<const double> isovalues,
                                   const FileContourOptions& options = {}, const Run& run = {}) const;
 
-    /// A session of one step, for isovalues that follow one another. With ContourOptions::expected_isovalues it may begin with
-    /// the cells that these meet, and reads the others when something needs them.
+    /// A session of one step, for isovalues that follow one another. With ContourOptions::surfaces and expected_isovalues it may
+    /// begin with the cells that these meet, and reads the others when something needs them.
     ///
     /// Errors   as read(), find_field() and Contour::create()
     Result<FileSession> session(const std::string& field, const FileContourOptions& options = {},

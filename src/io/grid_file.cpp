@@ -17,8 +17,7 @@ struct GridFile::Data {
 
     Result<FieldArrays> arrays_of(const std::vector<std::string>& names, std::size_t step, const Run& run) const;
     ReadOptions options_for(std::size_t step, const std::optional<FieldArrays>& fields) const;
-    Result<ReadResult> read_all(const ReadOptions& wanted, bool close_too, const Run& run) const;
-    Result<ReadResult> read_enough(const ReadOptions& wanted, bool close_too, const Run& run) const;
+    Result<ReadResult> read_closed(const ReadOptions& wanted, bool close_too, const Run& run) const;
 };
 
 namespace {
@@ -63,6 +62,7 @@ Result<ContourInput> input_of(const Grid& grid, const std::string& field, const 
     if (!found->note.empty()) notes.push_back(found->note);
     ContourInput input{grid, *std::move(found), {}, {}};
     if (auto carried = carry(options.with, grid, input, run); !carried) return carried.error();
+    input.grid.point_fields = input.grid.cell_fields = {};
     return input;
 }
 
@@ -96,7 +96,9 @@ Result<std::optional<Contour>> session_of_packed(const std::string& path, const 
         if (!carried) return carried.error();
         input.packed_fields.push_back(*std::move(carried));
     }
-    Result<Contour> contour = Contour::create(std::move(input), options.contour, run);
+    ContourOptions as_packed = options.contour;
+    if (as_packed.precision == Precision::float32) as_packed.precision = file->info().precision;
+    Result<Contour> contour = Contour::create(std::move(input), as_packed, run);
     if (contour) return std::optional(*std::move(contour));
     if (contour.error().code != ErrorCode::invalid_argument) return contour.error();
     return std::optional<Contour>{};
@@ -173,36 +175,18 @@ Result<ReadResult> GridFile::read(std::size_t step, const std::optional<std::vec
     return isotet::read(data_->path, data_->options_for(step, arrays), run);
 }
 
-/// What `wanted` says, closed; only its active cells where the file lets that be, and no point may hang.
-Result<ReadResult> GridFile::Data::read_enough(const ReadOptions& wanted, bool close_too, const Run& run) const {
-    if (!wanted.active_cells) return read_all(wanted, close_too, run);
+/// What `wanted` says, closed. Where its active cells alone are read, no point hangs on them.
+Result<ReadResult> GridFile::Data::read_closed(const ReadOptions& wanted, bool close_too, const Run& run) const {
     Result<ReadResult> result = isotet::read(path, wanted, run);
-    if (!result || !close_too) return result;
-    if (result->cells_in_file) {
-        const auto field = find_field(result->grid, wanted.active_cells->field, {}, run);
-        if (!field) return field.error();
-        const Result<bool> hanging = may_have_hanging_points(result->grid, *field, wanted.active_cells->isovalues, run);
-        if (!hanging) return hanging.error();
-        if (!*hanging) return result;
-        *result = {};
-        ReadOptions all = wanted;
-        all.active_cells.reset();
-        return read_all(all, close_too, run);
-    }
-    if (auto closed = close(result->grid, result->notes, run); !closed) return closed.error();
-    return result;
-}
-
-Result<ReadResult> GridFile::Data::read_all(const ReadOptions& wanted, bool close_too, const Run& run) const {
-    Result<ReadResult> result = isotet::read(path, wanted, run);
-    if (!result || !close_too) return result;
+    if (!result || !close_too || result->cells_in_file) return result;
     if (auto closed = close(result->grid, result->notes, run); !closed) return closed.error();
     return result;
 }
 
 Result<FileSession> GridFile::session(const std::string& field, const FileContourOptions& options,
                                       const Run& run) const {
-    if (data_->info.format == "isotet") {
+    const ReadOptions& opened = data_->options;
+    if (data_->info.format == "isotet" && opened.displace.empty() && opened.blocks.empty() && !opened.patches) {
         Result<std::optional<Contour>> packed = session_of_packed(data_->path, field, options, run);
         if (!packed) return packed.error();
         if (*packed) return FileSession{**std::move(packed), {}};
@@ -213,14 +197,14 @@ Result<FileSession> GridFile::session(const std::string& field, const FileContou
     if (!arrays) return arrays.error();
     ReadOptions wanted = data_->options_for(options.step, *arrays);
     wanted.active_cells = active_cells(*arrays, field, options.contour);
-    Result<ReadResult> read = data_->read_enough(wanted, options.close_hanging_points, run);
+    Result<ReadResult> read = data_->read_closed(wanted, options.close_hanging_points, run);
     if (!read) return read.error();
     Result<ContourInput> input = input_of(read->grid, field, options, read->notes, run);
     if (!input) return input.error();
     if (read->cells_in_file) {
         wanted.active_cells.reset();
         input->all_cells = [data = data_, wanted, field, options](const Run& later) -> Result<ContourInput> {
-            Result<ReadResult> all = data->read_all(wanted, options.close_hanging_points, later);
+            Result<ReadResult> all = data->read_closed(wanted, options.close_hanging_points, later);
             if (!all) return all.error();
             return input_of(all->grid, field, options, all->notes, later);
         };
