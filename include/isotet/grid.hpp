@@ -43,7 +43,7 @@ struct StridedScalars {
 ///
 /// `columns`   one a component, of one type
 /// Cost        a copy, by all threads
-/// Errors      invalid_argument: no columns, of several types, null; out_of_memory; cancelled
+/// Errors      invalid_argument: no columns, of several types, null; out_of_memory
 ISOTET_API Result<Array> interleave(std::span<const StridedScalars> columns, std::size_t rows, const Run& run = {});
 
 /// The cells of a grid: corners of all cells one after another, and where each cell's corners start.

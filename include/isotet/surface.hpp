@@ -81,7 +81,7 @@ ISOTET_API Result<Array> face_normals(const Surface& surface, const Run& run = {
 ///
 /// `out`      of the caller, 3 a vertex; written once, never read: mapped memory of a device
 /// Cost       a pass over the positions
-/// Errors     invalid_argument: `out` has another size, the origin is not finite; cancelled
+/// Errors     invalid_argument: `out` has another size, the origin is not finite; invalid_data: positions are no floats
 ISOTET_API Result<void> write_positions(const Surface& surface, const std::array<double, 3>& origin,
                                         std::span<float> out, const Run& run = {});
 

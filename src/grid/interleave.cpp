@@ -1,5 +1,8 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <cstring>
+#include <limits>
+#include <memory>
+#include <new>
 
 #include <fmt/core.h>
 
@@ -19,6 +22,7 @@ constexpr std::size_t row_grain = 1 << 15;
 /// `Word` has the size of a scalar. Scalars may lie at odd places.
 template <class Word>
 core::Buffer<Word> gathered(std::span<const StridedScalars> columns, std::size_t rows) {
+    if (rows > std::numeric_limits<std::size_t>::max() / columns.size()) throw std::bad_array_new_length();
     core::Buffer<Word> words(rows * columns.size());
     core::parallel_ranges(rows, row_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t column = 0; column < columns.size(); ++column) {
