@@ -214,7 +214,8 @@ Result<void> ClipRun::run() {
         if (auto clipped = clip_step(step); !clipped) return clipped;
     }
     if (skipped_.size() + numbers_.broken_steps.size() == plan_.steps.size())
-        return source_->no_such_field(plan_.field.name);
+        return numbers_.broken_steps.empty() ? source_->no_such_field(plan_.field.name)
+                                             : numbers_.broken_steps.front().error;
     if (!skipped_.empty()) caller_.note(skipped_note(plan_.field.name, skipped_, plan_.steps.size()));
     if (plan_.collection.empty()) return {};
     numbers_.collection = plan_.collection;

@@ -814,8 +814,8 @@ Result<void> ExtractRun::run_step(std::size_t step) {
     for (between_ = 0; between_ <= last; ++between_) {
         if (caller_.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
         const Result<bool> loaded = packed_ ? load_packed(step) : load(step);
+        if (!loaded && between_ > 0) break; // the next step tells of itself
         if (!loaded) {
-            between_ = 0;
             return keep_broken(step, loaded.error(), plan_.steps.size(), numbers_.broken_steps);
         }
         if (!*loaded) {
@@ -833,7 +833,8 @@ Result<void> ExtractRun::run() {
     for (const std::size_t step : plan_.steps)
         if (Result<void> done = run_step(step); !done) return done;
     if (skipped_.size() + numbers_.broken_steps.size() == plan_.steps.size())
-        return source_->no_such_field(plan_.field.name);
+        return numbers_.broken_steps.empty() ? source_->no_such_field(plan_.field.name)
+                                             : numbers_.broken_steps.front().error;
     note_what_steps_miss();
     if (!animated_.empty())
         if (auto written = write(join(animated_, {}), numbers_.surfaces.back()); !written) return written;

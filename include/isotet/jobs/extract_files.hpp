@@ -151,7 +151,8 @@ struct ExtractNumbers {
 };
 
 /// Reads the steps one after another, extracts, and writes each file as soon as it is complete. Files that were
-/// complete before an error or a cancelled run stay. A step that cannot be read does not end the others.
+/// complete before an error or a cancelled run stay. A step behind the
+/// first that cannot be read does not end the others; what is read while extracting counts as extracting.
 ///
 /// Memory   one step, and the surfaces that are extracted in one pass or go into one file
 /// Errors   invalid_argument: what is asked for does not fit together or with the file, told before anything large is
