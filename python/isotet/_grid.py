@@ -917,7 +917,7 @@ def pack(points: Any, cells: Any = None, values: npt.ArrayLike | str | None = No
     into linear cells first, as by `contour`.
 
     points, cells, values, offsets, types
-        As for `contour`. Or a `Grid`, and `values` the name of a field or one value a point: ``pack(grid, values="p")``.
+        As for `contour`. Or a `Grid`, and behind it the name of a field or one value a point: ``pack(grid, "p")``.
     gradients
         Keep a gradient at each point, for ``contour(normals="gradient")``: 4 bytes a point.
     source_cells
@@ -934,10 +934,15 @@ def pack(points: Any, cells: Any = None, values: npt.ArrayLike | str | None = No
     >>> packed.contour(0.5).triangles.shape == packed.contour([0.5]).triangles.shape
     True
     """
-    grid = points if isinstance(points, Grid) else Grid(points, cells, offsets=offsets, types=types)
+    if isinstance(points, Grid):
+        if offsets is not None or types is not None or (cells is not None and values is not None):
+            raise TypeError("pack() takes a Grid and values, or points, cells and values: a Grid has its own cells")
+        grid, values = points, cells if values is None else values
+    else:
+        if values is None:
+            raise TypeError("pack() needs values")
+        grid = Grid(points, cells, offsets=offsets, types=types)
     call = call_options(threads, progress)
-    if values is None and grid is not points:
-        raise TypeError("pack() needs values")
     return PackedGrid._of(*_isotet.pack(grid._grid, grid._field(values, call, frame is not None), precision, source_cells,
                                         split_cells, gradients, frame and frame._frame, call))  # fmt: skip
 

@@ -286,15 +286,22 @@ class GridAccessor:
         names = {"YZ": "x", "XZ": "y", "XY": "z"}
         return pyvista.MultiBlock({name: self.slice(axis, point, **tolerances) for name, axis in names.items()})
 
-    def slice_along_axis(self, n: int = 5, axis: str | int = "x", **tolerances) -> pyvista.MultiBlock:
+    def slice_along_axis(self, n: int = 5, axis: str | int = "x", tolerance: float | str | None = None,
+                         **tolerances) -> pyvista.MultiBlock:  # fmt: skip
         """`n` slices evenly along an axis, "x" or 0 and so on, from end to end, as of `pyvista.DataSet.slice_along_axis`: blocks
-        "slice0" and on. `tolerances` are those of `slice`."""
+        "slice0" and on. A number as `tolerance` is PyVista's: how far the first and the last are from the ends, else a
+        hundredth of the whole. A text such as "0.1%" and `tolerances` are those of `slice`."""
         if axis not in ("x", "y", "z", 0, 1, 2):
             raise ValueError(f"axis is {axis!r}, but must be 'x', 'y' or 'z', or 0, 1 or 2")
         along = "xyz".index(axis) if isinstance(axis, str) else int(axis)
         bounds, centre = self._grid.bounds, list(self._grid.center)
         ends = np.array(bounds[2 * along : 2 * along + 2], float)
-        ends += np.array([1, -1]) * (ends[1] - ends[0]) * 0.01  # as PyVista's: a cut in the boundary may be empty
+        if tolerance is None or isinstance(tolerance, str):
+            padding = (ends[1] - ends[0]) * 0.01  # a cut in the boundary may be empty
+            tolerances["tolerance"] = tolerance
+        else:
+            padding = tolerance
+        ends += np.array([1, -1]) * padding
         out = pyvista.MultiBlock()
         for i, place in enumerate(np.linspace(*ends, n)):
             centre[along] = place

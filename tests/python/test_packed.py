@@ -102,3 +102,15 @@ def test_what_is_wrong_is_told(saved, tmp_path):
         isotet.open(path)
     with pytest.raises(TypeError):
         isotet.PackedFile()
+
+
+def test_pack_takes_the_field_behind_a_grid():
+    grid = isotet.make("hex", 6, ["sphere", "gyroid"])
+    area = grid.contour(0.5, "gyroid").area
+    assert isotet.pack(grid, "gyroid").contour(0.5).area == pytest.approx(area)
+    assert isotet.pack(grid, grid.fields["gyroid"]).contour(0.5).area == pytest.approx(area)
+    assert isotet.pack(grid, values="gyroid").contour(0.5).area == pytest.approx(area)
+    with pytest.raises(ValueError):
+        isotet.pack(grid, "nope")
+    with pytest.raises(TypeError):
+        isotet.pack(grid, grid.fields["sphere"], "gyroid")

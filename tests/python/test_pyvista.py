@@ -577,6 +577,8 @@ def test_several_slices():
         grid.isotet.slice_along_axis(3, 3)
     assert some.keys() == theirs.keys()
     assert [block.bounds[2] for block in some] == pytest.approx([block.bounds[2] for block in theirs])
+    padded, theirs = (of.slice_along_axis(3, "y", tolerance=0.5) for of in (grid.isotet, grid))
+    assert [block.bounds[2] for block in padded] == pytest.approx([block.bounds[2] for block in theirs])
 
 
 def test_the_accessor_does_not_import_plotting():
