@@ -264,7 +264,8 @@ def kept_type(values: np.ndarray, kind: np.dtype) -> np.ndarray:
 
 
 def _add_array(attributes, name: str, values: np.ndarray, copy: bool):
-    array = numpy_to_vtk(values, deep=copy)
+    # Of int64 NumPy has two types, long and long long, and so has VTK, which appends arrays of one type alone: NumPy's own is long.
+    array = numpy_to_vtk(values.view(values.dtype.str), deep=copy)
     array.SetName(name)
     attributes.AddArray(array)
     return array

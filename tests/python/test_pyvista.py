@@ -517,6 +517,21 @@ def test_lines_and_vertices_beside_triangles_are_left_out(beside):
         assert sum(body.n_cells for body in mesh.isotet.split_bodies()) == largest.n_cells
 
 
+@pytest.mark.parametrize("dtype", ["i4", "i8", "u1", "u8", "f4", "f8"])
+def test_cell_arrays_of_all_types_stay_beside_flat_cells(dtype):
+    whole = cubes(5)
+    flat = pv.Plane(center=(2, 2, 2), i_size=4, j_size=4, i_resolution=4, j_resolution=4).cast_to_unstructured_grid()
+    grid = pv.merge([whole, flat], merge_points=False)
+    grid.clear_data()
+    grid["r"] = np.linalg.norm(grid.points - 2, axis=1)
+    grid["t"] = np.arange(grid.n_points).astype(dtype)
+    grid.cell_data["id"] = np.arange(grid.n_cells).astype(dtype)
+    with pytest.warns(UserWarning, match="leaves to VTK 16 of"):
+        for ours in (grid.isotet.contour([1.3], "r"), grid.isotet.slice("x", (2.1, 2, 2))):
+            assert ours.cell_data["id"].dtype == ours.point_data["t"].dtype == dtype
+            assert len(ours.cell_data["id"]) == ours.n_cells and ours.cell_data["id"].max() > whole.n_cells
+
+
 def test_arrays_of_bools_and_complex_numbers_stay_so():
     grid = cubes()
     grid["wet"], grid["z"] = grid["x"] > 4, grid["x"] + 1j
