@@ -32,6 +32,25 @@ std::array<float, 3> in_float(const Vector& v) {
     return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
 
+/// A place in a transfer table as 1 + its entry; 0 before the first, and one more behind the last.
+std::size_t step_of(float place) {
+    constexpr float last = Transfer::entries + 1;
+    return static_cast<std::size_t>(static_cast<std::int32_t>(std::min(std::max(place + 1, 0.0F), last)));
+}
+
+/// Of each step the first from it on that is not transparent.
+std::vector<std::uint16_t> opaque_steps(const Transfer& transfer) {
+    constexpr std::array<float, 4> nothing{};
+    std::vector<std::uint16_t> out(Transfer::entries + 2, Transfer::entries + 2);
+    for (std::size_t i = Transfer::entries; i > 0; --i) {
+        const Transfer::Row& row = transfer.rows()[i - 1];
+        const bool opaque = row.rise != nothing || row.bend != nothing;
+        out[i] = opaque ? static_cast<std::uint16_t>(i) : out[i + 1];
+    }
+    out[0] = out[1];
+    return out;
+}
+
 std::array<float, 3> direction_to_eye(const Ray& ray) { return in_float(plus({}, ray.along, -1 / ray.stretch)); }
 
 /// A number for each of 4 x 4 pixels.
@@ -144,7 +163,10 @@ std::uint64_t VolumeScene::bytes() const {
 }
 
 VolumeTile::VolumeTile(const VolumeScene& scene, bool follows)
-    : scene_(scene), lists_(follows ? scene.tuning.lists : ListRoom{1, 1}) {}
+    : scene_(scene), lists_(follows ? scene.tuning.lists : ListRoom{1, 1}), opaque_steps_(scene.media.size()) {
+    if (!follows || !scene.tuning.skips) return;
+    for (std::size_t i = 0; i < scene.media.size(); ++i) opaque_steps_[i] = opaque_steps(scene.media[i].transfer());
+}
 
 void VolumeTile::start(std::size_t number, std::uint32_t column, std::uint32_t row) {
     number_ = number;
@@ -428,13 +450,21 @@ void VolumeTile::find_lanes(std::int32_t x, std::int32_t y, Lanes& out) const {
                         static_cast<std::int32_t>(at_y[i] <= bottom);
 }
 
+/// Whether a segment from one place in the transfer table to another adds exactly nothing.
+bool VolumeTile::is_empty(std::uint32_t volume, float from, float to) const {
+    constexpr float more = 0.5F; // than Transfer moves ends apart
+    return opaque_steps_[volume][step_of(std::min(from, to) - more)] > step_of(std::max(from, to) + more);
+}
+
 void VolumeTile::add_segments(const Lanes& lanes, std::uint32_t mask, std::size_t corner, const PlacedVolume& volume,
                               std::uint32_t number, const std::array<TetCorner, 4>& corners) {
     work_.segments += static_cast<std::uint64_t>(std::popcount(mask));
     std::array<float, 3> normal{};
     if (volume.shaded()) normal = gradient_direction(points_, corners);
+    const bool skips = !opaque_steps_[number].empty();
     const bool lit = normal != std::array<float, 3>{}; // a constant field has no side
     const auto add = [&](std::size_t i, std::size_t index) {
+        if (skips && is_empty(number, lanes.from[i], lanes.to[i])) return;
         std::uint16_t light = Segment::full_light;
         if (lit)
             light = static_cast<std::uint16_t>(std::min(light_along(index, normal), 1.0F) * Segment::full_light + 0.5F);

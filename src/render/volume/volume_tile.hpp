@@ -124,6 +124,7 @@ private:
     void add_segments(const Lanes& lanes, std::uint32_t mask, std::size_t corner, const PlacedVolume& volume,
                       std::uint32_t number, const std::array<TetCorner, 4>& corners);
     std::uint32_t before_ends(const Lanes& lanes, std::uint32_t mask, std::size_t corner) const;
+    bool is_empty(std::uint32_t volume, float from, float to) const;
     float light_along(std::size_t index, std::array<float, 3> normal) const;
     void add_hits(const Lanes& lanes, std::uint32_t mask, std::size_t corner, const PlacedVolume& volume,
                   std::uint32_t number, const std::array<TetCorner, 4>& corners);
@@ -146,6 +147,7 @@ private:
     PlacedPoints points_;
     TetPlanes planes_;
     VolumeWork work_;
+    std::vector<std::vector<std::uint16_t>> opaque_steps_; ///< of each medium: opaque_steps(); none: nothing is left out
 };
 
 } // namespace isotet::render
