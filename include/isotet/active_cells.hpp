@@ -101,8 +101,8 @@ public:
     /// order; those with points that the grid does not have are passed over.
     void add(std::span<const std::uint8_t> types, const Array& corners);
 
-    /// When all were added. True where a point that no active cell has lies on a face or an edge of one, and where a cut face lies
-    /// on a larger one that no further cell has, so also where smaller faces do not cover the larger one.
+    /// When all were added. True where a cut face lies on a larger one that no further cell has, so also where smaller
+    /// faces do not cover the larger one.
     /// Errors   out_of_memory; cancelled
     Result<bool> may_have_hanging_points(const Run& run = {});
 

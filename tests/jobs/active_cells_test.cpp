@@ -72,7 +72,7 @@ TEST(ActiveCellsOfFiles, AreReadWhereThatCanBeDone) {
 TEST(ActiveCellsOfFiles, GiveTheFileOfAllCells) {
     const test::TemporaryFolder folder;
     const std::string file = folder.file("grid.vtu");
-    for (const char* shape : {"kuhn", "shuffled", "hex", "layer", "mixed", "octree"})
+    for (const char* shape : {"kuhn", "shuffled", "hex", "layer", "mixed"})
         for (const bool degenerate : {false, true}) {
             SCOPED_TRACE(testing::Message() << shape << " " << degenerate);
             const Grid grid = made(shape, 16);

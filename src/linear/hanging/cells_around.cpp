@@ -29,7 +29,6 @@
 #include "linear/hanging/face_walk.hpp"
 #include "linear/hanging/near_places.hpp"
 #include "linear/hanging/outer_planes.hpp"
-#include "linear/hanging/points_on_cells.hpp"
 
 namespace isotet {
 
@@ -98,8 +97,6 @@ struct SeenFace {
 } // namespace linear
 
 struct CellsAround::Data {
-    bool has_points_between = false; ///< on faces and edges of active cells: then nothing else is looked for
-
     Array points;
     core::PointReader reader;
     linear::OpenFaces faces; ///< cut ones that one active cell has
@@ -215,13 +212,10 @@ Result<CellsAround> CellsAround::of(const Grid& active, const PointField& field,
                                                 field.values.tuples(), field.values.components(), points));
         const auto all = linear::checked_cells(active, progress);
         if (!all) return all.error();
-        auto data = std::make_unique<Data>();
-        data->has_points_between = linear::has_points_between(*all, active.points, progress);
-        if (progress.cancelled()) return Error{ErrorCode::cancelled, "looking for hanging points was cancelled"};
-        if (data->has_points_between) return CellsAround(std::move(data));
         auto faces =
             linear::find_lone_cut_faces(all->cells, all->faces, linear::CutRule(field.values, isovalues), progress);
         if (!faces) return faces.error();
+        auto data = std::make_unique<Data>();
         if (faces->size() == 0) return CellsAround(std::move(data));
         data->points = active.points;
         data->reader = core::PointReader(data->points);
@@ -266,7 +260,6 @@ void CellsAround::add(std::span<const std::uint8_t> types, const Array& corners)
 Result<bool> CellsAround::may_have_hanging_points(const Run& run) {
     return core::carry_out("looking for hanging points", run, [&](const Progress& progress) -> Result<bool> {
         if (!data_) return moved_from("the cells around active ones");
-        if (data_->has_points_between) return true;
         if (data_->out_of_memory)
             return Error{ErrorCode::out_of_memory, "looking for hanging points ran out of memory"};
         if (progress.cancelled()) return Error{ErrorCode::cancelled, "looking for hanging points was cancelled"};
@@ -287,7 +280,7 @@ Result<bool> may_have_hanging_points(const Grid& active, const PointField& field
                                      const Run& run) {
     auto around = CellsAround::of(active, field, isovalues, run);
     if (!around) return around.error();
-    if (!around->are_needed()) return around->may_have_hanging_points(run);
+    if (!around->are_needed()) return false;
     const auto cells = core::CellReader::open(active);
     if (!cells) return cells.error();
     std::vector<std::uint8_t> types;

@@ -32,7 +32,6 @@ struct Box {
         }
         return out;
     }
-    bool is_empty() const { return !(lower[0] <= upper[0]); }
     bool holds(const Box& other) const {
         bool all = true;
         for (std::size_t axis = 0; axis < 3; ++axis)
