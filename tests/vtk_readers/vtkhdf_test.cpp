@@ -2,6 +2,7 @@
 // VTKHDF: every way to store arrays, partitions, time steps, and what is broken.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <random>
 #include <string>
@@ -164,8 +165,12 @@ TEST(ReadVtkhdf, ReadsMoreIndicesThanAreReadAtOnce) {
 TEST(ReadVtkhdf, KeepsOnlyActiveCellsWhereAsked) {
     constexpr std::size_t tets = 300'000;
     Strip strip(tets);
-    for (std::size_t i = 0; i < tets + 3; ++i) // no end of a range is that of many points
-        for (std::size_t axis = 1; axis < 3; ++axis) strip.points[3 * i + axis] += static_cast<double>(i) / 2;
+    for (std::size_t i = 0; i < tets + 3; ++i) { // on a helix, where four that follow each other are a regular tet
+        const double turn = static_cast<double>(i) * std::acos(-2.0 / 3), radius = 0.3 * std::sqrt(3.0);
+        strip.points[3 * i + 1] = radius * std::cos(turn);
+        strip.points[3 * i + 2] = radius * std::sin(turn);
+        strip.points[3 * i] /= std::sqrt(10.0);
+    }
     const TemporaryFolder folder;
     const auto write = [&](const Storage& way, bool cell_field) {
         Hdf5Writer file(folder.file("a.vtkhdf"));
