@@ -10,6 +10,7 @@
 #include "base/errors.hpp"
 #include "base/parallel.hpp"
 #include "grid/cell_faces.hpp"
+#include "linear/checked_cells.hpp"
 
 namespace isotet::linear {
 
@@ -67,15 +68,12 @@ Result<Array> with_numbers_above(const Array& numbers, std::uint64_t count) {
 } // namespace
 
 Result<core::Renumbered> sort_by_numbers(const Grid& grid, const Progress& progress) {
-    const auto cells = core::CellReader::open(grid);
-    if (!cells) return cells.error();
-    if (auto sound = core::check_cells(grid, *cells, progress); !sound) return sound.error();
-    if (auto sound = core::check_faces(grid, *cells, progress); !sound) return sound.error();
-    const auto faces = core::FaceReader::open(grid.cells);
-    if (!faces) return faces.error();
+    const auto all = checked_cells(grid, progress);
+    if (!all) return all.error();
     auto sorted = core::sort_points_by_number(grid);
     if (!sorted) return sorted.error();
-    if (faces->has_faces()) sorted->grid.cells.faces = faces_by_rank(*faces, cells->count(), sorted->original);
+    if (all->faces.has_faces())
+        sorted->grid.cells.faces = faces_by_rank(all->faces, all->cells.count(), sorted->original);
     return sorted;
 }
 

@@ -23,7 +23,7 @@
 #include "base/errors.hpp"
 #include "grid/cell_faces.hpp"
 #include "grid/fixed_corners.hpp"
-#include "linear/hanging/checked_cells.hpp"
+#include "linear/checked_cells.hpp"
 #include "linear/hanging/cut_faces.hpp"
 #include "linear/hanging/face_shapes.hpp"
 #include "linear/hanging/face_walk.hpp"
