@@ -20,7 +20,7 @@
 namespace isotet::test {
 namespace {
 
-/// A program that opens the software device by itself.
+/// A program that opens the first device by itself.
 class CallersDevice {
 public:
     explicit CallersDevice(std::vector<const char*> extensions = {}) {
@@ -47,7 +47,7 @@ public:
     ~CallersDevice() {
         function<PFN_vkDestroyDevice>("vkDestroyDevice")(device, nullptr);
         instance.reset();
-        for (const std::string& complaint : complaints->all()) ADD_FAILURE() << complaint;
+        for (const std::string& complaint : watch.complaints->all()) ADD_FAILURE() << complaint;
     }
 
     template <class Function>
@@ -60,9 +60,8 @@ public:
     }
 
 private:
-    std::shared_ptr<vulkan::Complaints> complaints = std::make_shared<vulkan::Complaints>();
-    std::unique_ptr<vulkan::Instance> instance =
-        vulkan::Instance::open({vulkan::Validation::on, complaints}, vulkan::whole_version).value();
+    vulkan::Watch watch = watched().watch;
+    std::unique_ptr<vulkan::Instance> instance = vulkan::Instance::open(watch, vulkan::whole_version).value();
 
 public:
     VkPhysicalDevice physical = VK_NULL_HANDLE;
@@ -154,7 +153,7 @@ TEST(AdoptedDevice, IsRefusedWithWhatIsMissing) {
 
 TEST(SharedSurface, IsReadByAnotherInstance) {
     const PackedGrid packed = packed_grid();
-    const Device device = Device::open({.choice = "software", .share_memory = true}).value();
+    const Device device = Device::open({.choice = test_device(), .share_memory = true}).value();
     DeviceGrid grid = DeviceGrid::upload(device, packed).value();
     const CallersDevice other({VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME});
     for (const Normals normals : {Normals::none, Normals::gradient, Normals::face}) {
@@ -179,7 +178,7 @@ TEST(SharedSurface, LeavesNoDescriptor) {
         for (int i = 0; i < 1024; ++i) count += fcntl(i, F_GETFD) != -1;
         return count;
     };
-    const Device device = Device::open({.choice = "software", .share_memory = true}).value();
+    const Device device = Device::open({.choice = test_device(), .share_memory = true}).value();
     DeviceGrid grid = DeviceGrid::upload(device, packed_grid()).value();
     const DeviceSurface surface = grid.extract(0.1).value();
     const int before = descriptors();
@@ -192,7 +191,7 @@ TEST(SharedSurface, LeavesNoDescriptor) {
 }
 
 TEST(SharedSurface, TakesADeviceThatWasOpenedForIt) {
-    const Device device = Device::open({.choice = "software"}).value();
+    const Device device = Device::open({.choice = test_device()}).value();
     DeviceGrid grid = DeviceGrid::upload(device, packed_grid()).value();
     EXPECT_EQ(grid.extract(0.1).value().share().error().message, "the device was not opened with `share_memory`");
     EXPECT_EQ(DeviceSurface().share().error().message, "the surface to share was never extracted");

@@ -27,7 +27,7 @@ protected:
         vulkan::Settings settings = watched();
         settings.force_staging = copies == Copies::staged;
         settings.alter_functions = [&plan](vulkan::DeviceFunctions& functions) { make_calls_follow(plan, functions); };
-        auto context = vulkan::Context::open({"software", 0}, settings);
+        auto context = vulkan::Context::open({test_device(), 0}, settings);
         if (!context) return context.error();
         auto result = extract_on(Device(*context));
         for (const std::string& complaint : settings.watch.complaints->all()) ADD_FAILURE() << complaint;
@@ -119,7 +119,7 @@ TEST_F(EngineFaults, ALostDeviceIsAnErrorFromThenOn) {
     CallPlan plan;
     vulkan::Settings settings = watched();
     settings.alter_functions = [&plan](vulkan::DeviceFunctions& functions) { make_calls_follow(plan, functions); };
-    auto context = vulkan::Context::open({"software", 0}, settings).value();
+    auto context = vulkan::Context::open({test_device(), 0}, settings).value();
     DeviceGrid grid = DeviceGrid::upload(Device(context), packed).value();
     DeviceSurface surface = grid.extract(0.2).value();
     plan = {.fail_at = 1, .with = VK_ERROR_DEVICE_LOST, .only = "vkQueueSubmit", .calls = {}};

@@ -188,7 +188,7 @@ TEST_F(NewField, ThatTheDeviceDoesNotTakeLeavesThePackedGridAsItWas) {
         CallPlan plan;
         vulkan::Settings settings = watched();
         settings.alter_functions = [&plan](vulkan::DeviceFunctions& functions) { make_calls_follow(plan, functions); };
-        const auto opened = vulkan::Context::open({"software", 0}, settings).value();
+        const auto opened = vulkan::Context::open({test_device(), 0}, settings).value();
         DeviceGrid on_device = DeviceGrid::upload(Device(opened), packed).value();
         plan = {.fail_at = 1, .with = VK_ERROR_OUT_OF_DEVICE_MEMORY, .only = function, .calls = {}};
         EXPECT_FALSE(on_device.set_field(point_field(grid, 1))) << function;

@@ -5,6 +5,7 @@
 
 #include "cli/program.hpp"
 #include "cli/small_grid.hpp"
+#include "vulkan/software_device.hpp"
 
 namespace isotet::test {
 namespace {
@@ -26,9 +27,9 @@ TEST_F(ProgramOnDevice, WritesTheSameFile) {
                                            "-o"};
     auto on_cpu = command, on_device = command, in_parts = command;
     on_cpu.insert(on_cpu.end(), {path("cpu.vtp"), "--method", "clusters"});
-    on_device.insert(on_device.end(), {path("device.vtp"), "--engine", "vulkan", "--device", "software"});
+    on_device.insert(on_device.end(), {path("device.vtp"), "--engine", "vulkan", "--device", test_device()});
     in_parts.insert(in_parts.end(),
-                    {path("parts.vtp"), "--engine", "vulkan", "--device", "software", "--device-memory", "1MB"});
+                    {path("parts.vtp"), "--engine", "vulkan", "--device", test_device(), "--device-memory", "1MB"});
     for (const auto& words : {on_cpu, on_device, in_parts}) {
         const RunResult run = isotet(words);
         ASSERT_EQ(run.status, 0) << run.err;
@@ -49,7 +50,7 @@ TEST_F(ProgramOnDevice, TimeStepsSendTheirValuesOnly) {
         return run.err;
     };
     extract("cpu-{time}.vtp", {"--method", "clusters"});
-    const std::string said = extract("device-{time}.vtp", {"--engine", "vulkan", "--device", "software"});
+    const std::string said = extract("device-{time}.vtp", {"--engine", "vulkan", "--device", test_device()});
     EXPECT_EQ(said.find("of device memory, "), said.rfind("of device memory, ")) << "uploaded once: " << said;
     EXPECT_NE(said.find("not packed again"), std::string::npos) << said;
     for (const std::string time : {"0", "0.1", "2.5"})
@@ -58,7 +59,7 @@ TEST_F(ProgramOnDevice, TimeStepsSendTheirValuesOnly) {
 
 TEST_F(ProgramOnDevice, TellsWhatCrossedTheBus) {
     const auto report =
-        json_of({"extract", "make:kuhn:8:gyroid", "-i", "0", "--engine", "vulkan", "--device", "software"});
+        json_of({"extract", "make:kuhn:8:gyroid", "-i", "0", "--engine", "vulkan", "--device", test_device()});
     EXPECT_EQ(report["engine"], "vulkan");
     const auto& surface = report["surfaces"][0];
     EXPECT_GE(surface["device"]["bytes_down"].get<std::size_t>(),
@@ -67,7 +68,7 @@ TEST_F(ProgramOnDevice, TellsWhatCrossedTheBus) {
 
 TEST_F(ProgramOnDevice, SaysSoWhenTheCpuStandsIn) {
     const RunResult run =
-        isotet({"extract", "make:kuhn:8:gyroid", "-i", "0", "--device", "software", "--precision", "double", "-v"});
+        isotet({"extract", "make:kuhn:8:gyroid", "-i", "0", "--device", test_device(), "--precision", "double", "-v"});
     EXPECT_EQ(run.status, 0);
     EXPECT_NE(run.err.find(
                   "note: the grid was packed in double precision, but the vulkan engine takes single precision only: "
@@ -82,16 +83,16 @@ TEST_F(ProgramOnDevice, RefusesWhatCannotBe) {
         more.insert(more.begin(), {"extract", "make:kuhn:8:gyroid", "-i", "0"});
         return isotet(more);
     };
-    RunResult run = extract({"--engine", "vulkan", "--device", "software", "--precision", "double"});
+    RunResult run = extract({"--engine", "vulkan", "--device", test_device(), "--precision", "double"});
     EXPECT_EQ(run.status, 2);
     EXPECT_TRUE(is_one_error(run, "packed in double precision"));
     run = extract({"--engine", "vulkan", "--device", "none"});
     EXPECT_EQ(run.status, 2);
     EXPECT_TRUE(is_one_error(run, "--engine vulkan needs a device"));
-    run = extract({"--engine", "cpu", "--device", "software"});
+    run = extract({"--engine", "cpu", "--device", test_device()});
     EXPECT_EQ(run.status, 2);
     EXPECT_TRUE(is_one_error(run, "only --engine vulkan and auto use one"));
-    run = extract({"--engine", "vulkan", "--device", "software", "--device-memory", "8kB"});
+    run = extract({"--engine", "vulkan", "--device", test_device(), "--device-memory", "8kB"});
     EXPECT_EQ(run.status, 4);
     EXPECT_TRUE(is_one_error(run, "of device memory at least"));
 }

@@ -32,7 +32,7 @@ protected:
     Contour session(CallPlan& plan, bool required) {
         vulkan::Settings settings = watched();
         settings.alter_functions = [&plan](vulkan::DeviceFunctions& functions) { make_calls_follow(plan, functions); };
-        const Device device(vulkan::Context::open({"software", 0}, settings).value());
+        const Device device(vulkan::Context::open({test_device(), 0}, settings).value());
         return Contour::create(session_input(grid, 0),
                                {.engine = vulkan_engine(device), .engine_required = required})
             .value();

@@ -30,7 +30,7 @@ protected:
         vulkan::Settings settings = watched();
         settings.alter_functions = [&plan](vulkan::DeviceFunctions& functions) { make_calls_follow(plan, functions); };
         const Result<Picture> picture = [&]() -> Result<Picture> {
-            auto context = vulkan::Context::open({"software", 0}, settings);
+            auto context = vulkan::Context::open({test_device(), 0}, settings);
             if (!context) return context.error();
             return draw(Device(*std::move(context)));
         }();

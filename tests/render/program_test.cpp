@@ -9,6 +9,7 @@
 
 #include "cli/program.hpp"
 #include "cli/small_grid.hpp"
+#include "vulkan/software_device.hpp"
 
 namespace isotet::test {
 namespace {
@@ -21,7 +22,7 @@ protected:
     }
     std::vector<std::string> command(const std::string& input, const std::string& out,
                                      std::vector<std::string> more = {}) {
-        more.insert(more.begin(), {"render", input, "-o", path(out), "--size", "80x60", "--device", "software"});
+        more.insert(more.begin(), {"render", input, "-o", path(out), "--size", "80x60", "--device", test_device()});
         return more;
     }
 };
@@ -107,8 +108,8 @@ TEST_F(Render, SaysWhatItCannotShow) {
     EXPECT_NE(notes({"-f", "same", "-i", "3"}).find("there is no surface at 3: all values of 'same' are 3"),
               std::string::npos);
     const auto large = [&](const char* field) {
-        return isotet({"render", path("g.msh"), "-o", path("a.png"), "--size", "400x300", "--device", "software", "-f",
-                       field, "-i", "0.5"})
+        return isotet({"render", path("g.msh"), "-o", path("a.png"), "--size", "400x300", "--device", test_device(),
+                       "-f", field, "-i", "0.5"})
             .err;
     };
     EXPECT_EQ(large("f").find("the font"), std::string::npos);
@@ -147,13 +148,13 @@ TEST_F(Render, PacksForManySurfacesOnlyAndDrawsTheSamePicture) {
 }
 
 TEST_F(Render, TakesThePictureAsASecondName) {
-    EXPECT_EQ(
-        isotet({"render", "make:kuhn:4:sphere", path("a.png"), "-i", "0.5", "--size", "64x48", "--device", "software"})
-            .status,
-        0);
+    EXPECT_EQ(isotet({"render", "make:kuhn:4:sphere", path("a.png"), "-i", "0.5", "--size", "64x48", "--device",
+                      test_device()})
+                  .status,
+              0);
     EXPECT_TRUE(std::filesystem::exists(path("a.png")));
     const RunResult wrong =
-        isotet({"render", "make:kuhn:4:sphere", path("a-{frme}.png"), "-i", "0.5", "--device", "software"});
+        isotet({"render", "make:kuhn:4:sphere", path("a-{frme}.png"), "-i", "0.5", "--device", test_device()});
     EXPECT_EQ(wrong.status, 2);
     EXPECT_TRUE(is_one_error(wrong, "has {frme}, but here only {frame} can stand for something"));
 }
@@ -216,8 +217,8 @@ TEST_F(Render, ComparesWithAReference) {
 
 TEST_F(Render, WritesTextWhereThereIsRoom) {
     const auto words = [&](const char* out, const char* size) {
-        return std::vector<std::string>{"render", "make:kuhn:8:sphere", "-o",      path(out), "--size",
-                                        size,     "--device",           "software"};
+        return std::vector<std::string>{"render", "make:kuhn:8:sphere", "-o",         path(out), "--size",
+                                        size,     "--device",           test_device()};
     };
     RunResult run = isotet(words("a.png", "400x300"));
     EXPECT_EQ(run.err.find("too small for text"), std::string::npos) << run.err;
@@ -238,7 +239,7 @@ TEST_F(Render, SaysWhenThereIsNoSurface) {
 }
 
 TEST_F(Render, IsWhatBenchMeasuresWithEveryMethodAndIndex) {
-    const auto report = json_of({"bench", "make:kuhn:6:sphere", "-i", "0.6", "--device", "software", "--rounds", "1",
+    const auto report = json_of({"bench", "make:kuhn:6:sphere", "-i", "0.6", "--device", test_device(), "--rounds", "1",
                                  "--indexes", "none,interval_tree,octree,seed_set,span_space,cluster_ranges"});
     EXPECT_EQ(report["device"]["kind"], "software");
     ASSERT_EQ(report["rows"].size(), 3 + 4 * 6u);
@@ -260,8 +261,8 @@ TEST_F(Render, IsWhatBenchMeasuresWithEveryMethodAndIndex) {
 
 TEST_F(Render, OfWhatDoesNotFitCrossesTheBusWhenBenchMeasuresIt) {
     const auto crossing = [](const char* memory) {
-        return json_of({"bench", "make:kuhn:30:sphere", "-i", "0.6", "--device", "software", "--device-memory", memory,
-                        "--rounds", "1", "--methods", "registers", "--indexes", "none"})["rows"][0];
+        return json_of({"bench", "make:kuhn:30:sphere", "-i", "0.6", "--device", test_device(), "--device-memory",
+                        memory, "--rounds", "1", "--methods", "registers", "--indexes", "none"})["rows"][0];
     };
     const auto all = crossing("1GB"), some = crossing("32MB");
     EXPECT_EQ(all["bytes"]["crossing"], 0);
@@ -272,7 +273,7 @@ TEST_F(Render, OfWhatDoesNotFitCrossesTheBusWhenBenchMeasuresIt) {
 
 TEST_F(Render, IsNothingThatBenchCouldMeasureWithoutMemory) {
     const RunResult run =
-        isotet({"bench", "make:kuhn:4:sphere", "--device", "software", "--device-memory", "1kB", "--rounds", "1"});
+        isotet({"bench", "make:kuhn:4:sphere", "--device", test_device(), "--device-memory", "1kB", "--rounds", "1"});
     EXPECT_EQ(run.status, 4);
     EXPECT_NE(run.err.find("nothing could be measured: "), std::string::npos) << run.err;
     EXPECT_NE(run.out.find("not measured: direct on make:kuhn:4:sphere: "), std::string::npos) << run.out;
@@ -325,7 +326,7 @@ TEST_F(Render, DrawsOnTheCpuWhatADeviceDraws) {
                                    "0.2,-0.3", "--color-by", "sphere", "--outline", "--size", "400x300"});
         return more;
     };
-    ASSERT_EQ(isotet(drawn("device.png", {"--device", "software"})).status, 0);
+    ASSERT_EQ(isotet(drawn("device.png", {"--device", test_device()})).status, 0);
     std::vector<std::string> words = drawn("cpu.png", {"--occlusion", "0"}); // which devices do not draw
     EXPECT_TRUE(json_of(words)["device"].is_null());
     const Picture cpu = read_picture(path("cpu.png")).value(), device = read_picture(path("device.png")).value();
@@ -334,7 +335,7 @@ TEST_F(Render, DrawsOnTheCpuWhatADeviceDraws) {
     words.insert(words.end(), {"--threads", "1"});
     ASSERT_EQ(isotet(words).status, 0);
     EXPECT_TRUE(content(path("cpu.png")) == bytes) << "on any number of threads";
-    const RunResult run = isotet(drawn("device.png", {"--device", "software", "--occlusion", "0.5"}));
+    const RunResult run = isotet(drawn("device.png", {"--device", test_device(), "--occlusion", "0.5"}));
     EXPECT_EQ(run.status, 2);
     EXPECT_TRUE(is_one_error(run, "--occlusion and a device, but only the CPU darkens folds"));
 }
@@ -350,7 +351,7 @@ TEST_F(Render, FollowsRaysThroughVolumesOnADevice) {
         };
         ASSERT_EQ(isotet(drawn("cpu.png")).status, 0);
         std::vector<std::string> words = drawn("device.png");
-        words.insert(words.end(), {"--device", "software"});
+        words.insert(words.end(), {"--device", test_device()});
         const auto report = json_of(words);
         EXPECT_EQ(report["device"]["kind"], "software");
         EXPECT_GT(report["volume"]["segments"], 0);

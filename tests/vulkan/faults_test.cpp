@@ -33,7 +33,7 @@ struct SpinPush {
 
 /// Opens a device, uses every part of it once, and closes it. The words that came out, or the first error.
 Result<std::vector<std::uint32_t>> work_through(const Settings& settings) {
-    auto opened = Context::open({"software", 0}, settings);
+    auto opened = Context::open({test_device(), 0}, settings);
     if (!opened) return opened.error();
     Context& context = **opened;
     auto one = context.memory().take(4000, vulkan::Where::device, "one");
@@ -222,7 +222,7 @@ TEST_F(VersionsOfVulkan, GiveTheSameDescription) {
 TEST(FaultsOfDevices, AMissingFeatureIsNamed) {
     Settings settings = watched();
     settings.alter_capabilities = [](vulkan::Capabilities& device) { device.scalar_layout = false; };
-    const auto refused = Context::open({"software", 0}, settings);
+    const auto refused = Context::open({test_device(), 0}, settings);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, ErrorCode::no_device);
     EXPECT_NE(refused.error().message.find("cannot be used: it lacks the feature scalarBlockLayout"), std::string::npos)

@@ -90,7 +90,7 @@ TEST_F(MemoryTypesOfADriver, AreUsedOnlyWhereTheyAreAllowed) {
 
 TEST_F(MemoryTypesOfADriver, NoneOfWhichBuffersMayHaveAreAnError) {
     odd_.images = 0b111;
-    const auto refused = Context::open({"software", 0}, odd());
+    const auto refused = Context::open({test_device(), 0}, odd());
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, ErrorCode::no_device);
     EXPECT_NE(refused.error().message.find("the driver allows buffers in the memory types 0b0 alone"),

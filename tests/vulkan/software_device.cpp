@@ -1,20 +1,38 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "vulkan/software_device.hpp"
 
+#include <cstdlib>
 #include <stdexcept>
+#include <string>
 
 namespace isotet::test {
 
+namespace {
+
+std::string environment(const char* name, const char* otherwise) {
+    const char* value = std::getenv(name);
+    return value ? value : otherwise;
+}
+
+} // namespace
+
+const char* test_device() {
+    static const std::string device = environment("ISOTET_TEST_DEVICE", "software");
+    return device.c_str();
+}
+
 vulkan::Settings watched() {
+    const bool is_watched = environment("ISOTET_TEST_WATCH", "1") != "0";
     vulkan::Settings settings;
-    settings.watch = {vulkan::Validation::on, std::make_shared<vulkan::Complaints>()};
+    settings.watch = {is_watched ? vulkan::Validation::on : vulkan::Validation::off,
+                      std::make_shared<vulkan::Complaints>()};
     settings.wait_limit = std::chrono::seconds(30);
     settings.cache_folder = std::filesystem::path();
     return settings;
 }
 
 std::shared_ptr<vulkan::Context> open_software(const vulkan::Settings& settings, std::uint64_t memory_limit) {
-    auto context = vulkan::Context::open({"software", memory_limit}, settings);
+    auto context = vulkan::Context::open({test_device(), memory_limit}, settings);
     if (context) return *context;
     throw std::runtime_error("these tests need Mesa's software device, version 25 or later, and the Khronos validation "
                              "layer: run scripts/test.sh, or source build/test/mesa/env.sh first. " +

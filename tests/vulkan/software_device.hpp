@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// The device that tests run on: Mesa's software device, watched by the validation layer.
+// The device that tests run on: Mesa's software device unless another is named, watched by the validation layer.
 #pragma once
 
 #include <cstdint>
@@ -15,10 +15,14 @@
 
 namespace isotet::test {
 
-/// Settings for tests: watched by the validation layer, no files of compiled pipelines, waits of at most 30 s.
+/// The software device, or the one that ISOTET_TEST_DEVICE names.
+const char* test_device();
+
+/// Settings for tests: watched by the validation layer unless ISOTET_TEST_WATCH is 0, no files of compiled pipelines, waits of at
+/// most 30 s.
 vulkan::Settings watched();
 
-/// Opens the software device; a failure of the test, with the reason, when there is none that can be trusted.
+/// Opens the test device; a failure of the test, with the reason, when there is none that can be trusted.
 std::shared_ptr<vulkan::Context> open_software(const vulkan::Settings& settings = watched(),
                                                std::uint64_t memory_limit = 0);
 
