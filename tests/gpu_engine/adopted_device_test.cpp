@@ -59,6 +59,72 @@ public:
         return {.instance = instance->handle(), .physical_device = physical, .device = device, .queue = queue};
     }
 
+    VkBuffer buffer(VkDeviceSize bytes, VkBufferUsageFlags usage) const {
+        VkBufferCreateInfo create{};
+        create.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
+        create.size = bytes;
+        create.usage = usage;
+        VkExternalMemoryBufferCreateInfo shared{};
+        shared.sType = VK_STRUCTURE_TYPE_EXTERNAL_MEMORY_BUFFER_CREATE_INFO;
+        shared.handleTypes = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT;
+        if (usage == VK_BUFFER_USAGE_TRANSFER_SRC_BIT) create.pNext = &shared;
+        VkBuffer made = VK_NULL_HANDLE;
+        EXPECT_EQ(function<PFN_vkCreateBuffer>("vkCreateBuffer")(device, &create, nullptr, &made), VK_SUCCESS);
+        return made;
+    }
+
+    /// A part of a buffer, by way of one that the processor reads.
+    std::vector<std::byte> copied(VkBuffer from, VkBufferCopy part) const {
+        const VkBuffer to = buffer(part.size, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+        VkMemoryRequirements needs;
+        function<PFN_vkGetBufferMemoryRequirements>("vkGetBufferMemoryRequirements")(device, to, &needs);
+        VkMemoryAllocateInfo allocate{};
+        allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+        allocate.allocationSize = needs.size;
+        const vulkan::Capabilities capabilities = vulkan::ask(instance->call(), physical, vulkan::whole_version);
+        allocate.memoryTypeIndex = vulkan::download_memory_type(capabilities, needs.memoryTypeBits);
+        VkDeviceMemory memory = VK_NULL_HANDLE;
+        EXPECT_EQ(function<PFN_vkAllocateMemory>("vkAllocateMemory")(device, &allocate, nullptr, &memory), VK_SUCCESS);
+        EXPECT_EQ(function<PFN_vkBindBufferMemory>("vkBindBufferMemory")(device, to, memory, 0), VK_SUCCESS);
+        VkCommandPoolCreateInfo pools{};
+        pools.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+        VkCommandPool pool = VK_NULL_HANDLE;
+        EXPECT_EQ(function<PFN_vkCreateCommandPool>("vkCreateCommandPool")(device, &pools, nullptr, &pool), VK_SUCCESS);
+        VkCommandBufferAllocateInfo take{};
+        take.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+        take.commandPool = pool;
+        take.commandBufferCount = 1;
+        VkCommandBuffer commands = VK_NULL_HANDLE;
+        EXPECT_EQ(function<PFN_vkAllocateCommandBuffers>("vkAllocateCommandBuffers")(device, &take, &commands),
+                  VK_SUCCESS);
+        VkCommandBufferBeginInfo begin{};
+        begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+        function<PFN_vkBeginCommandBuffer>("vkBeginCommandBuffer")(commands, &begin);
+        function<PFN_vkCmdCopyBuffer>("vkCmdCopyBuffer")(commands, from, to, 1, &part);
+        VkMemoryBarrier barrier{};
+        barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+        barrier.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+        barrier.dstAccessMask = VK_ACCESS_HOST_READ_BIT;
+        function<PFN_vkCmdPipelineBarrier>("vkCmdPipelineBarrier")(commands, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                                                                   VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &barrier, 0,
+                                                                   nullptr, 0, nullptr);
+        function<PFN_vkEndCommandBuffer>("vkEndCommandBuffer")(commands);
+        VkSubmitInfo submit{};
+        submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+        submit.commandBufferCount = 1;
+        submit.pCommandBuffers = &commands;
+        EXPECT_EQ(function<PFN_vkQueueSubmit>("vkQueueSubmit")(queue, 1, &submit, VK_NULL_HANDLE), VK_SUCCESS);
+        EXPECT_EQ(function<PFN_vkDeviceWaitIdle>("vkDeviceWaitIdle")(device), VK_SUCCESS);
+        void* mapped = nullptr;
+        EXPECT_EQ(function<PFN_vkMapMemory>("vkMapMemory")(device, memory, 0, VK_WHOLE_SIZE, 0, &mapped), VK_SUCCESS);
+        std::vector<std::byte> bytes(part.size);
+        if (mapped) std::memcpy(bytes.data(), mapped, bytes.size());
+        function<PFN_vkDestroyCommandPool>("vkDestroyCommandPool")(device, pool, nullptr);
+        function<PFN_vkDestroyBuffer>("vkDestroyBuffer")(device, to, nullptr);
+        function<PFN_vkFreeMemory>("vkFreeMemory")(device, memory, nullptr);
+        return bytes;
+    }
+
 private:
     vulkan::Watch watch = watched().watch;
     std::unique_ptr<vulkan::Instance> instance = vulkan::Instance::open(watch, vulkan::whole_version).value();
@@ -94,11 +160,11 @@ std::vector<std::byte> imported(const CallersDevice& program, const DeviceArray&
     VkDeviceMemory memory = VK_NULL_HANDLE;
     EXPECT_EQ(program.function<PFN_vkAllocateMemory>("vkAllocateMemory")(program.device, &allocate, nullptr, &memory),
               VK_SUCCESS);
-    void* mapped = nullptr; // the software device's memory is the machine's
-    EXPECT_EQ(program.function<PFN_vkMapMemory>("vkMapMemory")(program.device, memory, 0, VK_WHOLE_SIZE, 0, &mapped),
+    const VkBuffer shared = program.buffer(array.offset + array.bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+    EXPECT_EQ(program.function<PFN_vkBindBufferMemory>("vkBindBufferMemory")(program.device, shared, memory, 0),
               VK_SUCCESS);
-    const auto* from = static_cast<const std::byte*>(mapped) + array.offset;
-    std::vector<std::byte> bytes(from, from + array.bytes);
+    std::vector<std::byte> bytes = program.copied(shared, {array.offset, 0, array.bytes});
+    program.function<PFN_vkDestroyBuffer>("vkDestroyBuffer")(program.device, shared, nullptr);
     program.function<PFN_vkFreeMemory>("vkFreeMemory")(program.device, memory, nullptr);
     return bytes;
 }
