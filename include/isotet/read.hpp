@@ -128,7 +128,8 @@ struct ReadResult {
     std::vector<std::string> notes; ///< sentences for the user: ghost cells left out, blocks joined and so on
     Array cell_numbers =
         {}; ///< uint64, where cells have other numbers than in the file that has them: of a piece, of which
-            ///< some are left out, and of a packed file with source cells. Empty: they are the same
+            ///< some are left out, and of a packed file with source cells; of active cells, where
+            ///< their options ask for source cells. Empty: they are the same
 };
 
 /// Tells what a file holds without reading more of it than the format makes necessary.

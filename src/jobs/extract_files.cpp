@@ -94,6 +94,7 @@ private:
     std::optional<Solids> solids_;                 ///< in its place where solids are made
     Grid grid_;                                    ///< of the step at hand
     Array cell_numbers_;                           ///< in the file, where they are others
+    Array active_numbers_;                         ///< in the whole grid, of active cells, if source cells are wanted
     PointField field_;                             ///< that is contoured there
     std::vector<double> share_isovalues_;          ///< of ExtractJob::shares
     SolidChoice solid_;                            ///< of ExtractJob::solid, with the shares of its range
@@ -221,7 +222,8 @@ Result<std::optional<std::uint64_t>> ExtractRun::read_grid(std::size_t step) {
         Result<ReadResult> read = source_->read_active(plan_.read, step, *plan_.active_cells, caller_);
         if (!read) return read.error();
         grid_ = std::move(read->grid);
-        cell_numbers_ = std::move(read->cell_numbers);
+        active_numbers_ = read->cells_in_file ? read->cell_numbers : Array();
+        cell_numbers_ = read->cells_in_file ? Array() : read->cell_numbers;
         return read->cells_in_file;
     }
     Result<ReadResult> read = source_->read_numbered(plan_.read, step, caller_);
@@ -313,7 +315,7 @@ Result<bool> ExtractRun::load(std::size_t step) {
     coarse_tets_ = 0;
     ContourInput input{grid_, *std::move(field), std::move(fields->point), std::move(fields->cell)};
     if (job_.field.shape && plan_.contour.refine) plan_.contour.refine->carried = input.point_fields;
-    if (*cells_in_file)
+    if (*cells_in_file) {
         input.all_cells = [this, step, all = input](const Run& run) mutable -> Result<ContourInput> {
             caller_.detail(fmt::format("reading all cells of step {}", step));
             Result<Grid> grid = source_->read_the_rest(plan_.read, step, run);
@@ -321,6 +323,8 @@ Result<bool> ExtractRun::load(std::size_t step) {
             all.grid = *std::move(grid);
             return all;
         };
+        input.cell_numbers = active_numbers_;
+    }
     if (job_.piece && has_curved_cells(input.grid.cells))
         return refusal("`piece` takes grids without quadratic cells only");
     if (job_.piece && job_.solid)

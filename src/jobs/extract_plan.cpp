@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <isotet/active_cells.hpp>
 #include <isotet/fields.hpp>
 #include <isotet/jobs/first_choice.hpp>
 #include <isotet/jobs/number_text.hpp>
@@ -84,20 +85,18 @@ FieldsToRead fields_to_read(const ExtractPlan& plan) {
     return read;
 }
 
-/// Each isovalue takes a byte a point while cells are read, and another pass over them.
-constexpr std::size_t most_isovalues_of_active_cells = 8;
-
 std::optional<ReadActiveCells> plan_active_cells(const ExtractJob& job, const ExtractPlan& plan) {
     const bool has_components = plan.color || (plan.carried && !plan.carried->components.empty());
     const bool needs_all = plan.field.neighbours || job.piece || job.solid || job.volumes || job.grid.merge_points ||
                            !job.grid.cells.empty();
     if (needs_all || has_components || !plan.read.cell || !plan.read.cell->empty() ||
-        plan.contour.expected_isovalues.size() > most_isovalues_of_active_cells ||
+        plan.contour.expected_isovalues.size() > ActiveCellFilter::max_isovalues ||
         !Contour::can_do_with_active_cells(plan.contour))
         return std::nullopt;
     ReadActiveCells active{plan.field.name, plan.contour.expected_isovalues, {}, job.field.shape};
     active.options.precision = plan.contour.precision;
     active.options.extract.ties = plan.contour.ties;
+    active.options.extract.source_cells = plan.contour.source_cells;
     return active;
 }
 
@@ -130,8 +129,10 @@ Error with_way_out(Error error, const ExtractJob& job, const ExtractPlan& plan) 
         return true;
     };
     std::vector<double>& isovalues = cheaper.contour.expected_isovalues;
-    if (isovalues.size() > most_isovalues_of_active_cells) isovalues.resize(most_isovalues_of_active_cells);
-    if (try_it(fmt::format("of up to {} isovalues at a time", most_isovalues_of_active_cells))) return error;
+    const auto some = std::max<std::size_t>((surfaces_that_pay_for_packing - 1) / plan.steps.size(), 1);
+    if (isovalues.size() > some) isovalues.resize(some);
+    cheaper.contour.surfaces = isovalues.size() * plan.steps.size();
+    if (try_it(fmt::format("of up to {} isovalues at a time", some))) return error;
     if (!plan.field.cell.empty()) return error; // which is read in any case
     cheaper.read.cell.emplace();
     if (cheaper.carried) cheaper.carried->components.clear();

@@ -598,13 +598,8 @@ Result<ReadResult> GridSource::read_active(const FieldsToRead& fields, std::size
                                            Caller& caller) const {
     const bool interpolates = options_.hanging_points == HangingChoice::interpolate; // values of cells that are not cut
     if (made_ || surface_ || options_.merge_points || !options_.cells.empty() || names_blocks(fields) || interpolates ||
-        (kept_ && kept_->is_there())) {
-        Result<Grid> grid = read(fields, step, caller);
-        if (!grid) return grid.error();
-        ReadResult result;
-        result.grid = *std::move(grid);
-        return result;
-    }
+        (kept_ && kept_->is_there()))
+        return read_numbered(fields, step, caller);
     ReadOptions options = read_options_;
     options.active_cells = active;
     Result<ReadResult> result = read_file(fields, step, std::move(options), caller.run());

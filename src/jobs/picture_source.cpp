@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <isotet/active_cells.hpp>
 #include <isotet/boundary.hpp>
 #include <isotet/fields.hpp>
 #include <isotet/scene.hpp>
@@ -35,10 +36,10 @@ bool names_isovalues(const DrawJob& job) {
 bool asks_for_field(const DrawJob& job) { return names_isovalues(job) || draws_volume(job) || job.solid || job.keep; }
 
 Result<std::vector<double>> choose_levels(const DrawJob& job, const PointField& field, const ValueRange& range) {
-    std::vector<double> levels =
-        job.levels > 0 ? evenly_spaced_levels(range.lower, range.upper, job.levels)
-                       : evenly_spaced_levels(range.lower, range.upper, job.solid ? 1 : default_levels,
-                                              LevelRounding::short_decimals);
+    std::vector<double> levels = job.levels > 0
+                                     ? evenly_spaced_levels(range.lower, range.upper, job.levels)
+                                     : evenly_spaced_levels(range.lower, range.upper, job.solid ? 1 : default_levels,
+                                                            LevelRounding::short_decimals);
     if (!levels.empty()) return levels;
     return Error{ErrorCode::invalid_data,
                  fmt::format("field '{}' has no finite value: there is nothing to contour", field.name)};
@@ -346,7 +347,6 @@ Result<void> PictureSource::take_first_view(bool& contours, std::string& field, 
 /// The cells that do where nothing but a few isosurfaces is drawn; nothing where all are needed.
 std::optional<ReadActiveCells> PictureSource::active_cells(const Contents& contents, const FoundField& field,
                                                            const FieldsToRead& read) const {
-    constexpr std::size_t most_isovalues = 8; // each takes another pass over the points
     const bool draws_more = contents.model || job_.boundary != 0.0 || !job_.slices.empty() || draws_volume(job_) ||
                             job_.solid || job_.method.draw;
     const bool decided_later = job_.isovalues.empty() || !job_.shares.empty() || !job_.sweep.empty();
@@ -355,8 +355,9 @@ std::optional<ReadActiveCells> PictureSource::active_cells(const Contents& conte
     options.surfaces = job_.isovalues.size();
     options.expected_isovalues = job_.isovalues;
     options.normals = job_.shade_by == ShadeBy::gradient ? Normals::gradient : Normals::none;
-    if (draws_more || decided_later || job_.isovalues.size() > most_isovalues || !job_.stretch.empty() ||
-        may_stretch() || field.neighbours || !read.cell->empty() || !Contour::can_do_with_active_cells(options))
+    if (draws_more || decided_later || job_.isovalues.size() > ActiveCellFilter::max_isovalues ||
+        !job_.stretch.empty() || may_stretch() || field.neighbours || !read.cell->empty() ||
+        !Contour::can_do_with_active_cells(options))
         return std::nullopt;
     ReadActiveCells active{field.name, job_.isovalues, {}};
     active.bounds = true;

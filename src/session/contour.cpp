@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "base/buffer.hpp"
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
 #include "base/guard.hpp"
@@ -32,10 +33,28 @@ Result<void> check(const ContourOptions& options) {
     return {};
 }
 
+/// Source cells are those of the whole grid.
+void number_in_whole(const Array& numbers, std::vector<Extraction>& surfaces) {
+    if (numbers.empty()) return;
+    const auto whole = numbers.as<std::uint64_t>();
+    for (Extraction& extraction : surfaces) {
+        Array& cells = extraction.surface.source_cells;
+        if (cells.empty()) continue;
+        core::Buffer<std::int64_t> found(cells.tuples());
+        cells.visit([&](auto places) {
+            core::parallel_each(places.size(), 1 << 16, [&](std::size_t i) {
+                found[i] = static_cast<std::int64_t>(whole[static_cast<std::size_t>(places[i])]);
+            });
+        });
+        cells = std::move(found).to_array();
+    }
+}
+
 /// The input, cells of degree 1 by their linear types; where it has only some of the cells, and `options` ask for more than these can do, that with all cells.
 Result<ContourInput> input_for(ContourInput input, const ContourOptions& options, const Run& run) {
     if (input.packed) return input;
-    const bool some_do = Contour::can_do_with_active_cells(options) && input.cell_fields.empty();
+    const bool some_do = Contour::can_do_with_active_cells(options) && input.cell_fields.empty() &&
+                         (!options.source_cells || !input.cell_numbers.empty());
     if (input.all_cells && !some_do) {
         Result<ContourInput> all = input.all_cells(run);
         if (!all) return all;
@@ -57,6 +76,7 @@ Result<std::optional<ContourResult>> extract_directly(const ContourInput& input,
     if (direct->needs_all_cells) return std::optional<ContourResult>{};
     ContourResult result;
     result.surfaces = std::move(direct->surfaces);
+    if (direct_options.active_cells_only) number_in_whole(input.cell_numbers, result.surfaces);
     result.field = std::move(direct->field);
     result.cells_left_out = direct->cells_left_out;
     result.coarse_tets = direct->coarse_tets;
@@ -69,8 +89,7 @@ bool Contour::can_do_with_active_cells(const ContourOptions& options) {
     const bool gradients = options.normals == Normals::gradient;
     const Method method = options.method.value_or(method_for(options.surfaces, gradients));
     return !options.expected_isovalues.empty() && options.surfaces > 0 && method == Method::direct && options.engine &&
-           options.engine->name() == cpu_engine()->name() && !gradients && !options.source_cells &&
-           !options.exact_vertices && !options.frame;
+           options.engine->name() == cpu_engine()->name() && !gradients && !options.exact_vertices && !options.frame;
 }
 
 Result<Contour> Contour::create(ContourInput given, const ContourOptions& options, const Run& run) {

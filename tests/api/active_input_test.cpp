@@ -77,7 +77,7 @@ TEST_F(ActiveInput, IsCompletedForTheRangeOfTheField) {
 TEST_F(ActiveInput, IsCompletedForOptionsThatNeedAllCells) {
     std::vector<ContourOptions> each(6, options({0.1}));
     each[0].normals = Normals::gradient;
-    each[1].source_cells = true;
+    each[1].source_cells = true; // of which the input has no numbers
     each[2].method = Method::clusters;
     each[3].expected_isovalues.clear();
     each[4].surfaces = 1000;

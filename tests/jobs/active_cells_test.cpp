@@ -88,6 +88,26 @@ TEST(ActiveCellsOfFiles, GiveTheFileOfAllCells) {
         }
 }
 
+TEST(ActiveCellsOfFiles, AreOfAnyNumberOfIsovaluesWithTheirNumbers) {
+    const test::TemporaryFolder folder;
+    const std::string file = folder.file("grid.vtu");
+    for (const char* shape : {"shuffled", "hex", "mixed"})
+        for (const std::size_t isovalues : {1, 2, 11, 31}) {
+            SCOPED_TRACE(testing::Message() << shape << " " << isovalues);
+            ASSERT_TRUE(write_grid(made(shape, 12), file));
+            ExtractJob job = active_job(file, folder.file("active.vtp"));
+            job.isovalues.clear();
+            for (std::size_t i = 0; i < isovalues; ++i)
+                job.isovalues.push_back(0.05 * static_cast<double>((7 * i) % 31) - 0.7);
+            job.source_cells = true;
+            job.edge_ends = isovalues == 2;
+            Listener listener;
+            EXPECT_EQ(extract_files(job, listener).value().method, Method::direct);
+            EXPECT_FALSE(was_read_twice(listener));
+            EXPECT_TRUE(test::content_of(job.out) == reference_file(job, folder));
+        }
+}
+
 TEST(ActiveCellsOfFiles, AreAmongCellsWithoutVolume) {
     const test::TemporaryFolder folder;
     Grid grid = made("mixed", 8);

@@ -262,7 +262,31 @@ TEST(ActiveCellsOfPieces, KeepEdgeEndsDegenerateTrianglesAndTies) {
     expect_same_surface(folder, file, {.edge_ends = true});
     expect_same_surface(folder, file, {.field = "integer", .isovalues = {2, 3}});
     expect_same_surface(folder, file, {.field = "integer", .isovalues = {2}, .edge_ends = true, .degenerate = true});
-    expect_same_surface(folder, file, {.source_cells = true}, true);
+}
+
+std::vector<double> many_isovalues() {
+    std::vector<double> isovalues;
+    for (int i = 0; i < 13; ++i) isovalues.push_back(0.17 * ((5 * i) % 13) - 1);
+    return isovalues;
+}
+
+TEST(ActiveCellsOfPieces, AreOfAnyNumberOfIsovalues) {
+    const test::TemporaryFolder folder;
+    for (const char* shape : {"shuffled", "mixed"}) {
+        const std::string file = write_pieces(folder, {.shape = shape});
+        expect_same_surface(folder, file, {.isovalues = many_isovalues(), .edge_ends = true});
+        expect_same_surface(folder, file, {.field = "integer", .isovalues = {0, 1, 2, 3, 4, 5, 6, 7, 8}});
+    }
+}
+
+TEST(ActiveCellsOfPieces, HaveTheNumbersOfAllAsSourceCells) {
+    const test::TemporaryFolder folder;
+    for (const char* shape : {"shuffled", "mixed"}) {
+        expect_same_surface(folder, write_pieces(folder, {.shape = shape}), {.source_cells = true});
+        expect_same_surface(folder, write_pieces(folder, {.shape = shape, .more = 7, .marked = true}),
+                            {.isovalues = many_isovalues(), .source_cells = true}, true);
+        expect_same_surface(folder, write_pieces(folder, {.shape = shape, .more = 7}), {.source_cells = true}, true);
+    }
 }
 
 TEST(ActiveCellsOfPieces, LeaveGhostCellsOut) {

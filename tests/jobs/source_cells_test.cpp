@@ -62,6 +62,12 @@ void expect_numbers_of_file(const std::string& file, const test::TemporaryFolder
             ASSERT_TRUE(done) << done.error().message;
             const Surface surface = read_surface(job.out).value().surface;
             expect_equal(surface.source_cells, field_called(surface.cell_fields, "id"));
+            job.with.emplace();
+            for (const HangingChoice hanging : {HangingChoice::leave, HangingChoice::interpolate}) {
+                job.grid.hanging_points = hanging;
+                ASSERT_TRUE(extract_files(job, listener));
+                expect_equal(read_surface(job.out).value().surface.source_cells, surface.source_cells);
+            }
         }
     ClipJob clip;
     clip.grid.file = file;

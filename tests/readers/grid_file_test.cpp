@@ -34,7 +34,8 @@ GridFile opened(const std::string& path) {
 }
 
 /// Of a session that has the whole grid.
-ContourResult expected(const Grid& grid, const std::string& field, const std::vector<std::string>& with = {}) {
+ContourResult expected(const Grid& grid, const std::string& field, const std::vector<std::string>& with = {},
+                       ContourOptions options = {}) {
     ContourInput input{close_hanging_points(grid).value().grid, {}, {}, {}};
     input.field = find_field(input.grid, field).value();
     for (const std::string& name : with) {
@@ -44,7 +45,6 @@ ContourResult expected(const Grid& grid, const std::string& field, const std::ve
             if (one.name == name) input.cell_fields.push_back(one);
         if (looks_like_expression(name)) input.point_fields.push_back({name, find_field(grid, name).value().values});
     }
-    ContourOptions options;
     options.surfaces = isovalues.size();
     return Contour::create(std::move(input), options).value().extract(isovalues).value();
 }
@@ -73,6 +73,20 @@ TEST(GridFile, GivesTheSurfacesOfTheWholeGrid) {
                         expected(grid, "gyroid", {"sphere", "2*sphere"}));
             expect_same(file.contour("gyroid + x", isovalues).value(), expected(grid, "gyroid + x"));
         }
+}
+
+TEST(GridFile, GivesSourceCellsOfTheWholeGrid) {
+    const TemporaryFolder folder;
+    FileContourOptions options;
+    options.contour.source_cells = true;
+    for (const char* shape : {"shuffled", "mixed"}) {
+        const Grid grid = made(shape);
+        ASSERT_TRUE(write_grid(grid, folder.file("grid.vtu")));
+        options.contour.expected_isovalues = isovalues;
+        options.contour.surfaces = isovalues.size();
+        FileSession started = opened(folder.file("grid.vtu")).session("gyroid", options).value();
+        expect_same(started.contour.extract(isovalues).value(), expected(grid, "gyroid", {}, options.contour));
+    }
 }
 
 TEST(GridFile, CarriesCellFieldsAndReadsAllForThem) {

@@ -88,7 +88,8 @@ private:
         for (const Piece& piece : all_.pieces) {
             if (piece.cell_count() == 0) continue;
             if (!piece.unread || !piece.grid.cell_fields.empty() || !check_shape(points_as_piece(piece))) return false;
-            if (!piece.left_out.empty() && piece.left_out.size() != piece.cell_count()) return false;
+            if (!piece.left_out.empty() && (numbers_cells() || piece.left_out.size() != piece.cell_count()))
+                return false;
             const CellPlaces& places = piece.unread->places();
             typed_ = typed_ || !places.are_uniform() || (type && *type != places.type(0));
             type = places.type(0);
@@ -96,6 +97,9 @@ private:
         if (type && !typed_) type_ = static_cast<CellType>(*type);
         return type.has_value();
     }
+
+    /// Numbers of cells in the joined grid are those in the file, as long as none is left out.
+    bool numbers_cells() const { return options_.active_cells->options.extract.source_cells; }
 
     static Piece points_as_piece(const Piece& piece) {
         Piece points;
@@ -149,6 +153,7 @@ private:
         const Result<bool> hang = may_have_hanging_points(result.grid, pass_again);
         if (!hang && hang.error().code != ErrorCode::invalid_data) return hang.error();
         if (!hang || *hang) return std::optional<ReadResult>();
+        result.cell_numbers = filter.numbers();
         if (!used_.empty()) {
             const Box box = box_of(result.grid.points, used_);
             result.bounds = {box.lower[0], box.lower[1], box.lower[2], box.upper[0], box.upper[1], box.upper[2]};
@@ -245,6 +250,8 @@ private:
             if (auto done = pass_all(joined->numbers, targets, again); !done) return done.error();
             if (needs_all_ || again) return std::optional<ReadResult>();
             repeated = shared.settle(*filter, typed_);
+            if (repeated.left_out > 0 && numbers_cells()) needs_all_ = true;
+            if (needs_all_) return std::optional<ReadResult>();
         }
         note_repeated(repeated, all_.pieces, result.notes);
         std::ranges::move(of_fields, std::back_inserter(result.notes));
@@ -266,9 +273,10 @@ private:
 
     /// Of the joined points, their fields and what is noted of each.
     std::uint64_t bytes_of_points() const {
+        const std::uint64_t of_filter = options_.active_cells->isovalues.size() > 1 ? 3 : 1;
         std::uint64_t bytes = 0;
         for (const Piece& piece : all_.pieces) {
-            bytes += piece.grid.points.bytes() + piece.grid.points.tuples() * options_.active_cells->isovalues.size();
+            bytes += piece.grid.points.bytes() + piece.grid.points.tuples() * of_filter;
             for (const Field& field : piece.grid.point_fields) bytes += field.values.bytes();
         }
         return bytes;
