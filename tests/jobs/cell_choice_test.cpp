@@ -173,11 +173,24 @@ TEST(ChosenCells, OfAGridThatWasReadAreThoseOfReadingIt) {
     EXPECT_TRUE(source.only_cells(whole, {"layer=sand"}, {{"layer", 2, "sand"}}));
 }
 
-TEST(ChosenCells, LeaveAllNumbersAsTheyAre) {
+TEST(ChosenCells, HaveTheirPointsAlone) {
+    const test::TemporaryFolder folder;
+    const Grid grid = layered("kuhn");
+    const std::string file = written(folder, grid);
+    const Grid some = chosen(file, {"layer=1"});
+    std::vector<std::uint8_t> used(some.points.tuples());
+    for (std::size_t cell = 0; cell < some.cells.count(); ++cell)
+        for (std::size_t k = 4 * cell; some.cells.types.at(cell) != 0 && k < 4 * cell + 4; ++k)
+            used[static_cast<std::size_t>(some.cells.connectivity.at(k))] = 1;
+    EXPECT_EQ(std::ranges::count(used, 1), static_cast<std::ptrdiff_t>(used.size()));
+    EXPECT_EQ(some.point_fields[0].values.tuples(), used.size());
+    EXPECT_LT(some.points.tuples(), grid.points.tuples());
+}
+
+TEST(ChosenCells, LeaveNumbersOfCellsAsTheyAre) {
     const test::TemporaryFolder folder;
     const std::string file = written(folder, layered("mixed"));
     const Grid whole = chosen(file, {}), some = chosen(file, {"layer=1"});
-    EXPECT_EQ(some.points.tuples(), whole.points.tuples());
     ASSERT_EQ(some.cells.count(), whole.cells.count());
     for (std::size_t cell = 0; cell < some.cells.count(); ++cell)
         EXPECT_EQ(some.cells.types.at(cell),

@@ -2,14 +2,12 @@
 #include "io/pieces/block_choice.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <string>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "grid/cell_faces.hpp"
-#include "grid/patches.hpp"
+#include "grid/points/used_points.hpp"
 #include "io/files/escape.hpp"
 #include "io/pieces/join.hpp"
 
@@ -44,35 +42,6 @@ std::string list_of(const std::vector<BlockInfo>& blocks) {
     return list;
 }
 
-/// Streams that do not fit stay: the checks of what was read say so.
-template <class Number>
-void renumber_faces(Cells& cells, const Number& number) {
-    const auto faces = core::FaceReader::open(cells);
-    if (!faces || !faces->has_faces()) return;
-    std::vector<std::int64_t> stream(cells.faces.size());
-    for (std::size_t i = 0; i < stream.size(); ++i) stream[i] = static_cast<std::int64_t>(faces->at(i));
-    for (std::size_t cell = 0; cell < cells.count(); ++cell) {
-        if (!core::fault_of_faces(*faces, cell, std::numeric_limits<std::uint64_t>::max()).empty()) return;
-        for (std::uint64_t at = faces->begin(cell) + 1; at < faces->end(cell);)
-            for (std::uint64_t left = faces->at(at++); left > 0; --left, ++at) stream[at] = number(faces->at(at));
-    }
-    cells.faces = Array::own(std::move(stream));
-}
-
-/// The tuples of `values` whose number `kept` marks.
-Array kept_tuples(const Array& values, const std::vector<std::uint8_t>& kept, std::size_t count) {
-    if (values.empty()) return values;
-    return values.visit([&](auto from) {
-        using Value = std::remove_const_t<typename decltype(from)::value_type>;
-        const std::size_t width = values.components();
-        std::vector<Value> to;
-        to.reserve(count * width);
-        for (std::size_t i = 0; i < kept.size(); ++i)
-            if (kept[i]) to.insert(to.end(), from.begin() + i * width, from.begin() + (i + 1) * width);
-        return Array::own(std::move(to), width);
-    });
-}
-
 } // namespace
 
 Result<std::vector<bool>> chosen_blocks(const std::vector<BlockInfo>& blocks, const ReadOptions& options) {
@@ -99,42 +68,15 @@ void announce_block(FileInfo& info, const BlockInfo& block) {
 }
 
 void drop_unused_points(Piece& piece) {
-    Grid& grid = piece.grid;
-    const std::size_t count = grid.points.tuples();
-    std::vector<std::uint8_t> used(count);
-    std::vector<std::int64_t> corners(grid.cells.connectivity.size());
-    grid.cells.connectivity.visit([&](auto from) {
-        for (std::size_t i = 0; i < corners.size(); ++i) {
-            corners[i] = static_cast<std::int64_t>(from[i]);
-            const auto point = static_cast<std::size_t>(corners[i]);
-            if (point < count) used[point] = 1;
-        }
-    });
-    std::vector<std::int64_t> place(count, -1);
-    std::int64_t next = 0;
-    for (std::size_t i = 0; i < count; ++i)
-        if (used[i]) place[i] = next++;
-    if (static_cast<std::size_t>(next) == count) return;
-    for (std::int64_t& corner : corners)
-        if (static_cast<std::size_t>(corner) < count) corner = place[static_cast<std::size_t>(corner)];
-        else corner = next; // still no point: the checks of what was read say so
-    grid.patches = core::renumbered(grid.patches,
-                                    [&](std::uint64_t point) { return point < count ? place[point] : std::int64_t{-1}; });
-    const auto kept = static_cast<std::size_t>(next);
-    renumber_faces(grid.cells, [&](std::uint64_t point) { return point < count ? place[point] : next; });
-    grid.cells.connectivity = Array::own(std::move(corners));
-    grid.points = kept_tuples(grid.points, used, kept);
-    grid.point_numbers = kept_tuples(grid.point_numbers, used, kept);
-    piece.point_ids = kept_tuples(piece.point_ids, used, kept);
-    for (Field& field : grid.point_fields) field.values = kept_tuples(field.values, used, kept);
+    const std::vector<std::uint8_t> kept = core::keep_used_points(piece.grid);
+    if (!kept.empty()) piece.point_ids = core::kept_tuples(piece.point_ids, kept);
 }
 
 Result<void> drop_left_out_cells(Piece& piece) {
     if (!piece.cell_ids.empty()) {
         std::vector<std::uint8_t> kept;
         for (const std::uint8_t mark : piece.left_out) kept.push_back(mark == 0);
-        const auto count = static_cast<std::size_t>(std::ranges::count(kept, 1));
-        piece.cell_ids = kept_tuples(piece.cell_ids, kept, count);
+        piece.cell_ids = core::kept_tuples(piece.cell_ids, kept);
     }
     Loaded loaded;
     Piece& all = loaded.pieces.emplace_back();

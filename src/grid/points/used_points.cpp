@@ -1,0 +1,96 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "grid/points/used_points.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <type_traits>
+#include <utility>
+
+#include "grid/cell_faces.hpp"
+#include "grid/cells.hpp"
+#include "grid/patches.hpp"
+
+namespace isotet::core {
+
+namespace {
+
+/// Streams that do not fit stay: the checks of what was read say so.
+template <class Number>
+void renumber_faces(Cells& cells, const Number& number) {
+    const auto faces = FaceReader::open(cells);
+    if (!faces || !faces->has_faces()) return;
+    std::vector<std::int64_t> stream(cells.faces.size());
+    for (std::size_t i = 0; i < stream.size(); ++i) stream[i] = static_cast<std::int64_t>(faces->at(i));
+    for (std::size_t cell = 0; cell < cells.count(); ++cell) {
+        if (!fault_of_faces(*faces, cell, std::numeric_limits<std::uint64_t>::max()).empty()) return;
+        for (std::uint64_t at = faces->begin(cell) + 1; at < faces->end(cell);)
+            for (std::uint64_t left = faces->at(at++); left > 0; --left, ++at) stream[at] = number(faces->at(at));
+    }
+    cells.faces = Array::own(std::move(stream));
+}
+
+/// By point: 1 where a cell uses it. Cells that do not fit the connectivity use what there is.
+std::vector<std::uint8_t> used_points(const Grid& grid, const std::vector<std::uint8_t>& is_corner) {
+    std::vector<std::uint8_t> used(grid.points.tuples());
+    IndexColumn(grid.cells.connectivity).visit([&](const auto* corners) {
+        for (std::size_t i = 0; i < is_corner.size(); ++i)
+            if (const std::uint64_t point = widened(corners[i]); is_corner[i] && point < used.size()) used[point] = 1;
+    });
+    return used;
+}
+
+/// By place in the connectivity: 0 where it is of a cell of type 0.
+std::vector<std::uint8_t> corners_of_cells(const Grid& grid) {
+    std::vector<std::uint8_t> is_corner(grid.cells.connectivity.size(), 1);
+    const auto cells = CellReader::open(grid);
+    if (!cells) return is_corner;
+    for (std::size_t cell = 0; cell < cells->count(); ++cell) {
+        if (cells->type(cell) != 0) continue;
+        const std::uint64_t first = std::min<std::uint64_t>(cells->first(cell), is_corner.size());
+        const std::uint64_t count = std::min<std::uint64_t>(cells->corners(cell), is_corner.size() - first);
+        std::fill_n(is_corner.begin() + static_cast<std::ptrdiff_t>(first), count, std::uint8_t{0});
+    }
+    return is_corner;
+}
+
+} // namespace
+
+std::vector<std::uint8_t> keep_used_points(Grid& grid) {
+    const std::vector<std::uint8_t> is_corner = corners_of_cells(grid), used = used_points(grid, is_corner);
+    std::vector<std::int64_t> place(used.size(), -1);
+    std::int64_t next = 0;
+    for (std::size_t i = 0; i < used.size(); ++i)
+        if (used[i]) place[i] = next++;
+    if (static_cast<std::size_t>(next) == used.size()) return {};
+    const auto number = [&](std::uint64_t point) { // of a corner that counts
+        return point < place.size() ? std::max(place[point], std::int64_t{0}) : next;
+    };
+    std::vector<std::int64_t> corners(is_corner.size());
+    IndexColumn(grid.cells.connectivity).visit([&](const auto* from) {
+        for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = is_corner[i] ? number(widened(from[i])) : 0;
+    });
+    grid.patches = renumbered(
+        grid.patches, [&](std::uint64_t point) { return point < place.size() ? place[point] : std::int64_t{-1}; });
+    renumber_faces(grid.cells, number);
+    grid.cells.connectivity = Array::own(std::move(corners));
+    grid.points = kept_tuples(grid.points, used);
+    grid.point_numbers = kept_tuples(grid.point_numbers, used);
+    for (Field& field : grid.point_fields) field.values = kept_tuples(field.values, used);
+    return used;
+}
+
+Array kept_tuples(const Array& values, const std::vector<std::uint8_t>& kept) {
+    if (values.empty()) return values;
+    return values.visit([&](auto from) {
+        using Value = std::remove_const_t<typename decltype(from)::value_type>;
+        const std::size_t width = values.components();
+        const auto count = static_cast<std::size_t>(std::ranges::count(kept, 1));
+        std::vector<Value> to;
+        to.reserve(count * width);
+        for (std::size_t i = 0; i < kept.size(); ++i)
+            if (kept[i]) to.insert(to.end(), from.begin() + i * width, from.begin() + (i + 1) * width);
+        return Array::own(std::move(to), width);
+    });
+}
+
+} // namespace isotet::core
