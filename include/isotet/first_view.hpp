@@ -36,6 +36,7 @@ struct FirstView {
     FirstReason reason = FirstReason::nothing;
     bool rough = false; ///< the field varies as much within cells as over the grid
     bool flat = false;  ///< the grid has flat cells alone
+    bool walls = false; ///< the field varies at the boundary alone: the cell field of the same name does not
 };
 
 /// "its name", "the file marks it", ...: why a field was chosen, to complete "'p' is shown first: ".
@@ -64,8 +65,9 @@ ISOTET_API std::vector<FieldInfo> describe_fields(const Grid& grid);
 /// Chooses what to show of a grid: the first candidate that varies and is a field, not noise; of those with reason
 /// `variation` the one whose values are spread most evenly over their range (entropy of a histogram of 64 bins).
 /// A field is noise, rough, where it varies as much within cells as over the grid: it colours the boundary, if it has a
-/// reason or there is no better one. Fields with values beyond 1e100 do not count. Without any field numbers of regions
-/// colour the boundary.
+/// reason or there is no better one. A point field whose values vary while those of the cell field of the same name do
+/// not (OpenFOAM's first step: the walls differ) comes last. Fields with values beyond 1e100 do not count. Without any
+/// field numbers of regions colour the boundary.
 ///
 /// `fields`  as announced; those that the grid does not hold are passed over
 ///
@@ -74,7 +76,7 @@ ISOTET_API std::vector<FieldInfo> describe_fields(const Grid& grid);
 /// Threads     safe from many threads on one grid
 ISOTET_API FirstView first_view(const Grid& grid, const std::vector<FieldInfo>& fields);
 
-/// Whether a field that find_field() knows has two different values.
+/// Whether a field that find_field() knows has two different values, and not at the boundary alone (FirstView::walls).
 ///
 /// Cost  as first_view()
 ISOTET_API bool field_varies(const Grid& grid, std::string_view name);

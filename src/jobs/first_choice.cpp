@@ -43,6 +43,7 @@ private:
         const Result<FoundField> found = choose_field(source_, wish_.field);
         if (!found) return is_missing(found.error());
         FieldsToRead read{found->point, found->cell};
+        add_twins(read);
         const Result<ReadResult> some = read_with_others(read, step);
         if (!some && some.error().code == ErrorCode::invalid_argument) return is_missing(some.error());
         if (!some) return some.error();
@@ -61,7 +62,16 @@ private:
     }
 
     bool shows_a_field() const {
-        return view_.draw == FirstDraw::isosurfaces || view_.draw == FirstDraw::field_on_boundary;
+        return !view_.walls && (view_.draw == FirstDraw::isosurfaces || view_.draw == FirstDraw::field_on_boundary);
+    }
+
+    /// Cell fields with the names of point fields: they tell whether these vary at the walls alone.
+    void add_twins(FieldsToRead& read) const {
+        if (!read.point || !read.cell) return;
+        for (const FieldInfo& field : source_.info().fields)
+            if (field.association == Association::cell &&
+                std::ranges::find(*read.point, field.name) != read.point->end())
+                add_names(*read.cell, {field.name});
     }
 
     /// Names that are preferred are looked at first: most often one of them is taken.
@@ -78,10 +88,12 @@ private:
             ++named;
         }
         if (named > 0 && fields.size() > most_at_first) {
+            add_twins(read);
             const Result<ReadResult> some = read_with_others(read, step);
             if (!some) return some.error();
             view_ = first_view(some->grid, fields);
-            if (!view_.rough && (view_.reason == FirstReason::marked || view_.reason == FirstReason::name)) {
+            if (!view_.rough && !view_.walls &&
+                (view_.reason == FirstReason::marked || view_.reason == FirstReason::name)) {
                 source_.keep(*some, read, step);
                 return true;
             }

@@ -153,6 +153,26 @@ TEST(FirstView, ShowsTheGridWhereNothingVaries) {
     EXPECT_EQ(view_of(grid).reason, FirstReason::nothing);
 }
 
+TEST(FirstView, TakesWhatVariesAtTheBoundaryAloneLast) {
+    Grid grid = cube();
+    grid.point_fields = {{"p", of_points(grid, smooth)}};
+    grid.cell_fields = {{"p", Array::own(std::vector<double>(grid.cells.count(), 3))}};
+    const FirstView alone = first_view(grid, describe_fields(grid));
+    EXPECT_EQ(alone.field, "p");
+    EXPECT_TRUE(alone.walls);
+    EXPECT_FALSE(field_varies(grid, "p"));
+    grid.point_fields.push_back({"q", of_points(grid, smooth)});
+    const FirstView view = first_view(grid, describe_fields(grid));
+    EXPECT_EQ(view.field, "q") << "though p has the better name";
+    EXPECT_FALSE(view.walls);
+    EXPECT_TRUE(field_varies(grid, "q"));
+    std::vector<double> growing;
+    for (std::size_t cell = 0; cell < grid.cells.count(); ++cell) growing.push_back(static_cast<double>(cell));
+    grid.cell_fields[0].values = Array::own(std::move(growing));
+    EXPECT_EQ(first_view(grid, describe_fields(grid)).field, "p");
+    EXPECT_TRUE(field_varies(grid, "p"));
+}
+
 TEST(FirstView, PassesOverValuesBeyondAllMeasure) {
     Grid grid = cube();
     grid.point_fields = {{"T", of_points(grid, [](double x, double, double) { return 1e101 * x; })},

@@ -91,18 +91,31 @@ bool has_few_values(std::vector<double> values) {
     return std::unique(values.begin(), values.end()) - values.begin() <= most_parts;
 }
 
+bool has_two_values(const std::vector<double>& sample) {
+    constexpr double largest_value = 1e100, least_share = 1e-7;
+    if (sample.empty()) return false;
+    const auto [low, high] = std::ranges::minmax(sample);
+    const double size = std::max(std::abs(low), std::abs(high));
+    return size <= largest_value && high - low > least_share * size;
+}
+
+/// A point field whose twin, the cell field of the same name, does not vary.
+bool varies_at_walls_alone(const Grid& grid, const FirstCandidate& candidate) {
+    if (candidate.association != Association::point || candidate.arrays.size() != 1) return false;
+    const Field* twin = field_called(grid.cell_fields, candidate.arrays[0]);
+    if (!twin || twin->values.empty()) return false;
+    const core::SampledValues sample = core::sample_values(twin->values);
+    return !sample.values.empty() && !has_two_values(sample.values);
+}
+
 class Judge {
 public:
     explicit Judge(const Grid& grid, std::span<const std::uint64_t> sampled = {}) : grid_(grid), sampled_(sampled) {}
 
     Judged judge(const Array& values, Association association) {
-        constexpr double largest_value = 1e100, least_share = 1e-7;
         Judged judged;
         const core::SampledValues sample = core::sample_values(values);
-        if (sample.values.empty()) return judged;
-        const auto [low, high] = std::ranges::minmax(sample.values);
-        const double size = std::max(std::abs(low), std::abs(high));
-        judged.varies = size <= largest_value && high - low > least_share * size;
+        judged.varies = has_two_values(sample.values);
         if (!judged.varies) return judged;
         judged.whole = core::holds_whole_numbers(values, sample);
         const bool may_number = !is_floating(values.type()) || association == Association::cell;
@@ -225,6 +238,7 @@ FirstView chosen_view(const Grid& grid, const std::vector<FieldInfo>& fields, bo
         flat || judge.is_one_cell_thick() ? FirstDraw::field_on_boundary : FirstDraw::isosurfaces;
     const FirstCandidate* best = nullptr;
     const FirstCandidate* rough = nullptr;
+    const FirstCandidate* at_walls = nullptr;
     double most = 0;
     for (const FirstCandidate& candidate : candidates) {
         const bool named = candidate.reason != FirstReason::variation;
@@ -233,6 +247,10 @@ FirstView chosen_view(const Grid& grid, const std::vector<FieldInfo>& fields, bo
         if (!values) continue;
         const Judged judged = judge.judge(*values, candidate.association);
         if (!judged.varies || is_numbering(candidate, judged)) continue;
+        if (varies_at_walls_alone(grid, candidate)) {
+            if (!at_walls) at_walls = &candidate;
+            continue;
+        }
         if (judged.rough) {
             if (!rough) rough = &candidate;
             continue;
@@ -246,6 +264,11 @@ FirstView chosen_view(const Grid& grid, const std::vector<FieldInfo>& fields, bo
     if (rough) {
         FirstView view = view_of(*rough, FirstDraw::field_on_boundary, rough->reason);
         view.rough = true;
+        return view;
+    }
+    if (at_walls) {
+        FirstView view = view_of(*at_walls, surfaces, at_walls->reason);
+        view.walls = true;
         return view;
     }
     return regions_of(grid, fields, judge);
@@ -269,7 +292,10 @@ bool field_varies(const Grid& grid, std::string_view name) {
     const Result<PointField> field = find_field(grid, name);
     if (!field) return false;
     Judge judge(grid);
-    return judge.judge(field->values, Association::point).varies;
+    if (!judge.judge(field->values, Association::point).varies) return false;
+    const std::string array(field_called(grid.point_fields, std::string(name)) ? name
+                                                                               : name.substr(0, name.rfind(':')));
+    return !varies_at_walls_alone(grid, {array, Association::point, {array}, {}});
 }
 
 } // namespace isotet
