@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import threading
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,7 @@ class Session:
     """
 
     def __init__(self):
+        self.lock = threading.RLock()  # held from setting it to its surface, where threads share it
         self._session: _isotet.Contour | None = None
         self._cells: _isotet.Cells | None = None
         self.times: tuple[int, ...] = ()  # of the cells

@@ -209,16 +209,18 @@ class GridAccessor:
     def _extract(self, scalars: Scalars, values: list[float], out, compute_scalars: bool, *, normals: bool, **how) -> None:
         """What isotet contours of the grid."""
         grid, cells = self._grid, self._unstructured()
-        self._session.look_at(cells)
-        if self._session.others == cells.n_cells:
-            return
         fields, cell_fields = carried_of(grid.GetPointData(), scalars.replaced), carried_of(grid.GetCellData())
         if normals:
             fields = [named for named in fields if named[0] != "Normals"]
         how.update(grid=cells, scalars=scalars, normals=normals, surfaces=self._expected, fields=fields, cell_fields=cell_fields)
-        (surface,) = contour_all([(self._session, how)], values)
+        session = self._session
+        with session.lock:
+            session.look_at(cells)
+            if session.others == cells.n_cells:
+                return
+            (surface,) = contour_all([(session, how)], values)
         left_out = cells.n_cells if surface is None else surface._how["cells_left_out"]
-        self._warn_of_cells("leaves out", left_out and left_out - self._session.others - self._session.empty_cells)
+        self._warn_of_cells("leaves out", left_out and left_out - session.others - session.empty_cells)
         if surface is None:
             return
         finish(surface, values, scalars, fields, compute_scalars, True, out)
@@ -378,8 +380,10 @@ class GridAccessor:
         Cell arrays and normals may come later."""
         self._expected = MANY
         chosen, _ = self._scalars(scalars, preference)
-        self._session.look_at(self._unstructured())
-        self._session.pack(self._unstructured(), chosen, normals=compute_normals, surfaces=MANY, fields=[], cell_fields=[])
+        session = self._session
+        with session.lock:
+            session.look_at(self._unstructured())
+            session.pack(self._unstructured(), chosen, normals=compute_normals, surfaces=MANY, fields=[], cell_fields=[])
 
     @property
     def report(self) -> dict[str, Any]:

@@ -5,6 +5,7 @@ import gc
 import os
 import subprocess
 import sys
+import threading
 import weakref
 from importlib.metadata import entry_points
 
@@ -737,3 +738,22 @@ def test_hidden_cells_are_no_cause_of_a_warning():
     grid.cell_data["vtkGhostType"] = np.full_like(marks, 32)
     assert grid.isotet.contour([0.9], "sphere").n_cells == 0
     assert grid.isotet.slice("x").n_cells == 0
+
+
+def test_one_accessor_serves_many_threads():
+    grid = isotet.make("kuhn", 16, ["sphere", "gyroid"]).to_pyvista()
+    alone = {name: grid.isotet.contour([0.4], scalars=name).n_points for name in ("sphere", "gyroid")}
+    wrong = []
+
+    def contour(first: int) -> None:
+        for i in range(25):
+            name = ("sphere", "gyroid")[(first + i) % 2]
+            if grid.isotet.contour([0.4], scalars=name).n_points != alone[name]:
+                wrong.append(name)
+
+    threads = [threading.Thread(target=contour, args=(first,)) for first in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not wrong
