@@ -226,5 +226,14 @@ TEST(ReadAmr, AMissingPieceIsAnErrorWithItsName) {
     EXPECT_NE(result.error().message.find("3.vti"), std::string::npos);
 }
 
+TEST(AmrLattice, TakesSpacingsOfSixDigits) {
+    io::amr::Hierarchy boxes;
+    for (const double spacing : {0.833333, 0.416667, 0.208333, 0.104167})
+        boxes.levels.push_back({{spacing, spacing, spacing}, {{{0, 0, 0}, {1, 1, 1}}}});
+    EXPECT_EQ(io::amr::Lattice::make(boxes).value().steps(0, 0), 8);
+    boxes.levels[3].spacing[1] = 0.10418;
+    EXPECT_FALSE(io::amr::Lattice::make(boxes));
+}
+
 } // namespace
 } // namespace isotet::test

@@ -15,7 +15,7 @@ namespace {
 constexpr double most_steps = 1 << 20;                        // of the finest level in one of the coarsest
 constexpr std::int64_t most_number = std::int64_t{1} << 30;   // of a cell in its level
 constexpr std::uint64_t most_points = std::uint64_t{1} << 62; // of the lattice
-constexpr double in_step = 1e-6;                              // spacings are written as text, or in single precision
+constexpr double in_step = 1e-5; // spacings are written with 6 digits, or in single precision
 constexpr const char* axis_names[] = {"x", "y", "z"};
 
 Result<void> check_level(const Level& level, std::size_t number) {

@@ -169,8 +169,8 @@ Result<Contents> open_contents(std::string_view bytes) {
     contents.tags = *tags;
     if (contents.tags.physical) {
         auto names = names_of_groups(contents.file, 3, physical_name);
-        if (!names) return names.error();
-        contents.info.regions = *std::move(names);
+        if (names) contents.info.regions = *std::move(names);
+        else contents.notes.push_back(names.error().message + "; regions have no names");
     }
     name_views(contents);
     find_times(contents);
@@ -241,10 +241,9 @@ Result<void> add_data_field(const Contents& contents, const FieldInfo& info, std
 
 /// Elements of physical surfaces.
 Result<BoundaryPatches> physical_surfaces(const File& file, const Grid& grid, const std::vector<std::int32_t>& physical) {
-    const auto names = names_of_groups(file, 2, physical_name);
-    if (!names) return names.error();
     core::PatchList list;
-    for (const RegionName& name : *names) list.name(name.number, name.name);
+    if (const auto names = names_of_groups(file, 2, physical_name)) // what is wrong with them has been noted
+        for (const RegionName& name : *names) list.name(name.number, name.name);
     const auto cells = core::CellReader::open(grid);
     if (!cells) return cells.error();
     for (std::size_t cell = 0; cell < cells->count(); ++cell) {

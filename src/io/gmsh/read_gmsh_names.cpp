@@ -10,13 +10,23 @@ namespace isotet::io::gmsh {
 
 namespace {
 
-/// What stands in quotes on the rest of a line.
-std::optional<std::string> quoted_rest(TextScanner& scanner) {
-    const std::string_view rest = scanner.rest();
-    const std::size_t line = std::min(rest.find('\n'), rest.size());
-    const std::size_t begin = rest.substr(0, line).find('"'), end = rest.substr(0, line).rfind('"');
+struct Group {
+    std::int32_t dimension = 0, number = 0;
+    std::string name;
+};
+
+/// What the rest of a line says, as in 3 7 "steel"; version 2.0 has no dimensions, and a blank need not stand before the name.
+std::optional<Group> group_of(std::string_view line, Version version) {
+    const std::size_t begin = line.find('"'), end = line.rfind('"');
     if (begin == std::string_view::npos || end == begin) return std::nullopt;
-    return std::string(rest.substr(begin + 1, end - begin - 1));
+    Group group{0, 0, std::string(line.substr(begin + 1, end - begin - 1))};
+    TextScanner numbers(line.substr(0, begin));
+    if (!numbers.number(group.dimension)) return std::nullopt;
+    if (!numbers.number(group.number)) {
+        if (version != Version::v2) return std::nullopt;
+        group.number = std::exchange(group.dimension, 3);
+    }
+    return group;
 }
 
 } // namespace
@@ -30,18 +40,16 @@ Result<std::vector<RegionName>> names_of_groups(const File& file, std::int32_t o
     if (!scanner.number(count) || count < 0)
         return broken(*section, "has " + scanner.where() + " where the number of names should stand");
     for (std::int64_t i = 0; i < count; ++i) {
-        std::int32_t dimension = 0, number = 0;
-        bool numbers = scanner.number(dimension);
-        if (numbers && !scanner.number_of_line(number)) { // version 2.0 has no dimensions
-            numbers = file.version == Version::v2;
-            number = std::exchange(dimension, 3);
-        }
-        std::optional<std::string> name = numbers ? quoted_rest(scanner) : std::nullopt;
-        if (!name)
+        const std::size_t begin = scanner.position();
+        std::optional<Group> group = group_of(scanner.line(), file.version);
+        if (!group) {
+            scanner.seek(begin);
+            scanner.at_end();
             return broken(*section,
                           fmt::format("should have {} names, but {} is none: {}", count, i + 1, scanner.where()));
-        scanner.next_line();
-        if (dimension == of_dimension) names.push_back({std::string(field), number, *std::move(name)});
+        }
+        if (group->dimension == of_dimension)
+            names.push_back({std::string(field), group->number, std::move(group->name)});
     }
     return names;
 }
