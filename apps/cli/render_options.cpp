@@ -288,7 +288,9 @@ Command add_render_command(const Command& program, RenderCommand& render) {
     command
         .add_count(
             "--levels", {1, 100}, [&](std::uint64_t n) { render.levels = n; }, "N",
-            "N isovalues evenly inside the range of the field, as isotet extract; default: 3 at round numbers")
+            "N isovalues evenly inside the range of the field without its rare values, the same at all time steps; "
+            "default: 3 at "
+            "round numbers")
         .excludes(isovalues);
     const Option sweep = add_sweep(command, render).excludes(isovalues);
     sweep.excludes(command.option("--levels"));
