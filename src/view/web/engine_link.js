@@ -22,13 +22,15 @@ export class EngineLink {
 
   failed(why) { this.on.text({say: 'error', about: 'engine', sentence: `The grid cannot be looked at: ${why}`}); }
 
-  /** @param message  {engine, grid or blobs, told} */
-  begin(message, transferred) {
+  /** @param message  {engine, grid or blobs, told}: as the thread takes it */
+  begin(message) {
     const code = URL.createObjectURL(new Blob([partBytes('worker')], {type: 'text/javascript'}));
     this.worker = new Worker(code);
-    this.worker.onmessage = ({data}) => this.take(data);
-    this.worker.onerror = (event) => this.failed(event.message);
-    this.worker.postMessage(message, transferred);
+    this.started = new Promise((resolve) => {
+      this.worker.onmessage = ({data}) => (data.started ? resolve() : this.take(data));
+      this.worker.onerror = (event) => { resolve(); this.failed(event.message); };
+    });
+    this.worker.postMessage(message);
   }
 
   take({text, frame}) {

@@ -1,10 +1,15 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // isotet as WebAssembly (src/web) in a thread of its own. It is told {engine, grid, told} once, or {engine, blobs, told}, and then
-// messages of the page; what it says goes back as {text} or {frame}.
+// messages of the page; what it says goes back as {started}, {text} or {frame}. Engine and grid are deflated, in base64.
+import {allBytes, fromBase64, inflated} from './base64.js';
 import {blobAsFile, bytesAsFile, Files} from './engine_files.js';
+
+/** Compiled while it is inflated. */
+const compiled = (text) => WebAssembly.compileStreaming(new Response(inflated(fromBase64(text)), {headers: {'Content-Type': 'application/wasm'}}));
 
 /**
  * isotet as WebAssembly, with a grid: packed, as bytes, or files that its readers read.
+ * @param engine a module, or its bytes
  * @param files  {path: {size, read}}, of which told.files names those to read; in place of `grid`
  * @param say    takes {text}, {frame} and, of extract(), {positions, triangles}
  */
@@ -16,8 +21,7 @@ export async function startEngine({engine, grid, files, told}, say) {
     frame: (at, count) => say({frame: bytes(at, count).buffer}),
     surface: (places, placeBytes, corners, cornerBytes) => say({positions: bytes(places, placeBytes).buffer, triangles: bytes(corners, cornerBytes).buffer}),
   };
-  const {instance} = await WebAssembly.instantiate(engine, {page, wasi_snapshot_preview1: given.imports()});
-  const {exports} = instance;
+  const made = await WebAssembly.instantiate(engine, {page, wasi_snapshot_preview1: given.imports()}), {exports} = made.instance ?? made;
   given.memory = exports.memory;
   exports._initialize();
   const tell = (text) => {
@@ -46,6 +50,7 @@ if (typeof onmessage !== 'undefined' && typeof document === 'undefined') {
   const why = (error) => (error instanceof WebAssembly.RuntimeError || error instanceof RangeError ?
     'isotet stopped, for lack of memory perhaps: a page may have 4 GB at most, the program all of the machine' : error.message);
   const failed = (error) => say({text: {say: 'error', about: 'engine', sentence: `The grid cannot be looked at: ${why(error)}.`}});
+  say({started: true});
   let isotet = null, waits = true;
   const prepare = () => {
     try {
@@ -63,7 +68,8 @@ if (typeof onmessage !== 'undefined' && typeof document === 'undefined') {
         return;
       }
       const files = data.blobs && Object.fromEntries(data.blobs.map(({path, blob}) => [path, blobAsFile(blob)]));
-      isotet = await startEngine({...data, files}, say);
+      const engine = compiled(data.engine), grid = data.grid && await allBytes(inflated(fromBase64(data.grid)));
+      isotet = await startEngine({engine: await engine, grid, files, told: data.told}, say);
     } catch (error) {
       failed(error);
     }

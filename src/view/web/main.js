@@ -224,13 +224,6 @@ const messages = {
   },
 };
 
-try {
-  app.scene = new Scene(id('scene'));
-  app.scene.onRestored = () => { app.frame = null; app.sent = null; app.link.restart(); };
-} catch {
-  app.scene = null; // the server draws
-}
-
 app.link = new Link(app.token, {
   open: () => { id('lost').hidden = true; document.body.dataset.link = 'open'; },
   other: forgetGrid,
@@ -251,6 +244,15 @@ app.link = new Link(app.token, {
   frame: takeFrame,
   part: (bytes) => app.save.takePart(bytes),
 });
+
+await app.link.started; // the thread, where there is one: WebGL's beginning may take as long as that of the engine
+
+try {
+  app.scene = new Scene(id('scene'));
+  app.scene.onRestored = () => { app.frame = null; app.sent = null; app.link.restart(); };
+} catch {
+  app.scene = null; // the server draws
+}
 
 new Pointer(id('scene'), app.camera, () => (serverDraws() ? null : app.scene), {
   moved, middle: () => app.grid && stretched(app.grid.lower.map((v, i) => (v + app.grid.upper[i]) / 2)), level: (steps) => app.slider.step(steps), click: pickAt,

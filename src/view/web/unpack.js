@@ -1,21 +1,15 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Meshes out of a file: base64, inflated by the browser, then columns of differences (src/view/saved_mesh.hpp).
+import {allBytes, fromBase64, inflated} from './base64.js';
 
-function fromBase64(text) {
-  if (Uint8Array.fromBase64) return Uint8Array.fromBase64(text);
-  const letters = atob(text), bytes = new Uint8Array(letters.length);
-  for (let i = 0; i < letters.length; ++i) bytes[i] = letters.charCodeAt(i);
-  return bytes;
-}
+/** What stands in the file under this name: base64. */
+export const partText = (name) => document.getElementById(name).textContent;
 
-/** The bytes that stand in the file under this name, as they are. */
-export const partBytes = (name) => fromBase64(document.getElementById(name).textContent);
+/** Its bytes, as they are. */
+export const partBytes = (name) => fromBase64(partText(name));
 
 /** The same, inflated. */
-export async function unpack(name) {
-  const stream = new Blob([partBytes(name)]).stream().pipeThrough(new DecompressionStream('deflate'));
-  return new Uint8Array(await new Response(stream).arrayBuffer());
-}
+export const unpack = (name) => allBytes(inflated(partBytes(name)));
 
 /** Columns of numbers of so many bytes each, the lowest bytes of all first. */
 class Columns {
