@@ -19,7 +19,7 @@ export class ChartSlider {
   constructor(element, canvas, on) {
     this.element = element;
     this.canvas = canvas;
-    this.context = canvas.getContext('2d');
+    this.context = canvas.getContext('2d', {willReadFrequently: true}); // small, and painted anew while software draws the scene
     this.on = on;
     this.chart = null; // of the step that is shown; null: not there yet
     this.span = null;  // {lower, upper}: the ends of the slider

@@ -94,10 +94,17 @@ export function paintLabels(context, width, height) {
   write(context, shortened(context, caption(), width - 92 - size), 92, height - size);
 }
 
+let painted = ''; // what the canvas shows
+
 export function showLabels() {
-  const canvas = id('labels'), ratio = window.devicePixelRatio || 1, context = canvas.getContext('2d');
+  const canvas = id('labels'), ratio = window.devicePixelRatio || 1, {frame, state} = app;
+  const now = JSON.stringify([canvas.clientWidth, canvas.clientHeight, ratio, css('scene'), css('text'), state.labels, !!app.maps, frame && [caption(), frame.field, frame.scale, state.map, state.colorBy,
+    state.hidden, shown().map((one) => [one.isovalue, colorOf(one)])]]);
+  if (now === painted) return;
+  painted = now;
+  const context = canvas.getContext('2d', {willReadFrequently: true}); // it changes while software draws the scene
   [canvas.width, canvas.height] = [canvas.clientWidth, canvas.clientHeight].map((side) => Math.round(side * ratio));
   context.scale(ratio, ratio);
   paintLabels(context, canvas.clientWidth, canvas.clientHeight);
-  document.body.dataset.caption = app.state.labels && app.frame ? caption() : '';
+  document.body.dataset.caption = state.labels && frame ? caption() : '';
 }

@@ -43,6 +43,19 @@ export function stopWaiting() {
   id('bar').hidden = true;
 }
 
+/** The picture becomes pale where no frame comes for a while. */
+function startWaiting() {
+  waiting ||= setTimeout(() => { id('stage').classList.add('waiting'); id('bar').hidden = false; }, 200);
+}
+
+/** A pale picture stays so until the newest frame is there. */
+export function frameCame(number) {
+  if (number >= app.number) return stopWaiting();
+  if (!id('bar').hidden) return;
+  stopWaiting();
+  startWaiting();
+}
+
 /** What a frame depends on. */
 const wanted = () => JSON.stringify([app.state.field, app.state.value, app.state.pins.map((pin) => pin.value), app.state.colorBy, app.state.map, app.state.range, app.state.logarithmic,
   planesOf(app.state, 'slice'), app.state.boundary > 0, app.state.isosurfaces, app.state.coloredBoundary, app.state.solid, app.state.keep, cellsOf(app.state), app.state.step, document.body.dataset.step, serverDraws() && [app.camera.text(), pictureSize(), toMessage(app.state)]]);
@@ -77,14 +90,15 @@ function wish(moving) {
   app.sent = what;
   measured.lastMost = message.most;
   app.sentAt.set(++app.number, performance.now());
-  if (!waiting) waiting = setTimeout(() => { id('stage').classList.add('waiting'); id('bar').hidden = false; }, 100);
+  startWaiting();
 }
 
-/** A wish a picture of the screen, however fast the hand is; when it rests, in full. */
+/** A wish a picture of the screen, however fast the hand is; when it rests, in full. The first one does not wait for a picture. */
 export function wishSoon() {
   if (!wishPlanned) {
     wishPlanned = true;
-    requestAnimationFrame(() => wish(true));
+    if (app.number === 0) queueMicrotask(() => wish(true));
+    else requestAnimationFrame(() => wish(true));
   }
   restSoon();
 }
