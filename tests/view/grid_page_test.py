@@ -62,6 +62,18 @@ def test_drag(browser, path):
     check(abs(float(browser.value('document.body.dataset.shown')) - 0.6 * 3 ** 0.5) < 0.02, 'the value under the hand is shown')
 
 
+def test_first_picture_is_rough(browser, path):
+    """And the one at rest has all pixels."""
+    watch = browser.call('Page.addScriptToEvaluateOnNewDocument', source='''addEventListener('DOMContentLoaded', () => new MutationObserver(() => {
+      window.first ??= document.getElementById('scene').width;
+    }).observe(document.body, {attributes: true, attributeFilter: ['data-shown']}));''')
+    start(browser, path)
+    browser.call('Page.removeScriptToEvaluateOnNewDocument', **watch)
+    whole = browser.value('document.getElementById("scene").clientWidth')
+    check(browser.value('window.first') < 0.6 * whole, 'half the pixels each way')
+    browser.wait(f'document.getElementById("scene").width === {whole}')
+
+
 def test_fields_colours_slices(browser, path):
     start(browser, path, '#&f=gyroid&i=0.1&by=sphere&slice=0,0,1,0.2')
     browser.wait('document.body.dataset.field === "gyroid" && document.body.dataset.kinds.includes("slice")')

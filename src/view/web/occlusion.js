@@ -99,7 +99,8 @@ export class Occlusion {
   /** @param program  (vertex, fragment, names) as Scene.program() */
   constructor(gl, program) {
     this.gl = gl;
-    this.passes = [heights, mean].map((fragment) => program(wholePicture, fragment, ['depths', 'nearFar', 'parallel', 'pixel', 'reach', 'open']));
+    this.compile = () => [heights, mean].map((fragment) => program(wholePicture, fragment, ['depths', 'nearFar', 'parallel', 'pixel', 'reach', 'open']));
+    this.passes = null; // until they are needed
     this.depths = gl.createTexture();
     this.open = [gl.createTexture(), gl.createTexture()];
     this.frames = [0, 1, 2].map(() => gl.createFramebuffer()); // of the depths, and of both passes
@@ -137,6 +138,7 @@ export class Occlusion {
     if (strength <= 0) return;
     const gl = this.gl, [width, height] = [canvas.width, canvas.height].map((side) => Math.ceil(side / 2));
     this.resize(width, height);
+    this.passes ??= this.compile();
     this.reach = reach * size / 2;
     this.lens = {near, far, isParallel};
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.frames[0]);

@@ -14,7 +14,7 @@ import {hiddenClasses, showRegions} from './regions.js';
 import {factorsOf, planesOf} from './state.js';
 import {showSurfaces} from './surfaces.js';
 import {showVolume} from './volume.js';
-import {measureLine, measureSpeed, noteSize, pictureSize, refineSoon, restSoon, serverDraws, stopWaiting, wishSoon} from './wishes.js';
+import {frameCame, measureLine, measureSpeed, noteSize, pictureSize, refineSoon, restSoon, serverDraws, wishSoon} from './wishes.js';
 
 /** Colour and opacity of what the frame has: the slider's surface, pinned ones, slices, the boundary. */
 export function dressed() {
@@ -32,15 +32,27 @@ export function dressed() {
 
 const isosurfaces = () => (app.frame?.surfaces || []).filter(({kind}) => kind === 'surface');
 
-/** While something moves, a picture that takes long has half the pixels each way; in full when all rests. */
-let slow = false, resting = false, sharpTimer = 0, drawPlanned = false;
-function chooseScale() {
+/**
+ * While something moves, a picture that takes long is rough: half the pixels each way or a third, one sample each, no darker folds; in
+ * full when all rests. So is the first one, for its time is not known.
+ */
+let slow = true, part = 0.5, rests = false, sharpTimer = 0, drawPlanned = false;
+function chooseRoughness() {
   clearTimeout(sharpTimer);
-  if (slow && !resting) {
-    app.scene.scale = 0.5;
-    sharpTimer = setTimeout(() => { resting = true; drawSoon(); }, 250);
-  } else app.scene.scale = 1;
-  resting = false;
+  const rough = slow && !rests;
+  app.scene.scale = rough ? part : 1;
+  app.scene.smooth = !rough;
+  rests = false;
+}
+
+/** Whether the next pictures are rough, by how long this one took. */
+function measurePicture(took) {
+  if (app.scene.smooth) {
+    if (app.frame) slow = took > 50;
+    return;
+  }
+  part = took > 30 ? 0.35 : took < 10 ? 0.5 : part;
+  sharpTimer = setTimeout(() => { rests = true; drawSoon(); }, app.frame && took < 20 ? 0 : 250);
 }
 
 function draw() {
@@ -59,20 +71,20 @@ function draw() {
     return;
   }
   if (app.frame?.picture) return wishSoon();
-  chooseScale();
+  chooseRoughness();
   const [lower, upper] = seenBox(), pad = upper.map((u, i) => (u - lower[i]) * 0.001);
   const start = performance.now();
   if (app.maps) app.scene.setMap(mapColors());
   app.scene.draw(app.camera, dressed().filter((one) => !one.hidden), {background: css('scene'), lower: lower.map((v, i) => v - pad[i]),
     upper: upper.map((v, i) => v + pad[i]), stretch: factorsOf(app.state), hidden: hiddenClasses(), boxLower: app.grid.lower, boxUpper: app.grid.upper, outline: app.state.outline,
     edges: app.state.edges, mapped: !!app.state.colorBy, noData: app.frame?.scale?.no_data, line: css('soft'),
-    cuts: planesOf(app.state, 'clip'), occlusion: app.scene.scale < 1 ? 0 : 0.8});
+    cuts: planesOf(app.state, 'clip'), occlusion: app.scene.smooth ? 0.8 : 0});
   placeMark();
   drawAxes();
   app.scene.finish();
   id('stage').classList.add('drawn');
   const took = performance.now() - start;
-  if (app.scene.scale === 1) slow = took > 50;
+  measurePicture(took);
   measureSpeed(took);
   showLabels();
   if (app.frame && !app.frame.acknowledged) {
@@ -99,7 +111,7 @@ export function pictureAsSeen() {
   context.fillRect(0, 0, canvas.width, canvas.height);
   if (serverDraws()) context.drawImage(id('picture'), 0, 0);
   else {
-    resting = true;
+    rests = true;
     draw(); // what was drawn is there until the browser shows it
     context.drawImage(id('scene'), 0, 0, canvas.width, canvas.height);
   }
@@ -122,7 +134,12 @@ function axes() {
   return [0, 1, 2].map((i) => ({x: right[i], y: -app.camera.up[i], z: app.camera.direction[i], name: 'xyz'[i], color: colors[i]})).sort((a, b) => a.z - b.z);
 }
 
+let axesShown = '';
+
 function drawAxes() {
+  const camera = app.camera.text();
+  if (camera === axesShown) return;
+  axesShown = camera;
   id('axes').innerHTML = axes().map(({x, y, name, color}) =>
     `<line x2="${22 * x}" y2="${22 * y}" stroke="${color}" stroke-width="2.5" stroke-linecap="round"/>` +
     `<text x="${30 * x}" y="${30 * y}">${name}</text>`).join('');
@@ -194,7 +211,7 @@ async function takePicture(next) {
   acknowledge(app.frame);
   app.frame = next;
   acknowledge(app.frame);
-  if (next.number >= app.number) stopWaiting();
+  frameCame(next.number);
   showNotes(next);
   checkPicked();
   showSurfaces();
@@ -230,7 +247,7 @@ export function takeFrame(next) {
   app.frame = next;
   frameBoundary(next.surfaces);
   if (next.surfaces.some(({kind, mesh}) => kind === 'surface' && mesh)) app.made = {extract_ms: next.extract_ms, mesh_ms: next.mesh_ms, bytes: next.bytes};
-  if (next.number >= app.number) stopWaiting();
+  frameCame(next.number);
   showNotes(next);
   checkPicked();
   showSurfaces();

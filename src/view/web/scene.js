@@ -22,10 +22,13 @@ void main() {
   colorAt = colorPlace / 65534.0;
 }`;
 
-// Beyond a plane nothing is drawn, nor of a class that is hidden; places without data, above 1, are of no class.
-const cut = `
+const inPlace = `
 in vec3 inBox;
-in float colorAt;
+in float colorAt;`;
+const uncut = `${inPlace}
+void leaveOut() {}`;
+// Beyond a plane nothing is drawn, nor of a class that is hidden; places without data, above 1, are of no class.
+const cut = `${inPlace}
 uniform vec4 cuts[6];
 uniform int cutCount, classCount, hidden;
 void leaveOut() {
@@ -34,11 +37,11 @@ void leaveOut() {
 }`;
 
 // Light as in src/render/kernels/mesh.glsl.
-const meshFragment = `#version 300 es
+const meshFragment = (cut) => `#version 300 es
 precision highp float;
 in vec3 normal, position;
 flat in float noData;
-uniform vec4 color;
+uniform vec4 color;         // linear, as noDataColor
 uniform vec3 noDataColor;
 uniform sampler2D map;
 uniform bool mapped, faces;
@@ -59,14 +62,14 @@ void main() {
   float facing = clamp(dot(towards, toEye), 0.0, 1.0);
   float light = 0.16 + 0.84 * facing + 0.22 * (0.5 + 0.5 * towards.y) * (1.0 - facing);
   vec3 base = color.rgb;
-  if (mapped) base = noData > 0.5 ? noDataColor : texture(map, vec2((clamp(colorAt, 0.0, 1.0) * 63.0 + 0.5) / 64.0, 0.5)).rgb;
+  if (mapped) base = noData > 0.5 ? noDataColor : linear(texture(map, vec2((clamp(colorAt, 0.0, 1.0) * 63.0 + 0.5) / 64.0, 0.5)).rgb);
   float opacity = color.a < 1.0 ? 1.0 - pow(1.0 - min(color.a, 0.999), 1.0 / max(facing, 0.2)) : 1.0;
   if (color.a >= 1.0) light *= openness();
-  pixel = vec4(coded(min(vec3(1.0), linear(base) * light)), opacity);
+  pixel = vec4(coded(min(vec3(1.0), base * light)), opacity);
 }`;
 
 // Depth in 24 bits: what is under the pointer.
-const depthFragment = `#version 300 es
+const depthFragment = (cut) => `#version 300 es
 precision highp float;
 out vec4 pixel;
 ${cut}
@@ -100,14 +103,17 @@ export function rgb(text) {
   return [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16) / 255);
 }
 
+const linearRgb = (text) => rgb(text).map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4));
+
 export class Scene {
   /** Throws where the browser has no WebGL2. */
   constructor(canvas) {
     this.canvas = canvas;
     this.meshes = new Map();
-    this.scale = 1;
+    this.scale = 1;      // of the pixels of the screen
+    this.smooth = true;  // edges, by four samples a pixel
     this.stretch = [1, 1, 1];
-    const gl = this.gl = canvas.getContext('webgl2', {antialias: true, alpha: false, powerPreference: 'high-performance'});
+    const gl = this.gl = canvas.getContext('webgl2', {antialias: false, alpha: false, powerPreference: 'high-performance'});
     if (!gl) throw new Error('This browser has no WebGL2, which draws the surfaces.');
     this.start();
     canvas.addEventListener('webglcontextlost', (event) => event.preventDefault());
@@ -117,11 +123,13 @@ export class Scene {
   start() {
     const gl = this.gl;
     const program = (vertex, fragment, names) => this.program(vertex, fragment, names);
-    this.mesh = program(meshVertex, meshFragment, ['clip', 'toEye', 'toView', 'color', 'noDataColor', 'map', 'mapped', 'faces', 'parallel', 'cuts', 'cutCount', 'classCount', 'hidden',
+    this.mesh = this.cutOrWhole(meshFragment, ['clip', 'toEye', 'toView', 'color', 'noDataColor', 'map', 'mapped', 'faces', 'parallel', 'cuts', 'cutCount', 'classCount', 'hidden',
       'occlusion', 'occlusionReach', 'open', 'depths', 'nearFar']);
-    this.depth = program(meshVertex, depthFragment, ['clip', 'toEye', 'toView', 'cuts', 'cutCount', 'classCount', 'hidden']);
+    this.depth = this.cutOrWhole(depthFragment, ['clip', 'toEye', 'toView', 'cuts', 'cutCount', 'classCount', 'hidden']);
     this.line = program(lineVertex, lineFragment, ['clip', 'color', 'cuts', 'cutCount', 'classCount', 'hidden']);
     this.occlusion = new Occlusion(gl, program);
+    this.warmUp();
+    this.samples = {frame: gl.createFramebuffer(), color: gl.createRenderbuffer(), depth: gl.createRenderbuffer(), size: [0, 0]};
     this.map = gl.createTexture();
     this.mapColors = null;
     this.box = gl.createVertexArray();
@@ -157,6 +165,26 @@ export class Scene {
     const at = {program};
     for (const name of names) at[name] = gl.getUniformLocation(program, name);
     return at;
+  }
+
+  /** Drivers compile for a state when it is drawn with first: nothing is drawn, while the grid is not there yet. */
+  warmUp() {
+    const gl = this.gl, key = 'nothing';
+    gl.useProgram(this.mesh({cuts: [], hidden: {mask: 0}}).program);
+    this.add(key, {vertices: 3, vertexBytes: new Uint8Array(24), colors: new Uint16Array(3), corners: new Uint16Array(3)});
+    gl.bindVertexArray(this.meshes.get(key).array);
+    gl.enable(gl.DEPTH_TEST);
+    gl.drawElements(gl.TRIANGLES, 3, gl.UNSIGNED_SHORT, 0);
+    this.remove(key);
+  }
+
+  /** A function that gives the program for a look: one that leaves nothing out lets depths be tested first. Compiled when it is needed. */
+  cutOrWhole(fragment, names) {
+    const made = [null, null];
+    return ({cuts, hidden}) => {
+      const isCut = cuts.length > 0 || hidden.mask !== 0 ? 1 : 0;
+      return made[isCut] ??= this.program(meshVertex, fragment(isCut ? cut : uncut), names);
+    };
   }
 
   /** Takes a mesh of a frame (link.js) over. */
@@ -217,6 +245,30 @@ export class Scene {
     if (this.canvas.width !== width || this.canvas.height !== height) { this.canvas.width = width; this.canvas.height = height; }
   }
 
+  /** The frame that is drawn into. */
+  beginPicture() {
+    const gl = this.gl, {frame, color, depth, size} = this.samples, {width, height} = this.canvas;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.smooth ? frame : null);
+    gl.viewport(0, 0, width, height);
+    if (!this.smooth || (size[0] === width && size[1] === height)) return;
+    this.samples.size = [width, height];
+    const count = Math.min(4, gl.getParameter(gl.MAX_SAMPLES));
+    for (const [buffer, format, point] of [[color, gl.RGB8, gl.COLOR_ATTACHMENT0], [depth, gl.DEPTH_COMPONENT24, gl.DEPTH_ATTACHMENT]]) {
+      gl.bindRenderbuffer(gl.RENDERBUFFER, buffer);
+      gl.renderbufferStorageMultisample(gl.RENDERBUFFER, count, format, width, height);
+      gl.framebufferRenderbuffer(gl.FRAMEBUFFER, point, gl.RENDERBUFFER, buffer);
+    }
+  }
+
+  endPicture() {
+    if (!this.smooth) return;
+    const gl = this.gl, {width, height} = this.canvas;
+    gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
+    gl.blitFramebuffer(0, 0, width, height, 0, 0, width, height, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+    gl.invalidateFramebuffer(gl.READ_FRAMEBUFFER, [gl.COLOR_ATTACHMENT0, gl.DEPTH_ATTACHMENT]);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+  }
+
   /** The matrix of a box of size 1 that lies at `lower` to `upper` of the grid. */
   clip(rows, lower, upper) {
     const out = new Float32Array(16);
@@ -263,23 +315,22 @@ export class Scene {
       .filter(({mesh, opacity}) => mesh && mesh.lower && mesh.count > 0 && opacity > 0);
     const opaque = there.filter(({opacity}) => opacity >= 1), size = Math.max(...look.upper.map((u, i) => u - look.lower[i]));
     this.occlusion.find(opaque.length > 0 ? look.occlusion : 0, this.canvas, view, camera.projection === 'parallel', size, () => {
-      gl.useProgram(this.depth.program);
+      gl.useProgram(this.depth(look).program);
       for (const one of opaque) this.drawDepth(one, view.rows, look);
     });
-    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    gl.viewport(0, 0, this.canvas.width, this.canvas.height);
+    this.beginPicture();
     gl.clearColor(...rgb(look.background), 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     if (look.outline) this.drawBox(view.rows, look);
-    gl.useProgram(this.mesh.program);
-    const right = camera.right();
+    const program = this.mesh(look), right = camera.right();
+    gl.useProgram(program.program);
     // From the eye, in the directions of the picture.
     const eye = camera.projection === 'parallel' ? camera.target : camera.target.map((t, i) => t + camera.distance * camera.direction[i]);
     this.eyeRows = [right, camera.up, camera.direction].map((axis) => [...axis, -axis.reduce((sum, v, i) => sum + v * eye[i], 0)]).concat([[0, 0, 0, 1]]);
-    gl.uniform1i(this.mesh.parallel, camera.projection === 'parallel' ? 1 : 0);
-    gl.uniformMatrix3fv(this.mesh.toView, false, [0, 1, 2].flatMap((i) => [right, camera.up, camera.direction].map((axis) => axis[i] / look.stretch[i])));
-    this.occlusion.use(this.mesh);
-    gl.uniform3fv(this.mesh.noDataColor, rgb(look.noData || '#b8b8b8'));
+    gl.uniform1i(program.parallel, camera.projection === 'parallel' ? 1 : 0);
+    gl.uniformMatrix3fv(program.toView, false, [0, 1, 2].flatMap((i) => [right, camera.up, camera.direction].map((axis) => axis[i] / look.stretch[i])));
+    this.occlusion.use(program);
+    gl.uniform3fv(program.noDataColor, linearRgb(look.noData || '#b8b8b8'));
     gl.bindTexture(gl.TEXTURE_2D, this.map);
     if (look.edges) { gl.enable(gl.POLYGON_OFFSET_FILL); gl.polygonOffset(1, 1); }
     for (const one of opaque) this.drawMesh(one, view.rows, look);
@@ -288,6 +339,7 @@ export class Scene {
     const fixed = there.filter(({kind}) => kind !== 'surface');
     if (look.edges) this.drawEdges(fixed.length > 0 ? fixed : there, view.rows, look);
     this.drawTranslucent(there.filter(({opacity}) => opacity < 1), view.rows, look);
+    this.endPicture();
   }
 
   /** Inner surfaces lie in smaller boxes: far sides from the outer to the inner, then near sides back. */
@@ -312,22 +364,22 @@ export class Scene {
   }
 
   drawMesh(one, rows, look) {
-    const gl = this.gl, {mesh, color, opacity, kind} = one;
-    gl.uniformMatrix4fv(this.mesh.clip, false, this.clip(rows, mesh.lower, mesh.upper));
-    gl.uniformMatrix4fv(this.mesh.toEye, false, this.clip(this.eyeRows, mesh.lower, mesh.upper));
-    gl.uniform1i(this.mesh.faces, kind !== 'surface' ? 1 : 0);
-    this.setCuts(this.mesh, one, look);
-    gl.uniform4f(this.mesh.color, ...rgb(color), opacity);
-    gl.uniform1i(this.mesh.mapped, look.mapped && mesh.colored ? 1 : 0);
+    const gl = this.gl, {mesh, color, opacity, kind} = one, program = this.mesh(look);
+    gl.uniformMatrix4fv(program.clip, false, this.clip(rows, mesh.lower, mesh.upper));
+    gl.uniformMatrix4fv(program.toEye, false, this.clip(this.eyeRows, mesh.lower, mesh.upper));
+    gl.uniform1i(program.faces, kind !== 'surface' ? 1 : 0);
+    this.setCuts(program, one, look);
+    gl.uniform4f(program.color, ...linearRgb(color), opacity);
+    gl.uniform1i(program.mapped, look.mapped && mesh.colored ? 1 : 0);
     gl.bindVertexArray(mesh.array);
     if (mesh.indexed) gl.drawElements(gl.TRIANGLES, mesh.count, mesh.type, 0);
     else gl.drawArrays(gl.TRIANGLES, 0, mesh.count);
   }
 
   drawDepth({mesh, kind}, rows, look) {
-    const gl = this.gl;
-    this.setCuts(this.depth, {mesh, kind}, look);
-    gl.uniformMatrix4fv(this.depth.clip, false, this.clip(rows, mesh.lower, mesh.upper));
+    const gl = this.gl, program = this.depth(look);
+    this.setCuts(program, {mesh, kind}, look);
+    gl.uniformMatrix4fv(program.clip, false, this.clip(rows, mesh.lower, mesh.upper));
     gl.bindVertexArray(mesh.array);
     if (mesh.indexed) gl.drawElements(gl.TRIANGLES, mesh.count, mesh.type, 0);
     else gl.drawArrays(gl.TRIANGLES, 0, mesh.count);
@@ -347,7 +399,7 @@ export class Scene {
       gl.drawElements(gl.LINES, mesh.lines.count, gl.UNSIGNED_INT, 0);
     }
     gl.disable(gl.BLEND);
-    gl.useProgram(this.mesh.program);
+    gl.useProgram(this.mesh(look).program);
   }
 
   makeEdges(mesh) {
@@ -421,7 +473,7 @@ export class Scene {
     gl.enable(gl.DEPTH_TEST);
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    gl.useProgram(this.depth.program);
+    gl.useProgram(this.depth(this.look).program);
     for (const {key, opacity, kind} of this.pickable()) {
       const mesh = this.meshes.get(key);
       if (!mesh || !mesh.lower || opacity <= 0 || (only && key !== only)) continue;
