@@ -179,6 +179,23 @@ TEST_F(ReadOpenfoamCase, PatchesWithoutValuesOfTheirOwnAreLeftOut) {
     }
 }
 
+TEST_F(ReadOpenfoamCase, ValuesOfAPatchThatAreNoneAreNotUsed) {
+    for (const std::string word : {"1e5", "calculated", "uniform", "#calc \"1 + 1\"", "$nothing", "nonuniform (1 x)"}) {
+        FoamFiles files = foam_case(box_, wave, {});
+        std::string& field = files["0.5/T"];
+        const std::size_t value = field.find("value");
+        ASSERT_NE(value, std::string::npos);
+        field.replace(value, field.find(';', value) - value, "value " + word);
+        write_case(folder_, files);
+        const auto result = read(folder_.file(""), last_step());
+        ASSERT_TRUE(result) << word << ": " << result.error().message;
+        ASSERT_FALSE(result->notes.empty()) << word;
+        EXPECT_NE(result->notes.back().find("/T: "), std::string::npos) << result->notes.back();
+        EXPECT_TRUE(result->notes.back().ends_with(": it is not used")) << result->notes.back();
+        EXPECT_TRUE(std::ranges::any_of(result->grid.point_fields, [](const Field& one) { return one.name == "T"; }));
+    }
+}
+
 TEST_F(ReadOpenfoamCase, ValuesOfAPatchThatDoNotFitAreNotUsed) {
     FoamFiles files = foam_case(box_, wave, {});
     std::string& field = files["0.5/T"];

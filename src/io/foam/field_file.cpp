@@ -107,10 +107,15 @@ private:
     Result<void> patch_entry(Scanner& scanner, const std::string& key, PatchEntry& patch) {
         if (key == "type") patch.type = scanner.token();
         if (key == "value") {
+            Scanner at_value = scanner;
             auto values = values_of(scanner, fmt::format("the value of patch {}", in_quotes(patch.key)), 0);
-            if (!values) return values.error();
-            patch.value = std::move(*values);
-            return scanner.expect(';', "value");
+            Result<void> read = values ? scanner.expect(';', "value") : values.error();
+            if (read) {
+                patch.value = std::move(*values);
+                return {};
+            }
+            field_.faults.insert(read.error().message);
+            scanner = std::move(at_value);
         }
         return scanner.skip_entry();
     }

@@ -35,13 +35,14 @@ struct FieldFile {
     std::size_t components = 1;
     std::optional<Values> inside;
     std::vector<PatchEntry> patches;
+    std::set<std::string> faults;      ///< of values of patches: these are taken for not given
     std::set<std::string> unread;      ///< files of an OpenFOAM installation that it includes
     bool has_constraint_types = false; ///< among these, entries without values for all constraint patches
 };
 
 /// `most`   as many tuples as a list may repeat one value for
-/// Errors   as CaseFiles::open(); invalid_data: broken or cut short; what would have to be computed or run (#calc,
-///          #codeStream); an included file outside of the case
+/// Errors   as CaseFiles::open(); invalid_data: broken or cut short; values inside that would have to be computed or run
+///          (#calc, #codeStream); an included file outside of the case
 Result<FieldFile> read_field_file(const CaseFiles& files, const std::string& name, std::size_t most,
                                   bool allow_outside);
 

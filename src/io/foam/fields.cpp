@@ -97,6 +97,7 @@ private:
                                                   in_quotes(file->header.type), in_quotes(type_)));
         single_ = single_ && file->header.single;
         unread_.merge(file->unread);
+        misfits_.merge(file->faults);
         if (auto placed = place(part, *file); !placed) return placed;
         if (!of_points_ && request_.points) keep_patches(part, *file);
         return {};

@@ -245,7 +245,12 @@ Result<void> read_fields(const CaseFiles& files, const CaseLayout& layout, const
             loaded.notes.push_back(fmt::format("{} {} no {} at this time: there is no data",
                                                fmt::join(read->lacking, ", "),
                                                read->lacking.size() > 1 ? "have" : "has", escaped(field.name)));
-        for (const std::string& wrong : read->misfits) loaded.notes.push_back(wrong + ": it is not used");
+        if (!read->misfits.empty())
+            loaded.notes.push_back(*read->misfits.begin() +
+                                   (read->misfits.size() > 1
+                                        ? fmt::format(": it and {} others of {} are not used",
+                                                      read->misfits.size() - 1, escaped(field.name))
+                                        : ": it is not used"));
         for (const std::string& file : read->unread) fields_including[file].push_back(escaped(field.name));
     }
     for (const auto& [file, names] : fields_including)
