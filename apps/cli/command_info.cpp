@@ -140,10 +140,10 @@ std::string first_table(const FirstView& first) {
                                : first.flat ? "its cells are flat"
                                             : "the grid is one cell thick");
         case FirstDraw::regions_on_boundary:
-            return fmt::format("the boundary, coloured by {}: no field varies, but regions do", first.field);
+            return fmt::format("the boundary, coloured by {}: no field varies that would be contoured", first.field);
         case FirstDraw::boundary: break;
         }
-        return std::string("the boundary: no field varies");
+        return std::string("the boundary: no field varies that would be contoured");
     };
     table.row({"shown first", text()});
     return table.text();

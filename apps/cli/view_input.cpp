@@ -17,7 +17,7 @@ void choose_first_view(const FirstView& first, const ViewStart& start, view::Vie
     FirstView shown = first;
     if (isovalues_are_given || start.isosurfaces_always) shown.draw = FirstDraw::isosurfaces;
     view::take_first_view(shown, state);
-    console.note(first.field.empty()                    ? std::string("no field varies: this is the grid")
+    console.note(first.field.empty() ? std::string("no field varies that would be contoured: this is the grid")
                  : shown.draw == FirstDraw::isosurfaces ? note_of_field(first)
                                                         : note_of(first));
 }

@@ -173,10 +173,13 @@ class Grid:
         if isinstance(fields, (str, np.ndarray)):
             raise TypeError(f"{of} is a {type(fields).__name__}, but must be names, or map names to arrays")
         own = getattr(self, of)
-        missing = [name for name in fields if name not in own]
-        if missing:
-            raise ValueError(f"{of} has no '{missing[0]}': there are {', '.join(own) or 'none'}")
-        return [(name, own[name]) for name in fields]
+        return [(name, own[name] if name in own else self._computed(name, of)) for name in fields]
+
+    def _computed(self, name: str, of: str) -> np.ndarray:
+        """An expression or a component, at the points."""
+        if of != "fields" or not (_isotet.looks_like_expression(name) or ":" in name):
+            raise ValueError(f"{of} has no '{name}': there are {', '.join(getattr(self, of)) or 'none'}")
+        return _isotet.find_field(self._grid, name, False, False, call_options(0, None)).values
 
     def contour(self, isovalues: npt.ArrayLike, field: npt.ArrayLike | str | None = None, *, normals: str = "none",
                 fields: Mapping[str, Any] | Iterable[str] | None = None,
@@ -196,8 +199,8 @@ class Grid:
             "none"; "gradient", one a vertex, along the field's gradient; "vertex", one a vertex, the mean of its triangles',
             which follows the surface on thin cells, too; "face", one a triangle.
         fields, cell_fields
-            What the surface carries: names, or mappings from names to arrays. Without them all `fields` and no
-            `cell_fields`, as the program does.
+            What the surface carries: names (of points also expressions and components), or mappings from names to arrays.
+            Without them all `fields` and no `cell_fields`, as the program does.
         edge_ends, source_cells
             Where each vertex lies, and of which cell each triangle is.
         ties

@@ -19,7 +19,6 @@
 #include <isotet/jobs/output_names.hpp>
 
 #include "grid/patches.hpp"
-#include "grid/points/used_points.hpp"
 #include "jobs/refuse.hpp"
 
 namespace isotet::jobs {
@@ -221,7 +220,6 @@ Result<ChosenCells> choose_cells(Grid grid, std::span<const CellChoice> choices,
         if (!chosen[cell] && (chosen_solid == 0 || core::has_a_volume(types[cell]))) types[cell] = 0;
     add_offsets(result.grid.cells);
     result.grid.cells.types = Array::own(std::move(types));
-    core::keep_used_points(result.grid);
     return result;
 }
 

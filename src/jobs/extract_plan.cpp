@@ -197,22 +197,20 @@ Result<void> choose_first_of(ExtractJob& job, GridSource& source, ExtractPlan& p
     const Result<FirstChoice> choice = choose_first(source, job.grid, wish, caller, caller.run());
     if (!choice) return choice.error();
     plan.steps = choice->steps;
-    if (!job.field.name.empty() || source.info().fields.size() < 2) {
-        if (job.field.name.empty()) job.field.name = choice->view.field;
-        return {};
-    }
     const std::vector<FieldInfo>& fields = source.info().fields;
+    if (!job.field.name.empty() || fields.empty()) return {};
     if (choice->view.field.empty())
         return Error{ErrorCode::invalid_data,
-                     fmt::format("none of the {} fields has two different values: there is nothing to contour; `field` "
-                                 "x, y or z contours a coordinate",
-                                 fields.size())};
+                     fmt::format("{} two different values: there is nothing to contour; `field` x, y or z contours a "
+                                 "coordinate",
+                                 fields.size() == 1 ? "the only field does not have"
+                                                    : fmt::format("none of the {} fields has", fields.size()))};
     if (choice->view.draw == FirstDraw::regions_on_boundary)
         return refusal("no field was named, and only numbers of regions vary, such as '{}': `field` names one to "
                        "contour",
                        choice->view.field);
     job.field.name = choice->view.field;
-    caller.note(note_of_field(choice->view));
+    if (fields.size() > 1) caller.note(note_of_field(choice->view));
     return {};
 }
 

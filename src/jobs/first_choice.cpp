@@ -126,13 +126,15 @@ bool may_look_on(const Error& error) {
     return error.code != ErrorCode::cancelled && error.code != ErrorCode::out_of_memory;
 }
 
-/// What needs no reading: the name that was given, or that of the only field.
+/// What needs no reading: the name that was given, or that of the only field, unless it numbers parts.
 std::string known_name(const GridSource& source, const ChoiceWish& wish) {
     if (!wish.field.name.empty()) return wish.field.name;
     const std::vector<FieldInfo>& fields = source.info().fields;
     if (fields.size() != 1 || !wish.only_field_will_do) return {};
     const std::vector<FirstCandidate> candidates = first_candidates(fields);
-    return candidates.empty() ? fields[0].name : candidates[0].name;
+    const bool may_number = fields[0].type != ScalarType::float32 && fields[0].type != ScalarType::float64;
+    if (candidates.empty() || (may_number && candidates[0].reason == FirstReason::variation)) return {};
+    return candidates[0].name;
 }
 
 } // namespace

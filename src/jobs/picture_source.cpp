@@ -331,8 +331,9 @@ Result<void> PictureSource::take_first_view(bool& contours, std::string& field, 
                                  "`field` x, y or z contours a coordinate",
                                  source_->info().fields.size())};
     const bool as_model = contours && !asks_for_field(job_) && color.empty() && first_.draw != FirstDraw::isosurfaces;
-    caller.note(first_.field.empty() ? std::string("no field varies: the boundary of the grid is drawn")
-                                     : note_of(first_));
+    caller.note(first_.field.empty()
+                    ? std::string("no field varies that would be contoured: the boundary of the grid is drawn")
+                    : note_of(first_));
     if (as_model) {
         contours = false;
         contents.model = true;

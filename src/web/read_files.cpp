@@ -51,7 +51,8 @@ void choose_first_view(const ReadResult& read, Told& told) {
     const FirstView first = first_view(read.grid, read.info.fields);
     take_first_view(first, told.state);
     if (is_of_reservoirs(read.info.format)) told.state.stretch = default_stretch(read.grid.points);
-    told.notes.push_back(first.field.empty() ? std::string("no field varies: this is the grid") : jobs::note_of(first));
+    told.notes.push_back(first.field.empty() ? std::string("no field varies that would be contoured: this is the grid")
+                                             : jobs::note_of(first));
 }
 
 /// Errors   as read() and GridView::create()

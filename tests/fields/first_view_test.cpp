@@ -153,6 +153,19 @@ TEST(FirstView, ShowsTheGridWhereNothingVaries) {
     EXPECT_EQ(view_of(grid).reason, FirstReason::nothing);
 }
 
+TEST(FirstView, PassesOverFieldsWithoutAValueInACellWithAVolume) {
+    Grid grid;
+    grid.points = Array::own(std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 2, 0, 0, 3, 0, 0, 3, 1, 0}, 3);
+    grid.cells.connectivity = Array::own(std::vector<std::int64_t>{0, 1, 2, 3, 4, 5, 6});
+    grid.cells.offsets = Array::own(std::vector<std::int64_t>{0, 4, 7});
+    grid.cells.types = Array::own(std::vector<std::uint8_t>{10, 5});
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    grid.point_fields = {{"temperature", Array::own(std::vector<double>{none, none, none, none, 1, 5, 9})},
+                         {"q", Array::own(std::vector<double>{1, 5, 9, 2, none, none, none})}};
+    EXPECT_EQ(first_view(grid, describe_fields(grid)).field, "q");
+    EXPECT_FALSE(field_varies(grid, "temperature"));
+}
+
 TEST(FirstView, TakesWhatVariesAtTheBoundaryAloneLast) {
     Grid grid = cube();
     grid.point_fields = {{"p", of_points(grid, smooth)}};

@@ -347,6 +347,11 @@ TEST(ExtractWithoutAField, RefusesNumbersOfRegionsAlone) {
                                folder.file("m.vtu"));
     EXPECT_NE(extract_files(job, listener).error().message.find("only numbers of regions vary, such as 'material'"),
               std::string::npos);
+    job.grid.file = write_made({"", {{"material", Values::halves, 1, cell}}, {}}, folder.file("only.vtu"));
+    EXPECT_EQ(extract_files(job, listener).error().code, ErrorCode::invalid_argument);
+    job.field.name = "material";
+    EXPECT_TRUE(extract_files(job, listener));
+    job.field.name.clear();
     job.grid.file = write_made({"", {{"T", Values::constant}, {"p", Values::constant}}, {}}, folder.file("c.vtu"));
     EXPECT_EQ(extract_files(job, listener).error().code, ErrorCode::invalid_data);
 }

@@ -104,6 +104,11 @@ def test_no_isovalues_give_a_surface_without_triangles(sphere):
 def test_fields_are_named_or_given(sphere):
     assert list(sphere.contour(0.5, "sphere").fields) == ["sphere", "gyroid"]
     assert list(sphere.contour(0.5, "sphere", fields=["gyroid"]).fields) == ["gyroid"]
+    computed = sphere.contour(0.5, "sphere", fields=["gyroid * 2", "mag(grad(sphere))"])
+    assert list(computed.fields) == ["gyroid * 2", "mag(grad(sphere))"]
+    assert np.array_equal(computed.fields["gyroid * 2"], 2 * sphere.contour(0.5, "sphere").fields["gyroid"])
+    with pytest.raises(ValueError, match="no field 'nothing'"):
+        sphere.contour(0.5, "sphere", fields=["nothing + 1"])
     with pytest.raises(ValueError, match="fields has no 'pressure': there are sphere, gyroid"):
         sphere.contour(0.5, "sphere", fields=["pressure"])
     with pytest.raises(ValueError, match="sphere"):

@@ -550,6 +550,12 @@ def test_formula(browser, viewer):
     browser.value('window.isOld = true, location.reload()')
     browser.wait('!window.isOld && document.body?.dataset.field === "sphere + gyroid^2"')
     at_rest(browser, formula_value)
+    type_formula(browser, 'x')
+    browser.wait('document.body.dataset.field === "x"')
+    at_rest(browser)
+    browser.value('window.isOld = true, location.reload()')
+    browser.wait('!window.isOld && document.body?.dataset.field === "x"')
+    at_rest(browser)
 
 
 def test_colour_by_field(browser, viewer):

@@ -137,4 +137,12 @@ double CellCornersSample::roughness(const Array& values, Association association
     });
 }
 
+bool CellCornersSample::has_values(const Array& values, Association association) const {
+    const Groups& groups = association == Association::point ? points_of_cells_ : cells_of_points_;
+    const Scalar scalar{0, values.components() > 1};
+    return groups.items.empty() || std::ranges::any_of(groups.items, [&](std::uint64_t item) {
+               return item < values.tuples() && std::isfinite(scalar_at(values, scalar, item));
+           });
+}
+
 } // namespace isotet::core

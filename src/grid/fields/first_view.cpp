@@ -115,7 +115,7 @@ public:
     Judged judge(const Array& values, Association association) {
         Judged judged;
         const core::SampledValues sample = core::sample_values(values);
-        judged.varies = has_two_values(sample.values);
+        judged.varies = has_two_values(sample.values) && cells().has_values(values, association);
         if (!judged.varies) return judged;
         judged.whole = core::holds_whole_numbers(values, sample);
         const bool may_number = !is_floating(values.type()) || association == Association::cell;
@@ -190,7 +190,7 @@ std::string_view text_of(FirstReason reason) noexcept {
     case FirstReason::only: return "nothing better varies";
     case FirstReason::nothing: break;
     }
-    return "no field varies";
+    return "no field varies that would be contoured";
 }
 
 std::vector<FirstCandidate> first_candidates(const std::vector<FieldInfo>& fields) {

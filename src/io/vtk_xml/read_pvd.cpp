@@ -13,7 +13,7 @@
 #include "io/files/text_scanner.hpp"
 #include "io/files/escape.hpp"
 #include "io/files/index_file.hpp"
-#include "io/files/plain_file.hpp"
+#include "io/files/whole_file.hpp"
 #include "io/vtk_xml/read_vtk_xml.hpp"
 #include "io/vtk_xml/load.hpp"
 #include "io/reader.hpp"
@@ -28,9 +28,10 @@ struct Entry {
 };
 
 Result<std::vector<Entry>> entries(const std::string& path) {
-    if (const auto file = open_plain_file(path); !file) return file.error();
+    const auto file = WholeFile::read(path, {});
+    if (!file) return file.error();
     pugi::xml_document document;
-    const auto parsed = document.load_file(path.c_str());
+    const auto parsed = document.load_buffer(file->text().data(), file->text().size());
     if (!parsed) return broken(path, fmt::format("broken XML at byte {}: {}", parsed.offset, parsed.description()));
     std::vector<Entry> entries;
     for (const auto& found : document.select_nodes("/VTKFile/Collection/DataSet")) {

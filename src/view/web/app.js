@@ -27,4 +27,5 @@ export const app = {
 export const aspect = () => id('scene').clientWidth / Math.max(1, id('scene').clientHeight);
 
 /** A field of the grid, or what may be computed from fields. */
-export const mayBeField = (name) => app.grid.fields.some((one) => one.name === name) || /[-()+*/^<>=!&|`]/.test(name);
+export const mayBeField = (name) =>
+    app.grid.fields.some((one) => one.name === name) || /[-()+*/^<>=!&|`]|^[xyz]$/.test(name);
