@@ -13,7 +13,7 @@
 namespace isotet::render::layout {
 
 static_assert(sizeof(TransferRow) == 64 && sizeof(Transfer::Row) == 64 && table_rows == Transfer::entries);
-static_assert(sizeof(VolumePlace) == 4 * 32 + 7 * 8 + 8 && offsetof(VolumePlace, isosurfaces) == 4 * 32 + 7 * 8);
+static_assert(sizeof(VolumePlace) == place_bytes && offsetof(VolumePlace, isosurfaces) == 4 * 32 + 7 * 8);
 static_assert(sizeof(VolumeCluster) == 16 && sizeof(VolumeTileAt) == 16 && sizeof(VolumeEntry) == 12);
 static_assert(sizeof(VolumeRay) == 28 && sizeof(BatchRay) == 28 && offsetof(BatchRay, stops) == 24);
 static_assert(sizeof(VolumeHit) == 24 && sizeof(FoundHit) == 24 && offsetof(FoundHit, isosurface) == 20);

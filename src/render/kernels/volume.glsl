@@ -3,10 +3,10 @@
 #ifndef ISOTET_VOLUME_GLSL
 #define ISOTET_VOLUME_GLSL
 
+#include "shared/exact_double.glsl"
 #include "volume.h"
 #include "shared/memory.glsl"
 #include "shared/arithmetic.glsl"
-#include "exact_double.glsl"
 
 layout(constant_id = 0) const bool parallel = false;
 layout(constant_id = 1) const bool seeks_isosurfaces = false;
@@ -21,7 +21,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Row
     TransferRow at[];
 };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Doubles {
-    double at[];
+    Double at[];
 };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer VolumeClusters {
     VolumeCluster at[];
@@ -57,7 +57,5 @@ layout(push_constant, scalar) uniform Push {
 /// As std::min and std::max, which keep the first of equals.
 float lesser(float a, float b) { return b < a ? b : a; }
 float greater(float a, float b) { return a < b ? b : a; }
-double lesser(double a, double b) { return b < a ? b : a; }
-double greater(double a, double b) { return a < b ? b : a; }
 
 #endif

@@ -11,6 +11,7 @@
 namespace isotet::render::layout {
 using vulkan::layout::Address;
 using vulkan::layout::uint;
+using Double = double;
 #define ISOTET_CONSTANT constexpr uint
 #else
 #include "shared/layout.h"
@@ -27,17 +28,17 @@ ISOTET_CONSTANT table_rows = 1024u;     ///< of a transfer function
 
 /// A row of the table of a transfer function, as Transfer has it.
 struct TransferRow {
-    double up_to[4];
+    Double up_to[4];
     float rise[4];
     float bend[4];
 };
 
-/// A volume, and where it is in the picture: rows for positions.
+/// A volume, and where it is in the picture: rows for positions, which stand first.
 struct VolumePlace {
-    double across[4];     ///< times w, pixels
-    double down[4];
-    double w[4];
-    double depth[4];      ///< of parallel pictures
+    Double across[4];     ///< times w, pixels
+    Double down[4];
+    Double w[4];
+    Double depth[4];      ///< of parallel pictures
     Address positions;    ///< double x 3 each, of the local points of clusters
     Address values;       ///< float each: place in the transfer table, or height above an isovalue
     Address clusters;     ///< VolumeCluster
@@ -48,6 +49,8 @@ struct VolumePlace {
     uint isosurfaces;
     uint shaded;
 };
+
+ISOTET_CONSTANT place_bytes = 192u;     ///< of VolumePlace
 
 struct VolumeCluster {
     uint first_point, points, first_tet, tets;
@@ -105,7 +108,7 @@ struct BlockResult {
 
 /// What blocks work on.
 struct VolumeScene {
-    double nearest;       ///< distance: what is before it is cut off
+    Double nearest;       ///< distance: what is before it is cut off
     Address volumes;      ///< VolumePlace
     Address tiles;        ///< VolumeTileAt
     Address entries;      ///< VolumeEntry

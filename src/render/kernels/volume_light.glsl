@@ -44,46 +44,67 @@ float hidden_by(float depth) {
     return hidden;
 }
 
-dvec4 row_at(RowsAt rows, double place) {
-    const double at = lesser(greater(place, 0.0LF), double(table_rows));
-    const uint below = min(uint(at), table_rows - 1u);
-    precise double part = at - double(below);
-    precise dvec4 out_;
-    for (int i = 0; i < 4; ++i) {
-        precise double sum = rows.at[below].up_to[i] +
-                             (double(rows.at[below].rise[i]) + double(rows.at[below].bend[i]) * part) * part;
-        out_[i] = sum;
-    }
-    return out_;
+/// A place in the table.
+struct TablePlace {
+    uint below;
+    Double part;
+};
+
+TablePlace place_in_table(Double place) {
+    const Double at = lesser(greater(place, double_of(0.0)), double_of(float(table_rows)));
+    const uint below = min(whole_of(at), table_rows - 1u);
+    return TablePlace(below, difference_of(at, double_of(float(below))));
 }
 
-/// The mean of a segment from one place in the table to another.
-dvec4 mean_of(RowsAt rows, float from, float to) {
-    const double margin = 1.0LF / 256.0LF;
-    double u = double(from), v = double(to);
-    precise double apart = v - u;
-    if (abs(apart) < margin) {
-        precise double middle = 0.5LF * (u + v);
-        precise double lower = middle - 0.5LF * margin;
-        precise double upper = middle + 0.5LF * margin;
-        u = lower;
-        v = upper;
+/// A segment from one place in the table to another.
+struct TableWay {
+    TablePlace from, to;
+    Double part; ///< 1 / its length
+};
+
+TableWay way_in_table(float from, float to) {
+    const float margin = 1.0 / 256.0;
+    Double u = double_of(from), v = double_of(to), wide = difference_of(v, u);
+    if (is_less(absolute(wide), double_of(margin))) {
+        const Double middle = product_of(double_of(0.5), sum_of(u, v));
+        u = difference_of(middle, double_of(0.5 * margin));
+        v = sum_of(middle, double_of(0.5 * margin));
+        wide = difference_of(v, u);
     }
-    precise double wide = v - u;
-    const dvec4 a = row_at(rows, u), b = row_at(rows, v);
-    const double part = quotient(1.0LF, wide);
-    precise dvec4 mean = (b - a) * part;
-    return mean;
+    TableWay way;
+    way.part = quotient(double_of(1.0), wide);
+    ISOTET_SHORT_LOOP for (uint end = 0u; end < 2u; ++end) {
+        way.from = way.to;
+        way.to = place_in_table(u);
+        u = v;
+    }
+    return way;
 }
 
-void add_piece(dvec4 mean, float depth, float light, inout Composed ray) {
+/// The mean of a segment's extinction, or of it times a colour.
+Double mean_of(RowsAt rows, TableWay way, uint which) {
+    Double from = double_of(0.0), to = from; // integrals
+    ISOTET_SHORT_LOOP for (uint end = 0u; end < 2u; ++end) {
+        const TablePlace at = way.from;
+        const Double rise = sum_of(double_of(rows.at[at.below].rise[which]),
+                                   product_of(double_of(rows.at[at.below].bend[which]), at.part));
+        from = to;
+        to = sum_of(rows.at[at.below].up_to[which], product_of(rise, at.part));
+        way.from = way.to;
+    }
+    return product_of(difference_of(to, from), way.part);
+}
+
+void add_piece(RowsAt rows, TableWay way, Double mean, float depth, float light, inout Composed ray) {
     const float hidden = hidden_by(depth);
     precise float part = ray.light.w * hidden;
-    const double of_mean = mean.x > 0.0LF ? quotient(double(part), mean.x) : 0.0LF;
-    precise double red = of_mean * mean.y;
-    precise double green = of_mean * mean.z;
-    precise double blue = of_mean * mean.w;
-    precise vec3 sum = ray.light.xyz + vec3(float(red), float(green), float(blue)) * light;
+    vec3 color = vec3(0.0);
+    if (is_less(double_of(0.0), mean)) {
+        const Double of_mean = quotient(double_of(part), mean);
+        ISOTET_SHORT_LOOP for (uint i = 0u; i < 3u; ++i)
+            color = vec3(color.yz, float_of(product_of(of_mean, mean_of(rows, way, i + 1u))));
+    }
+    precise vec3 sum = ray.light.xyz + color * light;
     precise float through_slab = ray.light.w - part;
     precise float through = ray.through - ray.through * hidden;
     ray.light = vec4(sum, through_slab);
@@ -103,14 +124,15 @@ void add_to_slab(float whole_length, float from, float to, float light, RowsAt r
             end = farther ? end : middle;
             length_ *= 0.5;
         }
-        const dvec4 mean = mean_of(rows, begin, end);
-        precise float depth = float(mean.x) * length_;
+        const TableWay way = way_in_table(begin, end);
+        const Double mean = mean_of(rows, way, 0u);
+        precise float depth = float_of(mean) * length_;
         if (depth > deepest_piece && halvings < most_halvings) {
             ++halvings;
             piece <<= 1;
             continue;
         }
-        add_piece(mean, depth, light, ray);
+        add_piece(rows, way, mean, depth, light, ray);
         while ((piece & 1u) != 0u) {
             piece >>= 1;
             --halvings;

@@ -1,110 +1,180 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// A tet as planes over a tile, in double. Same as render/volume/tet_planes.hpp and cut_tet.cpp, name by name.
+// A tet as planes over a tile, in double. Same as render/volume/tet_planes.hpp and cut_tet.cpp, name by name; what these make
+// of each corner is made once for each point of a cluster.
 #ifndef ISOTET_VOLUME_PLANES_GLSL
 #define ISOTET_VOLUME_PLANES_GLSL
 
 #include "volume.glsl"
 
-const double ray_x = 0.5LF + 3.0LF / 32768.0LF, ray_y = 0.5LF + 2.0LF / 32768.0LF;
+/// The points of a cluster, an invocation each. `at_linear`: the value as it is linear in the picture.
+const uint at_across = 0u, at_down = 1u, at_w = 2u, at_near = 3u, at_linear = 4u, at_x = 5u, at_y = 6u;
+shared Double point[7][block_size];
+shared float point_value[block_size];
 
-struct Corner {
-    double across, down, w, near, value;
-    double x, y;
-    uint local;
+const float ray_x = 0.5 + 3.0 / 32768.0, ray_y = 0.5 + 2.0 / 32768.0; // exactly
+
+/// By across, down, w, near and value: the first in which they differ.
+bool is_behind(uint a, uint b) {
+    bool behind = point_value[a] > point_value[b];
+    ISOTET_SHORT_LOOP for (uint k = 4u; k > 0u; --k)
+        behind = is_less(point[k - 1u][b], point[k - 1u][a]) || (behind && !is_less(point[k - 1u][a], point[k - 1u][b]));
+    return behind;
+}
+
+/// Corners are points of the cluster.
+void sort_corners(inout uvec4 corners) {
+    const uint pairs[5] = uint[](0x10u, 0x32u, 0x20u, 0x31u, 0x21u);
+    ISOTET_SHORT_LOOP for (uint step_ = 0u; step_ < 5u; ++step_) {
+        const uint i = pairs[step_] & 0xfu, j = pairs[step_] >> 4;
+        const uint a = corners[i], b = corners[j];
+        const bool behind = is_behind(a, b);
+        corners[i] = behind ? b : a;
+        corners[j] = behind ? a : b;
+    }
+}
+
+Double divisible(Double determinant) {
+    const Double least = double_of_bits(0x3bc79ca1u, 0x0c924223u); // 1e-20
+    const Double small = chosen(is_negative(determinant), negated(least), least);
+    return chosen(is_less(absolute(determinant), least), small, determinant);
+}
+
+Double in_tile(Double at) {
+    return lesser(greater(at, double_of(0.0)), double_of(float(tile_side - 1u) + 0.5));
+}
+
+/// ax * by - bx * ay
+Double minor_of(Double ax, Double by, Double bx, Double ay) {
+    return difference_of(product_of(ax, by), product_of(bx, ay));
+}
+
+struct Triple {
+    Double x, y, z;
 };
 
-bool is_behind(Corner a, Corner b) {
-    if (a.across != b.across) return a.across > b.across;
-    if (a.down != b.down) return a.down > b.down;
-    if (a.w != b.w) return a.w > b.w;
-    if (a.near != b.near) return a.near > b.near;
-    return a.value > b.value;
-}
+// What is done for each part of a vector: the parts go round, and results come in from behind.
 
-void put_in_order(inout Corner a, inout Corner b) {
-    if (!is_behind(a, b)) return;
-    const Corner other = a;
-    a = b;
-    b = other;
-}
+Triple turned(Triple v) { return Triple(v.y, v.z, v.x); }
 
-void sort_corners(inout Corner corners[4]) {
-    put_in_order(corners[0], corners[1]);
-    put_in_order(corners[2], corners[3]);
-    put_in_order(corners[0], corners[2]);
-    put_in_order(corners[1], corners[3]);
-    put_in_order(corners[1], corners[2]);
-}
-
-double divisible(double determinant) {
-    const double least = 1e-20LF;
-    if (!(abs(determinant) < least)) return determinant;
-    return (unpackDouble2x32(determinant).y & 0x80000000u) != 0u ? -least : least;
-}
-
-double in_tile(double at) { return lesser(greater(at, 0.0LF), double(tile_side - 1u) + 0.5LF); }
-
-double minor_of(double ax, double by, double bx, double ay) {
-    precise double minor = ax * by - bx * ay;
-    return minor;
-}
-
-dvec3 cross_of(dvec3 a, dvec3 b) {
-    return dvec3(minor_of(a.y, b.z, a.z, b.y), minor_of(a.z, b.x, a.x, b.z), minor_of(a.x, b.y, a.y, b.x));
-}
-
-double dot_of(dvec3 a, dvec3 b) {
-    precise double sum = a.x * b.x + a.y * b.y + a.z * b.z;
-    return sum;
-}
-
-dvec3 minus(dvec3 a, dvec3 b) {
-    precise dvec3 difference = a - b;
-    return difference;
-}
-
-dvec3 scaled(dvec3 v, double factor) {
-    precise dvec3 product = v * factor;
+Triple cross_of(Triple a, Triple b) {
+    Triple product = a;
+    ISOTET_SHORT_LOOP for (uint i = 0u; i < 3u; ++i) {
+        product = Triple(product.y, product.z, minor_of(a.y, b.z, a.z, b.y));
+        a = turned(a);
+        b = turned(b);
+    }
     return product;
 }
 
-/// a + times * b
-dvec3 plus(dvec3 a, dvec3 b, double times) {
-    precise dvec3 sum = a + times * b;
+Double dot_of(Triple a, Triple b) {
+    Double sum = negated(double_of(0.0)); // which leaves any other 0 as it is
+    ISOTET_SHORT_LOOP for (uint i = 0u; i < 3u; ++i) {
+        sum = sum_of(sum, product_of(a.x, b.x));
+        a = turned(a);
+        b = turned(b);
+    }
     return sum;
 }
 
-/// What is linear in the picture.
-double value_in_picture(Corner corner) {
-    precise double weighted = corner.value * corner.near;
-    return parallel ? corner.value : weighted;
+Triple minus(Triple a, Triple b) {
+    ISOTET_SHORT_LOOP for (uint i = 0u; i < 3u; ++i) {
+        a = Triple(a.y, a.z, difference_of(a.x, b.x));
+        b = turned(b);
+    }
+    return a;
 }
 
-/// A face whose corners are all before the eye. `front`: the opposite corner lies behind it.
-VolumeFace face_plane(Corner a, Corner b, Corner c, Corner opposite, out bool front) {
-    precise double bx = b.x - a.x;
-    precise double by = b.y - a.y;
-    precise double cx = c.x - a.x;
-    precise double cy = c.y - a.y;
-    const double part = quotient(1.0LF, divisible(minor_of(bx, cy, cx, by)));
-    const double av = value_in_picture(a);
-    precise double bv = value_in_picture(b) - av;
-    precise double cv = value_in_picture(c) - av;
-    precise double bn = b.near - a.near;
-    precise double cn = c.near - a.near;
-    precise double near_x = minor_of(bn, cy, cn, by) * part;
-    precise double near_y = minor_of(bx, cn, cx, bn) * part;
-    precise double value_x = minor_of(bv, cy, cv, by) * part;
-    precise double value_y = minor_of(bx, cv, cx, bv) * part;
-    const double x = in_tile(a.x), y = in_tile(a.y);
-    precise double near = a.near + near_x * (x - a.x) + near_y * (y - a.y);
-    precise double value = av + value_x * (x - a.x) + value_y * (y - a.y);
-    precise double to_x = x - ray_x;
-    precise double to_y = y - ray_y;
-    precise double before = a.near + near_x * (opposite.x - a.x) + near_y * (opposite.y - a.y);
-    front = opposite.near < before;
-    return VolumeFace(float(near), float(near_x), float(near_y), float(value), float(value_x), float(value_y),
-                      float(to_x), float(to_y));
+Triple scaled(Triple v, Double factor) {
+    ISOTET_SHORT_LOOP for (uint i = 0u; i < 3u; ++i) v = Triple(v.y, v.z, product_of(v.x, factor));
+    return v;
+}
+
+/// a + times * b
+Triple plus(Triple a, Triple b, Double times) {
+    ISOTET_SHORT_LOOP for (uint i = 0u; i < 3u; ++i) {
+        a = Triple(a.y, a.z, sum_of(a.x, product_of(times, b.x)));
+        b = turned(b);
+    }
+    return a;
+}
+
+/// zero + times.x * (b x c) + times.y * (c x a) + times.z * (a x b)
+Triple sum_of_crosses(Double zero, Triple a, Triple b, Triple c, Triple times) {
+    Triple sum = Triple(zero, zero, zero);
+    ISOTET_SHORT_LOOP for (uint i = 0u; i < 3u; ++i) {
+        sum = plus(sum, cross_of(b, c), times.x);
+        const Triple first = a;
+        a = b;
+        b = c;
+        c = first;
+        times = turned(times);
+    }
+    return sum;
+}
+
+/// From the first corner to the others.
+Triple rises_of(uvec4 corners) {
+    const Double first = double_of(point_value[corners.x]);
+    return minus(Triple(double_of(point_value[corners.y]), double_of(point_value[corners.z]),
+                        double_of(point_value[corners.w])),
+                 Triple(first, first, first));
+}
+
+/// Three corners in their order, and the fourth.
+struct Face {
+    uint a, b, c, opposite;
+};
+
+Face face_of(uvec4 corners, uint opposite) {
+    return Face(opposite == 0u ? corners.y : corners.x, opposite < 2u ? corners.z : corners.y,
+                opposite < 3u ? corners.w : corners.z, corners[opposite]);
+}
+
+/// A face whose corners are all before the eye, around a place in or near the tile.
+struct FaceFrame {
+    Double bx, by, cx, cy, part; ///< from the first corner; 1 / determinant
+    Double x, y;                 ///< from the first corner to the place
+};
+
+/// A number that is linear along a face.
+struct Slopes {
+    Double at, per_x, per_y; ///< at the first corner
+};
+
+Slopes slopes_of(FaceFrame face, Double a, Double b, Double c) {
+    const Double to_b = difference_of(b, a), to_c = difference_of(c, a);
+    return Slopes(a, product_of(minor_of(to_b, face.cy, to_c, face.by), face.part),
+                  product_of(minor_of(face.bx, to_c, face.cx, to_b), face.part));
+}
+
+Double number_at(Slopes slopes, Double x, Double y) {
+    return sum_of(sum_of(slopes.at, product_of(slopes.per_x, x)), product_of(slopes.per_y, y));
+}
+
+/// `front`: the opposite corner lies behind it.
+VolumeFace face_plane(Face face, out bool front) {
+    const Double ax = point[at_x][face.a], ay = point[at_y][face.a];
+    const Double place_x = in_tile(ax), place_y = in_tile(ay);
+    const Double opposite_x = difference_of(point[at_x][face.opposite], ax),
+                 opposite_y = difference_of(point[at_y][face.opposite], ay);
+    FaceFrame frame;
+    frame.bx = difference_of(point[at_x][face.b], ax);
+    frame.by = difference_of(point[at_y][face.b], ay);
+    frame.cx = difference_of(point[at_x][face.c], ax);
+    frame.cy = difference_of(point[at_y][face.c], ay);
+    frame.part = quotient(double_of(1.0), divisible(minor_of(frame.bx, frame.cy, frame.cx, frame.by)));
+    frame.x = difference_of(place_x, ax);
+    frame.y = difference_of(place_y, ay);
+    front = false;
+    vec3 nearness = vec3(0.0), value = vec3(0.0);
+    ISOTET_SHORT_LOOP for (uint which = at_near; which <= at_linear; ++which) {
+        const Slopes slopes = slopes_of(frame, point[which][face.a], point[which][face.b], point[which][face.c]);
+        if (which == at_near) front = is_less(point[at_near][face.opposite], number_at(slopes, opposite_x, opposite_y));
+        nearness = value;
+        value = vec3(float_of(number_at(slopes, frame.x, frame.y)), float_of(slopes.per_x), float_of(slopes.per_y));
+    }
+    return VolumeFace(nearness.x, nearness.y, nearness.z, value.x, value.y, value.z,
+                      float_of(difference_of(place_x, double_of(ray_x))), float_of(difference_of(place_y, double_of(ray_y))));
 }
 
 /// The planes of one tet. Front faces begin with the first, others end with the last.
@@ -120,149 +190,156 @@ void add_face(VolumeFace face, bool front, inout Writer to) {
 }
 
 struct Bounds {
-    double least, most;
+    Double least, most;
 };
 
-Bounds bounds_of(double a, double b, double c, double d) {
-    return Bounds(lesser(lesser(a, b), lesser(c, d)), greater(greater(a, b), greater(c, d)));
+/// Of a number of the corners.
+Bounds bounds_of(uint which, uvec4 corners) {
+    Bounds bounds = Bounds(point[which][corners.x], point[which][corners.x]);
+    ISOTET_SHORT_LOOP for (uint k = 1u; k < 4u; ++k) {
+        const Double other = point[which][corners[k]];
+        bounds = Bounds(lesser(bounds.least, other), greater(bounds.most, other));
+    }
+    return bounds;
 }
 
 /// The first pixel from `from` on.
-int first_pixel(double from, double beside) {
-    precise double at = from - beside;
-    return int(lesser(greater(ceil(at), 0.0LF), double(tile_side)));
+int first_pixel(Double from, float beside) {
+    const Double at = difference_of(from, double_of(beside));
+    if (!is_less(double_of(0.0), at)) return 0;
+    if (is_less(double_of(float(tile_side)), at)) return int(tile_side);
+    const uint whole = whole_of(at);
+    return int(whole) + (is_less(double_of(float(whole)), at) ? 1 : 0);
 }
 
-int last_pixel(double to, double beside) {
-    precise double at = to - beside;
-    return int(greater(lesser(floor(at), double(tile_side - 1u)), -1.0LF));
+int last_pixel(Double to, float beside) {
+    const Double at = difference_of(to, double_of(beside));
+    if (is_less(at, double_of(0.0))) return -1;
+    if (is_less(double_of(float(tile_side)), at)) return int(tile_side) - 1;
+    return min(int(whole_of(at)), int(tile_side) - 1);
 }
 
 const uint no_box = 1u; ///< left > right
 
 /// Which pixels of the tile the rays of a tet before the eye have; no_box: none of the block, whose first pixel is `block`.
-uint box_of(Corner corners[4], ivec2 block) {
-    const Bounds x = bounds_of(corners[0].x, corners[1].x, corners[2].x, corners[3].x);
-    const Bounds y = bounds_of(corners[0].y, corners[1].y, corners[2].y, corners[3].y);
-    const int left = first_pixel(x.least, ray_x), right = last_pixel(x.most, ray_x);
-    const int top = first_pixel(y.least, ray_y), bottom = last_pixel(y.most, ray_y);
-    if (max(left, block.x) > min(right, block.x + int(block_width) - 1) ||
-        max(top, block.y) > min(bottom, block.y + int(block_height) - 1))
+uint box_of(uvec4 corners, ivec2 block) {
+    ivec2 first = ivec2(0), last = ivec2(0);
+    ISOTET_SHORT_LOOP for (uint axis = at_x; axis <= at_y; ++axis) {
+        const Bounds bounds = bounds_of(axis, corners);
+        const float beside = axis == at_x ? ray_x : ray_y;
+        first = ivec2(first.y, first_pixel(bounds.least, beside));
+        last = ivec2(last.y, last_pixel(bounds.most, beside));
+    }
+    if (any(greaterThan(max(first, block), min(last, block + ivec2(block_width - 1u, block_height - 1u)))))
         return no_box;
-    return uint(left | top << 8 | right << 16 | bottom << 24);
+    return uint(first.x | first.y << 8 | last.x << 16 | last.y << 24);
 }
 
-void add_face_before(Corner a, Corner b, Corner c, Corner opposite, inout Writer to) {
-    bool front;
-    const VolumeFace face = face_plane(a, b, c, opposite, front);
-    add_face(face, front, to);
-}
-
-/// The planes of a tet before the eye.
-void write_planes(Corner corners[4], inout Writer to) {
-    add_face_before(corners[1], corners[2], corners[3], corners[0], to);
-    add_face_before(corners[0], corners[2], corners[3], corners[1], to);
-    add_face_before(corners[0], corners[1], corners[3], corners[2], to);
-    add_face_before(corners[0], corners[1], corners[2], corners[3], to);
-    const Bounds near = bounds_of(corners[0].near, corners[1].near, corners[2].near, corners[3].near);
-    to.planes.at[to.tet].farthest = float(near.least);
-    to.planes.at[to.tet].nearest = float(near.most);
-}
-
-dvec3 across_of(Corner corner) { return dvec3(corner.across, corner.down, corner.w); }
+Triple across_of(uint corner) { return Triple(point[at_across][corner], point[at_down][corner], point[at_w][corner]); }
 
 /// normal . (x, y, 1) around the middle of the tile.
-float at_middle(dvec3 v) {
-    const double middle = 0.5LF * double(tile_side);
-    precise double at = (v.x + v.y) * middle + v.z;
-    return float(at);
+float at_middle(Triple v) {
+    return float_of(sum_of(product_of(sum_of(v.x, v.y), double_of(0.5 * float(tile_side))), v.z));
 }
 
-VolumeFace plane_of(dvec3 near, dvec3 value) {
-    const double middle = 0.5LF * double(tile_side);
-    precise double to_x = middle - ray_x;
-    precise double to_y = middle - ray_y;
-    return VolumeFace(at_middle(near), float(near.x), float(near.y), at_middle(value), float(value.x), float(value.y),
-                      float(to_x), float(to_y));
+VolumeFace plane_of(Triple nearness, Triple value) {
+    const float middle = 0.5 * float(tile_side);
+    return VolumeFace(at_middle(nearness), float_of(nearness.x), float_of(nearness.y), at_middle(value),
+                      float_of(value.x), float_of(value.y), middle - ray_x, middle - ray_y);
 }
 
-void add_face_of_cut(Corner one, Corner two, Corner three, Corner opposite, double nearest, inout Writer to) {
-    const dvec3 a = across_of(one), b = across_of(two), c = across_of(three);
-    const dvec3 normal = cross_of(minus(b, a), minus(c, a));
-    const double offset = divisible(dot_of(normal, a));
-    precise double side = dot_of(normal, across_of(opposite)) - offset;
-    precise double sign_ = offset * side;
-    const bool front = sign_ > 0.0LF;
-    if (lesser(lesser(one.w, two.w), three.w) >= nearest) {
-        bool same;
-        add_face(face_plane(one, two, three, opposite, same), front, to);
-        return;
-    }
-    const dvec3 value =
-        plus(plus(scaled(cross_of(b, c), one.value), cross_of(c, a), two.value), cross_of(a, b), three.value);
-    const double part = quotient(1.0LF, offset);
-    add_face(plane_of(scaled(normal, part), scaled(value, part)), front, to);
+bool is_before_eye(Face face, Double nearest) {
+    return !(is_less(point[at_w][face.a], nearest) || is_less(point[at_w][face.b], nearest) ||
+             is_less(point[at_w][face.c], nearest));
+}
+
+/// A face of a tet that is cut; its plane, too, if it is not before the eye. `front`: the opposite corner lies behind it.
+void find_face_of_cut(Face face, bool before, inout VolumeFace plane, out bool front) {
+    const Triple a = across_of(face.a), b = across_of(face.b), c = across_of(face.c);
+    const Triple normal = cross_of(minus(b, a), minus(c, a));
+    const Double offset = divisible(dot_of(normal, a));
+    const Double side = difference_of(dot_of(normal, across_of(face.opposite)), offset);
+    front = is_less(double_of(0.0), product_of(offset, side));
+    if (before) return;
+    const Triple value =
+        sum_of_crosses(negated(double_of(0.0)), a, b, c,
+                       Triple(double_of(point_value[face.a]), double_of(point_value[face.b]),
+                              double_of(point_value[face.c])));
+    const Double part = quotient(double_of(1.0), offset);
+    plane = plane_of(scaled(normal, part), scaled(value, part));
 }
 
 /// Where the tet is cut.
-VolumeFace cut_face(Corner corners[4], double nearest) {
-    const dvec3 a = across_of(corners[0]), b = minus(across_of(corners[1]), a), c = minus(across_of(corners[2]), a),
-                d = minus(across_of(corners[3]), a);
-    const double determinant = divisible(dot_of(b, cross_of(c, d)));
-    precise double rise_b = corners[1].value - corners[0].value;
-    precise double rise_c = corners[2].value - corners[0].value;
-    precise double rise_d = corners[3].value - corners[0].value;
-    const dvec3 gradient = scaled(plus(plus(scaled(cross_of(c, d), rise_b), cross_of(d, b), rise_c), cross_of(b, c), rise_d),
-                                  quotient(1.0LF, determinant));
-    precise double rest = corners[0].value - dot_of(gradient, a);
-    const double near = quotient(1.0LF, nearest);
-    precise double rest_near = rest * near;
-    return plane_of(dvec3(0.0LF, 0.0LF, near), plus(gradient, dvec3(0.0LF, 0.0LF, 1.0LF), rest_near));
+VolumeFace cut_face(uvec4 corners, Double nearest) {
+    const Triple a = across_of(corners.x), b = minus(across_of(corners.y), a), c = minus(across_of(corners.z), a),
+                 d = minus(across_of(corners.w), a);
+    const Double determinant = divisible(dot_of(b, cross_of(c, d)));
+    const Triple gradient = scaled(sum_of_crosses(negated(double_of(0.0)), b, c, d, rises_of(corners)),
+                                   quotient(double_of(1.0), determinant));
+    const Double rest = difference_of(double_of(point_value[corners.x]), dot_of(gradient, a));
+    const Double nearness = quotient(double_of(1.0), nearest), zero = double_of(0.0);
+    return plane_of(Triple(zero, zero, nearness),
+                    plus(gradient, Triple(zero, zero, double_of(1.0)), product_of(rest, nearness)));
 }
 
 /// All corners are on one side of the tile.
-bool is_beside(Corner corners[4]) {
+bool is_beside(uvec4 corners) {
     bool left = true, above = true, right = true, below = true;
-    for (int k = 0; k < 4; ++k) {
-        precise double end = double(tile_side) * corners[k].w;
-        left = left && corners[k].across < 0.0LF;
-        above = above && corners[k].down < 0.0LF;
-        right = right && corners[k].across > end;
-        below = below && corners[k].down > end;
+    ISOTET_SHORT_LOOP for (uint k = 0u; k < 4u; ++k) {
+        const Triple at = across_of(corners[k]);
+        const Double end = product_of(double_of(float(tile_side)), at.z);
+        left = left && is_less(at.x, double_of(0.0));
+        above = above && is_less(at.y, double_of(0.0));
+        right = right && is_less(end, at.x);
+        below = below && is_less(end, at.y);
     }
     return left || above || right || below;
 }
 
-double farthest_of(Corner corners[4]) {
-    return greater(greater(greater(greater(0.0LF, corners[0].w), corners[1].w), corners[2].w), corners[3].w);
+Double farthest_of(uvec4 corners) {
+    return greater(double_of(0.0), bounds_of(at_w, corners).most);
 }
 
 /// Of a tet of which a corner is nearer than `nearest` any pixel of the tile may have rays; no_box: none has.
-uint box_of_cut(Corner corners[4], double nearest) {
-    if (farthest_of(corners) <= nearest || is_beside(corners)) return no_box;
+uint box_of_cut(uvec4 corners, Double nearest) {
+    if (!is_less(nearest, farthest_of(corners)) || is_beside(corners)) return no_box;
     return (tile_side - 1u) << 16 | (tile_side - 1u) << 24;
 }
 
-void write_planes_of_cut(Corner corners[4], double nearest, inout Writer to) {
-    add_face(cut_face(corners, nearest), true, to);
-    add_face_of_cut(corners[1], corners[2], corners[3], corners[0], nearest, to);
-    add_face_of_cut(corners[0], corners[2], corners[3], corners[1], nearest, to);
-    add_face_of_cut(corners[0], corners[1], corners[3], corners[2], nearest, to);
-    add_face_of_cut(corners[0], corners[1], corners[2], corners[3], nearest, to);
-    to.planes.at[to.tet].farthest = float(quotient(1.0LF, farthest_of(corners)));
-    to.planes.at[to.tet].nearest = float(quotient(1.0LF, nearest));
+/// The planes of a tet, in order.
+void write_planes(uvec4 corners, bool cut, Double nearest, inout Writer to) {
+    if (cut) {
+        add_face(cut_face(corners, nearest), true, to);
+        to.planes.at[to.tet].farthest = float_of(quotient(double_of(1.0), farthest_of(corners)));
+        to.planes.at[to.tet].nearest = float_of(quotient(double_of(1.0), nearest));
+    } else {
+        const Bounds bounds = bounds_of(at_near, corners);
+        to.planes.at[to.tet].farthest = float_of(bounds.least);
+        to.planes.at[to.tet].nearest = float_of(bounds.most);
+    }
+    ISOTET_SHORT_LOOP for (uint k = 0u; k < 4u; ++k) {
+        const Face face = face_of(corners, k);
+        VolumeFace plane;
+        bool front = false;
+        const bool before = !cut || is_before_eye(face, nearest);
+        if (before) plane = face_plane(face, front);
+        if (cut) find_face_of_cut(face, before, plane, front);
+        add_face(plane, front, to);
+    }
 }
 
 /// The direction in which the values of a tet rise or fall, of length 1; 0 where they do not.
-vec3 gradient_direction(Corner corners[4], dvec3 first, dvec3 second, dvec3 third, dvec3 fourth) {
-    const dvec3 a = minus(second, first), b = minus(third, first), c = minus(fourth, first);
-    precise double rise_a = corners[1].value - corners[0].value;
-    precise double rise_b = corners[2].value - corners[0].value;
-    precise double rise_c = corners[3].value - corners[0].value;
-    const dvec3 sum = plus(plus(scaled(cross_of(b, c), rise_a), cross_of(c, a), rise_b), cross_of(a, b), rise_c);
-    const double length_ = square_root(dot_of(sum, sum));
-    if (!(length_ > 0.0LF)) return vec3(0.0);
-    return vec3(quotient(sum.x, length_), quotient(sum.y, length_), quotient(sum.z, length_));
+vec3 gradient_direction(uvec4 corners, Triple first, Triple second, Triple third, Triple fourth) {
+    Triple sum = sum_of_crosses(double_of(0.0), minus(second, first), minus(third, first), minus(fourth, first),
+                                rises_of(corners));
+    const Double length_ = square_root(dot_of(sum, sum));
+    if (!is_less(double_of(0.0), length_)) return vec3(0.0);
+    vec3 direction = vec3(0.0);
+    ISOTET_SHORT_LOOP for (uint i = 0u; i < 3u; ++i) {
+        direction = vec3(direction.yz, float_of(quotient(sum.x, length_)));
+        sum = turned(sum);
+    }
+    return direction;
 }
 
 #endif

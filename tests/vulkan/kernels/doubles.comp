@@ -1,0 +1,3 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#version 460
+#include "doubles.glsl"
