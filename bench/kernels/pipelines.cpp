@@ -92,7 +92,8 @@ void add_volumes(std::vector<Pipeline>& all) {
         for (const std::uint32_t isosurfaces : {0u, 1u}) {
             std::string variant = isosurfaces ? "isosurfaces" : "media";
             append(variant, parallel, "parallel");
-            add_compute(all, shaders::volume_rays, std::move(variant), {parallel, isosurfaces});
+            for (const ShaderCode* code : {&shaders::volume_rays, &shaders::volume_rays_without_doubles})
+                add_compute(all, *code, variant, {parallel, isosurfaces});
         }
 }
 

@@ -16,11 +16,21 @@ namespace {
 const OpacityCurve two_peaks{{{-0.9, 0}, {-0.6, 0.9}, {-0.42, 0}, {0.48, 0}, {0.66, 0.95}, {0.84, 0}}},
     ramp_curve{{{-1.5, 0}, {1.5, 0.6}}}, opaque_soon{{{-1.5, 0.9}, {0, 0.99999}, {1.5, 0.2}}};
 
-class VolumeRaysTest : public OnDevice {
+/// By kernels with doubles of the device, and with those made of integers.
+class VolumeRaysTest : public OnDevice, public testing::WithParamInterface<bool> {
 protected:
     void SetUp() override {
-        OnDevice::SetUp();
+        reopen(settings());
         rays_ = render::VolumeRays::make(shared_context()).value();
+    }
+    static vulkan::Settings settings() {
+        vulkan::Settings settings = watched();
+        settings.wait_limit = std::chrono::minutes(5); // the software device compiles long
+        if (!GetParam())
+            settings.alter_capabilities = [](vulkan::Capabilities& capabilities) {
+                capabilities.features.shaderFloat64 = VK_FALSE;
+            };
+        return settings;
     }
     void TearDown() override {
         rays_.reset();
@@ -42,7 +52,7 @@ protected:
     VolumeWork work_;
 };
 
-TEST_F(VolumeRaysTest, GiveTheSamePicturesOfMedia) {
+TEST_P(VolumeRaysTest, GiveTheSamePicturesOfMedia) {
     for (const char* shape : {"kuhn", "perturbed", "mixed", "hex"})
         for (const Projection projection : {Projection::perspective, Projection::parallel}) {
             VolumeCase one = made_volume(shape, 6, "gyroid", two_peaks);
@@ -59,7 +69,7 @@ TEST_F(VolumeRaysTest, GiveTheSamePicturesOfMedia) {
         }
 }
 
-TEST_F(VolumeRaysTest, GiveTheSamePicturesOfIsosurfaces) {
+TEST_P(VolumeRaysTest, GiveTheSamePicturesOfIsosurfaces) {
     for (const char* shape : {"kuhn", "mixed"})
         for (const Projection projection : {Projection::perspective, Projection::parallel}) {
             VolumeCase one = made_volume(shape, 7, "gyroid", {});
@@ -72,7 +82,7 @@ TEST_F(VolumeRaysTest, GiveTheSamePicturesOfIsosurfaces) {
         }
 }
 
-TEST_F(VolumeRaysTest, BeginInTheVolume) {
+TEST_P(VolumeRaysTest, BeginInTheVolume) {
     for (const char* shape : {"kuhn", "mixed"}) {
         VolumeCase one = made_volume(shape, 5, "gyroid", ramp_curve);
         one.picture.camera.target = {0.1, 0.05, 0};
@@ -84,7 +94,7 @@ TEST_F(VolumeRaysTest, BeginInTheVolume) {
     }
 }
 
-TEST_F(VolumeRaysTest, AreCutBySheetsAndSharedByVolumes) {
+TEST_P(VolumeRaysTest, AreCutBySheetsAndSharedByVolumes) {
     VolumeCase one = made_volume("kuhn", 6, "gyroid", two_peaks);
     const VolumeCase other = made_volume("mixed", 4, "sphere", {{{0, 0.1}, {2, 0.7}}});
     Surface through = square_at(0.1F), behind = square_at(-0.6F);
@@ -105,7 +115,7 @@ TEST_F(VolumeRaysTest, AreCutBySheetsAndSharedByVolumes) {
     expect_same(one, "on a logarithmic scale");
 }
 
-TEST_F(VolumeRaysTest, HaveListsThatGrow) {
+TEST_P(VolumeRaysTest, HaveListsThatGrow) {
     VolumeCase one = made_volume("mixed", 8, "gyroid", ramp_curve);
     for (const render::ListRoom& room : {render::ListRoom{8, 1}, {8, 8}, {16, 1000}, {512, 400}})
         for (const bool skips : {true, false}) {
@@ -119,7 +129,7 @@ TEST_F(VolumeRaysTest, HaveListsThatGrow) {
     EXPECT_EQ(work_.segments, grown) << "those of lists that were too short do not count";
 }
 
-TEST_F(VolumeRaysTest, MeetRandomGridsAsTheProcessorSays) {
+TEST_P(VolumeRaysTest, MeetRandomGridsAsTheProcessorSays) {
     for (std::uint32_t seed = 1; seed <= 24; ++seed) {
         NastyOptions options;
         options.side = 3;
@@ -140,7 +150,7 @@ TEST_F(VolumeRaysTest, MeetRandomGridsAsTheProcessorSays) {
     }
 }
 
-TEST_F(VolumeRaysTest, FillPicturesOfManyTiles) {
+TEST_P(VolumeRaysTest, FillPicturesOfManyTiles) {
     VolumeCase one = made_volume("kuhn", 3, "gyroid", ramp_curve);
     one.picture.width = 1000;
     one.picture.height = 290;
@@ -149,7 +159,7 @@ TEST_F(VolumeRaysTest, FillPicturesOfManyTiles) {
     expect_same(one, "more than a batch");
 }
 
-TEST_F(VolumeRaysTest, OfWhatIsTransparentAreNotFollowed) {
+TEST_P(VolumeRaysTest, OfWhatIsTransparentAreNotFollowed) {
     VolumeCase one = made_volume("kuhn", 4, "gyroid", {{{5, 0}, {6, 1}, {7, 0}}});
     EXPECT_TRUE(on_device(one).pixels == draw(one.scene, one.picture)->pixels);
     EXPECT_EQ(work_.segments, 0U);
@@ -160,7 +170,7 @@ TEST_F(VolumeRaysTest, OfWhatIsTransparentAreNotFollowed) {
     EXPECT_GT(work_.tets, few);
 }
 
-TEST_F(VolumeRaysTest, GiveTheSamePictureOfAFileOfWhichLittleIsInMemory) {
+TEST_P(VolumeRaysTest, GiveTheSamePictureOfAFileOfWhichLittleIsInMemory) {
     const TemporaryFolder folder;
     VolumeCase one = made_volume("mixed", 8, "gyroid", two_peaks);
     one.volume().isosurfaces = {{-0.1, red}};
@@ -171,7 +181,7 @@ TEST_F(VolumeRaysTest, GiveTheSamePictureOfAFileOfWhichLittleIsInMemory) {
     expect_same(one, "file");
 }
 
-TEST_F(VolumeRaysTest, AreCancelled) {
+TEST_P(VolumeRaysTest, AreCancelled) {
     const VolumeCase one = made_volume("kuhn", 4, "gyroid", ramp_curve);
     const std::atomic<bool> cancel = true;
     const auto drawn =
@@ -180,38 +190,28 @@ TEST_F(VolumeRaysTest, AreCancelled) {
     EXPECT_EQ(drawn.error().code, ErrorCode::cancelled);
 }
 
-TEST_F(VolumeRaysTest, GiveTheSamePictureThroughStaging) {
+TEST_P(VolumeRaysTest, GiveTheSamePictureThroughStaging) {
     rays_.reset();
-    vulkan::Settings settings = watched();
-    settings.force_staging = true;
-    settings.staging_bytes = 4096;
-    reopen(settings);
+    vulkan::Settings staged = settings();
+    staged.force_staging = true;
+    staged.staging_bytes = 4096;
+    reopen(staged);
     rays_ = render::VolumeRays::make(shared_context()).value();
     VolumeCase one = made_volume("mixed", 5, "gyroid", two_peaks);
     one.volume().isosurfaces = {{0.1, red}};
     expect_same(one, "staged");
 }
 
-TEST_F(VolumeRaysTest, NeedMemory) {
+TEST_P(VolumeRaysTest, NeedMemory) {
     rays_.reset();
-    reopen(watched(), 1 << 20);
+    reopen(settings(), 1 << 20);
     const auto rays = render::VolumeRays::make(shared_context());
     ASSERT_FALSE(rays);
     EXPECT_EQ(rays.error().code, ErrorCode::out_of_memory) << rays.error().message;
 }
 
-TEST_F(VolumeRaysTest, NeedDoublePrecision) {
-    rays_.reset();
-    vulkan::Settings settings = watched();
-    settings.alter_capabilities = [](vulkan::Capabilities& capabilities) {
-        capabilities.features.shaderFloat64 = VK_FALSE;
-    };
-    reopen(settings);
-    const auto rays = render::VolumeRays::make(shared_context());
-    ASSERT_FALSE(rays);
-    EXPECT_EQ(rays.error().code, ErrorCode::no_device);
-    EXPECT_NE(rays.error().message.find("no double precision"), std::string::npos) << rays.error().message;
-}
+INSTANTIATE_TEST_SUITE_P(Of, VolumeRaysTest, testing::Bool(),
+                         [](const auto& of) { return of.param ? "DoublesOfTheDevice" : "DoublesOfIntegers"; });
 
 class VolumeDrawing : public Drawing {};
 

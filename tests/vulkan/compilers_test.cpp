@@ -71,6 +71,21 @@ TEST(Modules, AreValidWithEverySetOfConstants) {
     std::filesystem::remove_all(folder);
 }
 
+std::set<std::string> with_capability(std::uint32_t capability) {
+    std::set<std::string> names;
+    for (const vulkan::ShaderCode* shader : vulkan::all_shaders::every)
+        for (std::size_t i = 5; i < shader->words.size() && (shader->words[i] & 0xffff) == 17; i += 2) // OpCapability
+            if (shader->words[i + 1] == capability) names.insert(shader->name);
+    return names;
+}
+
+TEST(Modules, NeedNoNumbersOf64Bits) {
+    constexpr std::uint32_t float64 = 10, int64 = 11, int64_atomics = 12;
+    EXPECT_EQ(with_capability(float64), (std::set<std::string>{"volume_rays"})) << "has volume_rays_without_doubles";
+    EXPECT_EQ(with_capability(int64), std::set<std::string>());
+    EXPECT_EQ(with_capability(int64_atomics), std::set<std::string>());
+}
+
 TEST(Modules, ThatAreSpoiledAreNotValid) {
     std::vector<std::uint32_t> words = bench::specialized(*vulkan::all_shaders::every[0], {});
     words[3] = 1; // bound of ids

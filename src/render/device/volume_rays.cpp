@@ -31,9 +31,6 @@ std::uint64_t VolumeRays::Given::bytes() const {
 }
 
 Result<std::unique_ptr<VolumeRays>> VolumeRays::make(std::shared_ptr<vulkan::Context> context) {
-    if (!context->capabilities().features.shaderFloat64)
-        return Error{ErrorCode::no_device,
-                     fmt::format("the kernels of the device {} have no double precision", context->info().name)};
     std::unique_ptr<VolumeRays> rays(new VolumeRays(std::move(context)));
     const Result<bool> same = follows_as_processor(*rays);
     if (!same) return same.error();
@@ -144,7 +141,9 @@ Result<void> VolumeRays::follow(Seek seek, std::size_t tiles, const Progress& pr
 Result<std::vector<std::uint32_t>> VolumeRays::follow_blocks(std::span<const std::uint32_t> blocks, Seek seek,
                                                              std::uint32_t capacity, const Progress& progress) {
     const std::array<std::uint32_t, 2> constants{scene_->rays.parallel() ? 1U : 0U, seek == Seek::medium ? 0U : 1U};
-    const Result<const vulkan::Kernel*> kernel = context_->kernels().get(vulkan::drawing::volume_rays, constants);
+    const bool has_doubles = context_->capabilities().features.shaderFloat64 == VK_TRUE;
+    const Result<const vulkan::Kernel*> kernel = context_->kernels().get(
+        has_doubles ? vulkan::drawing::volume_rays : vulkan::drawing::volume_rays_without_doubles, constants);
     if (!kernel) return kernel.error();
     const std::uint64_t per_group = std::uint64_t{layout::block_size} * capacity * bytes_per_segment;
     if (per_group > most_list_bytes)
