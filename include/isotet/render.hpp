@@ -190,8 +190,8 @@ public:
     ///          a part and 16 a translucent fragment
     /// Errors   invalid_argument when a size, a camera or an opacity is out of range, or colours do not fit their
     ///          surface; out_of_memory of the device, with the amount needed; device_failed; cancelled; with volumes as
-    ///          draw(), and no_device when the device has no double precision, or finds other light in small volumes than
-    ///          the processor
+    ///          draw(), and no_device when the device finds other light in
+    ///          small volumes than the processor
     Result<Picture> draw(const Scene& scene, const PictureOptions& options, const Run& run = {});
 
     /// What the last call of draw() cost.
