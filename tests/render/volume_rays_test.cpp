@@ -21,7 +21,7 @@ class VolumeRaysTest : public OnDevice, public testing::WithParamInterface<bool>
 protected:
     void SetUp() override {
         reopen(settings());
-        rays_ = render::VolumeRays::make(shared_context()).value();
+        rays_ = std::make_unique<render::VolumeRays>(shared_context());
     }
     static vulkan::Settings settings() {
         vulkan::Settings settings = watched();
@@ -196,7 +196,7 @@ TEST_P(VolumeRaysTest, GiveTheSamePictureThroughStaging) {
     staged.force_staging = true;
     staged.staging_bytes = 4096;
     reopen(staged);
-    rays_ = render::VolumeRays::make(shared_context()).value();
+    rays_ = std::make_unique<render::VolumeRays>(shared_context());
     VolumeCase one = made_volume("mixed", 5, "gyroid", two_peaks);
     one.volume().isosurfaces = {{0.1, red}};
     expect_same(one, "staged");
@@ -205,9 +205,20 @@ TEST_P(VolumeRaysTest, GiveTheSamePictureThroughStaging) {
 TEST_P(VolumeRaysTest, NeedMemory) {
     rays_.reset();
     reopen(settings(), 1 << 20);
-    const auto rays = render::VolumeRays::make(shared_context());
-    ASSERT_FALSE(rays);
-    EXPECT_EQ(rays.error().code, ErrorCode::out_of_memory) << rays.error().message;
+    rays_ = std::make_unique<render::VolumeRays>(shared_context());
+    const VolumeCase one = made_volume("kuhn", 4, "gyroid", ramp_curve);
+    const auto checked = rays_->check(one.scene, Projection::perspective);
+    ASSERT_FALSE(checked);
+    EXPECT_EQ(checked.error().code, ErrorCode::out_of_memory) << checked.error().message;
+}
+
+TEST_P(VolumeRaysTest, PassTheCheckOfADriver) {
+    VolumeCase one = made_volume("kuhn", 4, "gyroid", ramp_curve);
+    one.volume().isosurfaces = {{0.1, red}};
+    for (const Projection projection : {Projection::perspective, Projection::parallel}) {
+        const auto checked = rays_->check(one.scene, projection);
+        EXPECT_TRUE(checked) << (checked ? std::string() : checked.error().message);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, VolumeRaysTest, testing::Bool(),

@@ -183,11 +183,8 @@ Result<Picture> Renderer::Data::draw(const Scene& scene, const PictureOptions& o
 
 Result<Picture> Renderer::Data::draw_volumes(const Scene& scene, const PictureOptions& options,
                                              const Progress& progress) {
-    if (!rays) {
-        Result<std::unique_ptr<render::VolumeRays>> made = render::VolumeRays::make(device.context());
-        if (!made) return made.error();
-        rays = *std::move(made);
-    }
+    if (!rays) rays = std::make_unique<render::VolumeRays>(device.context());
+    if (Result<void> checked = rays->check(scene, options.camera.projection); !checked) return checked.error();
     vulkan::Staging& staging = frame->context().staging();
     const std::uint64_t up = staging.uploaded(), down = staging.downloaded();
     Result<Picture> picture = render::draw_with(scene, options, {}, rays.get(), progress, volume_work);

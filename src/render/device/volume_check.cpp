@@ -16,14 +16,15 @@ namespace {
 constexpr std::uint32_t side = 56; ///< pixels: four tiles
 constexpr std::array stops{0.45F, 0.55F};
 
-DrawnVolume drawn_of(const PackedGrid& grid) {
+DrawnVolume drawn_of(const PackedGrid& grid, Seek seek) {
     DrawnVolume volume;
     volume.grid = &grid;
     volume.scale.lower = grid.field().lower;
     volume.scale.upper = grid.field().upper;
-    volume.opacity.points = {{-1.2, 0.2}, {-0.6, 0.9}, {-0.4, 0}, {0.3, 0}, {0.6, 0.999}, {0.8, 0}};
+    if (seek == Seek::medium)
+        volume.opacity.points = {{-1.2, 0.2}, {-0.6, 0.9}, {-0.4, 0}, {0.3, 0}, {0.6, 0.999}, {0.8, 0}};
+    else volume.isosurfaces = {{0.95, {0.2F, 0.7F, 0.3F, 1}}, {-0.9, {0.9F, 0.1F, 0, 1}}};
     volume.opacity_length = 0.2;
-    volume.isosurfaces = {{0.95, {0.2F, 0.7F, 0.3F, 1}}, {-0.9, {0.9F, 0.1F, 0, 1}}};
     volume.clips = {{{1, 0.3, 0.2}, 0.7}};
     volume.shaded = true;
     return volume;
@@ -42,19 +43,16 @@ public:
         if (Result<void> started = follower.start(scene_, Progress()); !started) return started.error();
         batch_.start(0, tiling_.tiles());
         batch_.start_windows(1);
+        const bool medium = scene_.media_bins.has_value();
         for (std::size_t tile = 0; tile < tiling_.tiles(); ++tile) {
             start(*other_, tile);
-            other_->give_rays(Seek::isosurfaces, batch_);
+            if (medium) cut(*other_);
+            other_->give_rays(medium ? Seek::medium : Seek::isosurfaces, batch_);
         }
-        if (Result<void> found = follower.find_hits(batch_, Progress()); !found) return found.error();
-        for (std::size_t tile = 0; tile < tiling_.tiles(); ++tile) {
-            start(*other_, tile);
-            other_->take_hits(batch_);
-            cut(*other_);
-            other_->give_rays(Seek::medium, batch_);
-        }
-        batch_.join_stops();
-        if (Result<void> composed = follower.compose(batch_, Progress()); !composed) return composed.error();
+        if (medium) batch_.join_stops();
+        const Result<void> followed =
+            medium ? follower.compose(batch_, Progress()) : follower.find_hits(batch_, Progress());
+        if (!followed) return followed.error();
         bool same = true;
         for (std::size_t tile = 0; tile < tiling_.tiles(); ++tile) same = same && agree_in(tile);
         return same;
@@ -92,8 +90,11 @@ private:
     RayBatch batch_;
 };
 
-Result<bool> agree_on(const char* shape, Projection projection, RayFollower& follower) {
-    const Result<Grid> grid = make_grid({.shape = shape, .side = 5, .fields = {"gyroid"}});
+} // namespace
+
+Result<bool> follows_as_processor(RayFollower& follower, Seek seek, Projection projection) {
+    const bool perspective = projection == Projection::perspective;
+    const Result<Grid> grid = make_grid({.shape = perspective ? "mixed" : "kuhn", .side = 5, .fields = {"gyroid"}});
     if (!grid) return grid.error();
     const Result<PointField> field = find_field(*grid, "gyroid");
     if (!field) return field.error();
@@ -101,23 +102,15 @@ Result<bool> agree_on(const char* shape, Projection projection, RayFollower& fol
     if (!packed) return packed.error();
     Scene scene;
     scene.bounds = bounds_of(*packed);
-    scene.volumes = {drawn_of(*packed)};
+    scene.volumes = {drawn_of(*packed, seek)};
     Camera camera = camera_of(31, 23, UpAxis::plus_z, projection);
     camera.fit(scene.bounds, 1);
-    if (projection == Projection::perspective) camera.distance *= 0.2; // tets reach behind the eye
+    if (perspective) camera.distance *= 0.2; // tets reach behind the eye
     const Space space(scene.bounds);
     const Tiling tiling{side, side, 1, volume_tile_side};
     VolumeScene volumes(scene, space, space.look(camera, side, side), tiling, {});
     if (Result<void> placed = volumes.place(tiling, Progress()); !placed) return placed.error();
     return TwoWays(volumes, tiling).agree(follower);
-}
-
-} // namespace
-
-Result<bool> follows_as_processor(RayFollower& follower) {
-    Result<bool> same = agree_on("mixed", Projection::perspective, follower);
-    if (!same || !*same) return same;
-    return agree_on("kuhn", Projection::parallel, follower);
 }
 
 } // namespace isotet::render

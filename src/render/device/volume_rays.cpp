@@ -16,7 +16,8 @@ namespace {
 
 using vulkan::address_of;
 
-constexpr std::uint64_t most_list_bytes = std::uint64_t{256} << 20; ///< of all workgroups at work
+constexpr std::uint64_t least_list_bytes = std::uint64_t{256} << 20; ///< that all workgroups at work may have
+constexpr std::uint64_t most_list_bytes = std::uint64_t{1} << 30;
 constexpr std::uint64_t bytes_per_segment = 20;
 constexpr std::size_t most_windows = 64; ///< volumes of a scene with clip planes
 
@@ -30,16 +31,22 @@ std::uint64_t VolumeRays::Given::bytes() const {
     return bytes;
 }
 
-Result<std::unique_ptr<VolumeRays>> VolumeRays::make(std::shared_ptr<vulkan::Context> context) {
-    std::unique_ptr<VolumeRays> rays(new VolumeRays(std::move(context)));
-    const Result<bool> same = follows_as_processor(*rays);
-    if (!same) return same.error();
-    if (!*same)
-        return Error{ErrorCode::no_device,
-                     fmt::format("what the driver of the device {} makes of the kernel gives other light than the CPU "
-                                 "does ({})",
-                                 rays->context_->info().name, rays->context_->info().driver)};
-    return rays;
+Result<void> VolumeRays::check(const Scene& scene, Projection projection) {
+    for (const Seek seek : {Seek::isosurfaces, Seek::medium}) {
+        const bool is_sought = std::ranges::any_of(scene.volumes, [seek](const DrawnVolume& volume) {
+            return seek == Seek::medium ? !volume.opacity.is_transparent() : !volume.isosurfaces.empty();
+        });
+        if (!is_sought || checked_.contains({seek, projection})) continue;
+        const Result<bool> same = follows_as_processor(*this, seek, projection);
+        if (!same) return same.error();
+        if (!*same)
+            return Error{ErrorCode::no_device,
+                         fmt::format("what the driver of the device {} makes of the kernel gives other light than the "
+                                     "CPU does ({})",
+                                     context_->info().name, context_->info().driver)};
+        checked_.insert({seek, projection});
+    }
+    return {};
 }
 
 Result<void> VolumeRays::take(vulkan::Buffer& buffer, std::uint64_t bytes, std::string_view name) {
@@ -146,10 +153,12 @@ Result<std::vector<std::uint32_t>> VolumeRays::follow_blocks(std::span<const std
         has_doubles ? vulkan::drawing::volume_rays : vulkan::drawing::volume_rays_without_doubles, constants);
     if (!kernel) return kernel.error();
     const std::uint64_t per_group = std::uint64_t{layout::block_size} * capacity * bytes_per_segment;
-    if (per_group > most_list_bytes)
+    const std::uint64_t for_lists =
+        std::clamp(context_->memory().free() / 8 + given_.segments.size(), least_list_bytes, most_list_bytes);
+    if (per_group > for_lists)
         return Error{ErrorCode::out_of_memory,
                      fmt::format("lists of {} segments a ray, longer than a device gets", capacity)};
-    const std::uint64_t groups = std::min<std::uint64_t>(blocks.size(), most_list_bytes / per_group);
+    const std::uint64_t groups = std::min<std::uint64_t>(blocks.size(), for_lists / per_group);
     const std::uint64_t segments = groups * layout::block_size * capacity;
     for (const Result<void>& had :
          {take(given_.segments, segments * 16, "segments of rays"), take(given_.marks, segments * 4, "marks of rays"),

@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <memory>
+#include <set>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "render/device/volume_grids.hpp"
@@ -16,9 +18,12 @@ namespace isotet::render {
 
 class VolumeRays : public RayFollower {
 public:
-    /// Tested by small volumes: follows_as_processor().
+    explicit VolumeRays(std::shared_ptr<vulkan::Context> context) : context_(std::move(context)) {}
+
+    /// Tests by small volumes what a scene needs, once each: follows_as_processor(). A driver may compile for a second for each.
+    ///
     /// Errors   no_device: why this device does not follow rays; out_of_memory; device_failed
-    static Result<std::unique_ptr<VolumeRays>> make(std::shared_ptr<vulkan::Context> context);
+    Result<void> check(const Scene& scene, Projection projection);
 
     /// Errors   out_of_memory: also where lists grow beyond what there is for them; device_failed; cancelled
     Result<void> start(const VolumeScene& scene, const Progress& progress) override;
@@ -35,7 +40,6 @@ private:
         std::uint64_t bytes() const;
     };
 
-    explicit VolumeRays(std::shared_ptr<vulkan::Context> context) : context_(std::move(context)) {}
     Result<void> take(vulkan::Buffer& buffer, std::uint64_t bytes, std::string_view name);
     Result<void> put(vulkan::Buffer& buffer, std::span<const std::byte> bytes, std::string_view name);
     Result<void> give(const RayBatch& batch, Seek seek);
@@ -48,6 +52,7 @@ private:
     std::vector<VolumeOnDevice> media_, surfaces_;
     Given given_;
     VolumeWork work_;
+    std::set<std::pair<Seek, Projection>> checked_;
 };
 
 } // namespace isotet::render
