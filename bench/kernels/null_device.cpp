@@ -211,6 +211,7 @@ bool NullDevice::takes(const Pipeline& pipeline) const {
     const std::span<const std::uint32_t> words = pipeline.stages.front().code->words;
     for (std::size_t i = 5; i + 1 < words.size() && (words[i] & 0xffff) == op_capability; i += words[i] >> 16)
         if (words[i + 1] == float64 && !capabilities_.features.shaderFloat64) return false;
+    if (pipeline.name == "volume_rays_without_doubles" && capabilities_.features.shaderFloat64) return false;
     return capabilities_.mesh_shaders || pipeline.stages.front().stage != VK_SHADER_STAGE_MESH_BIT_EXT;
 }
 

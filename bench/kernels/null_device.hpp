@@ -47,8 +47,8 @@ public:
 
     const vulkan::Capabilities& capabilities() const noexcept { return capabilities_; }
 
-    /// Whether the device has what the pipeline needs: of AMD's, those before navi21 have no mesh shaders; of others
-    /// some have no double precision.
+    /// Whether the device is given the pipeline: of AMD's, those before navi21 have no mesh shaders; of others some have
+    /// no double precision, and only these get the kernel that does without.
     bool takes(const Pipeline& pipeline) const;
 
     /// Figures of each stage, in their order.
