@@ -21,8 +21,8 @@ done
 
 cd "$root"
 version=$(sed -n 's/^project(isotet VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
-readonly version folder=$root/build/release
-readonly source=$folder/isotet-$version debian=$folder/debian
+readonly version out=$root/build/release
+readonly source=$out/isotet-$version debian=$out/debian
 
 check_tree() {
     if [[ -n $(git status --porcelain) ]]; then
@@ -41,16 +41,16 @@ check_tree() {
 }
 
 make_archive() {
-    rm -rf "$folder"
-    mkdir -p "$folder"
-    git archive --prefix="isotet-$version/" HEAD | xz -T0 >"$folder/isotet-$version.tar.xz" || return
-    tar -xf "$folder/isotet-$version.tar.xz" -C "$folder"
+    rm -rf "$out"
+    mkdir -p "$out"
+    git archive --prefix="isotet-$version/" HEAD | xz -T0 >"$out/isotet-$version.tar.xz" || return
+    tar -xf "$out/isotet-$version.tar.xz" -C "$out"
 }
 
 make_package() {
-    build_source=$source build release "$folder/tree" -DCMAKE_BUILD_TYPE=Release -DISOTET_TESTS=OFF || return
-    in_log "Debian package" "$folder/package.log" cpack --config "$folder/tree/CPackConfig.cmake" -B "$folder" || return
-    rm -rf "$folder/_CPack_Packages"
+    build_source=$source build release "$out/tree" -DCMAKE_BUILD_TYPE=Release -DISOTET_TESTS=OFF || return
+    in_log "Debian package" "$out/package.log" cpack --config "$out/tree/CPackConfig.cmake" -B "$out" || return
+    rm -rf "$out/_CPack_Packages"
 }
 
 # The mirror that this machine uses.
@@ -63,10 +63,10 @@ mirror() {
 try_package() {
     say "installs the package on a fresh Debian 12"
     rm -rf "$debian"
-    in_log "fresh Debian" "$folder/debian.log" debootstrap --variant=minbase bookworm "$debian" "$(mirror)" || return
-    cp "$folder"/isotet_*.deb "$source/data/vtu/artery_flow_tet_wedge.vtu" "$source/data/exodus/mixed_blocks_hdf5.exo" "$debian/tmp" || return
+    in_log "fresh Debian" "$out/debian.log" debootstrap --variant=minbase bookworm "$debian" "$(mirror)" || return
+    cp "$out"/isotet_*.deb "$source/data/vtu/artery_flow_tet_wedge.vtu" "$source/data/exodus/mixed_blocks_hdf5.exo" "$debian/tmp" || return
     cp /etc/resolv.conf "$debian/etc"
-    in_log "trying the package" "$folder/try.log" chroot "$debian" sh -ec '
+    in_log "trying the package" "$out/try.log" chroot "$debian" sh -ec '
         cd /tmp
         apt-get update
         DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends ./isotet_*.deb
@@ -81,9 +81,9 @@ try_package() {
 }
 
 make_wheel() {
-    cmake --install "$folder/tree" --prefix "$folder/prefix" >"$folder/install.log" || return
-    ISOTET_INSTALLED=$folder/prefix in_log "wheel" "$folder/wheel.log" "$source/scripts/wheel.sh" "$folder/wheel" || return
-    cp "$folder"/wheel/dist/* "$folder"
+    cmake --install "$out/tree" --prefix "$out/prefix" >"$out/install.log" || return
+    ISOTET_INSTALLED=$out/prefix in_log "wheel" "$out/wheel.log" "$source/scripts/wheel.sh" "$out/wheel" || return
+    cp "$out"/wheel/dist/* "$out"
 }
 
 check_tree || exit
@@ -95,5 +95,5 @@ make_archive || exit
 make_package || exit
 try_package || exit
 make_wheel || exit
-(cd "$folder" && sha256sum -- *.tar.* *.deb *.whl >SHA256SUMS && cat SHA256SUMS)
+(cd "$out" && sha256sum -- *.tar.* *.deb *.whl >SHA256SUMS && cat SHA256SUMS)
 if [[ $tag == yes ]]; then git tag -a "v$version" -m "isotet $version" && say "tagged v$version"; fi
