@@ -42,8 +42,8 @@ std::string packed_table(const PackedFileInfo& info, const std::string& path) {
     for (const auto& [count, kind] : kinds_of(info.report))
         if (count > 0) table.row({"", fmt::format("{} {}", grouped(count), kind)});
     if (info.report.cells_left_out > 0)
-        table.row(
-            {"", fmt::format("{} cells left out: their type is not contoured", grouped(info.report.cells_left_out))});
+        table.row({"", fmt::format("{} cells left out: not chosen, or of a type that is not contoured",
+                                   grouped(info.report.cells_left_out))});
     for (std::size_t axis = 0; axis < 3; ++axis)
         table.row({axis == 0 ? "bounds" : "",
                    fmt::format("{} {}", "xyz"[axis], rounded_range(info.lower[axis], info.upper[axis]))});

@@ -33,7 +33,7 @@ function showState() {
   showHeights();
   if (!app.state.camera || !app.camera.set(app.state.camera)) frameAll();
   offerField(app.state.field);
-  offerField(app.state.colorBy);
+  if (!app.grid.colors) offerField(app.state.colorBy);
   id('field').value = app.state.field;
   id('color-by').value = app.state.colorBy;
   id('map').value = app.state.map;
