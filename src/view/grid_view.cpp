@@ -39,8 +39,11 @@ void offer(const std::vector<Field>& fields, Association association, std::vecto
         for (std::size_t i = 0; i < components; ++i)
             offered.push_back({field.name + ":" + (components == 3 ? axes[i] : std::to_string(i)), association});
     }
-    for (const ComponentGroup& group : component_groups(scalar_names(fields)))
-        offered.push_back({group.name + ":mag", association});
+    for (const ComponentGroup& group : component_groups(scalar_names(fields))) { // U:x, U:y, U:z have "U:" in common
+        const std::string name = group.name + (group.name.ends_with(':') ? "mag" : ":mag");
+        if (std::ranges::find(offered, name, &OfferedField::name) == offered.end())
+            offered.push_back({name, association});
+    }
 }
 
 bool same_values(const Array& a, const Array& b) {

@@ -76,6 +76,12 @@ TEST(OfferedFields, HaveTheMagnitudeOfComponents) {
     std::vector<std::string> names;
     for (const OfferedField& field : offered_fields(grid)) names.push_back(field.name);
     EXPECT_EQ(names, (std::vector<std::string>{"vx", "vy", "vz", "v:mag"}));
+    grid.point_fields.clear();
+    for (const char* name : {"U:x", "U:y", "U:z", "U:mag"}) // as packed files have them
+        grid.point_fields.push_back({name, Array::own(std::vector<float>{1})});
+    names.clear();
+    for (const OfferedField& field : offered_fields(grid)) names.push_back(field.name);
+    EXPECT_EQ(names, (std::vector<std::string>{"U:x", "U:y", "U:z", "U:mag"}));
 }
 
 TEST_F(GridViewTest, TheFirstSurfaceIsDirectAndThePackedGridGivesTheSame) {
