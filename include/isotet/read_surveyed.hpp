@@ -22,8 +22,8 @@ struct SurveyedGrid {
     std::vector<std::uint64_t> sampled = {}; ///< numbers of the cells of the sample
 };
 
-/// read(), but cells are counted as they go by, and only a sample of them is kept, where that can be done: one piece of
-/// linear cells in a VTU file or a binary legacy VTK file, points that do not coincide.
+/// read(), but cells are counted as they go by, and only a sample of them is kept, where that can be done: linear cells in
+/// VTK's XML formats, none of them left out, or a binary legacy VTK file, points that do not coincide.
 ///
 /// Cost     of such a file memory for points and fields, a byte a point, and one pass over the cells
 /// Errors   as read()

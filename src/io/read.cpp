@@ -28,7 +28,7 @@
 #include "io/pieces/uniform_cells.hpp"
 #include "io/reader.hpp"
 #include "io/vtk_legacy/read_legacy_vtk.hpp"
-#include "io/vtk_xml/load.hpp"
+#include "io/vtk_xml/read_vtk_xml.hpp"
 
 namespace isotet {
 
@@ -217,8 +217,7 @@ Result<ReadOptions> with_regions(const GridReader& reader, const std::string& pa
 std::optional<Result<Loaded>> load_uncounted(const std::string& format, const std::string& path,
                                              const ReadOptions& options, const Progress& progress) {
     if (format == "vtk") return load_legacy_file(path, options, Depth::arrays, progress);
-    if (format == "vtu") return vtk_xml::load_file(path, "UnstructuredGrid", options, Depth::arrays, false, progress);
-    return std::nullopt;
+    return load_vtk_xml(format, path, options, progress);
 }
 
 Result<ReadResult> read_surveyed(const GridReader& reader, const std::string& path, const ReadOptions& options,
@@ -243,7 +242,7 @@ Result<ReadResult> read_surveyed(const GridReader& reader, const std::string& pa
             return result;
         }
     }
-    return join(std::move(file), counting, progress);
+    return join_counted(std::move(file), counting, progress, counted);
 }
 
 /// How a reader is called: as itself, or for counting.

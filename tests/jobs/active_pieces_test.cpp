@@ -11,10 +11,13 @@
 
 #include <gtest/gtest.h>
 
+#include <isotet/grid.hpp>
 #include <isotet/make.hpp>
 #include <isotet/read.hpp>
+#include <isotet/read_surveyed.hpp>
 #include <isotet/write.hpp>
 
+#include "grid/cells.hpp"
 #include "jobs/listener.hpp"
 #include "pieces/partition.hpp"
 #include "support/seeds.hpp"
@@ -217,16 +220,21 @@ TEST(ActiveCellsOfPieces, AreFoundInOneFileWithSeveralPieces) {
         }
 }
 
-TEST(ActiveCellsOfPieces, AreFoundInBlocks) {
-    const test::TemporaryFolder folder;
-    write_pieces(folder, {.shape = "shuffled", .more = 20});
+/// The pieces of an index as blocks.
+std::string as_blocks(const test::TemporaryFolder& folder, std::size_t pieces) {
     std::string blocks;
-    for (std::size_t p = 0; p < 5; ++p) {
+    for (std::size_t p = 0; p < pieces; ++p) {
         const std::string number = std::to_string(p);
         blocks += "<DataSet index=\"" + number + "\" file=\"piece" + number + ".vtu\"/>";
     }
-    const std::string file = folder.write("all.vtm", "<VTKFile type=\"vtkMultiBlockDataSet\"><vtkMultiBlockDataSet>" +
-                                                         blocks + "</vtkMultiBlockDataSet></VTKFile>");
+    return folder.write("all.vtm", "<VTKFile type=\"vtkMultiBlockDataSet\"><vtkMultiBlockDataSet>" + blocks +
+                                       "</vtkMultiBlockDataSet></VTKFile>");
+}
+
+TEST(ActiveCellsOfPieces, AreFoundInBlocks) {
+    const test::TemporaryFolder folder;
+    write_pieces(folder, {.shape = "shuffled", .more = 20});
+    const std::string file = as_blocks(folder, 5);
     expect_streamed(file);
     expect_same_surface(folder, file, {.edge_ends = true});
 }
@@ -287,6 +295,58 @@ TEST(ActiveCellsOfPieces, HaveTheNumbersOfAllAsSourceCells) {
                             {.isovalues = many_isovalues(), .source_cells = true}, true);
         expect_same_surface(folder, write_pieces(folder, {.shape = shape, .more = 7}), {.source_cells = true}, true);
     }
+}
+
+void expect_counted(const std::string& file, bool stays) {
+    const SurveyedGrid counted = read_surveyed(file).value();
+    const ReadResult all = read(file).value();
+    ASSERT_EQ(counted.report.has_value(), stays);
+    EXPECT_EQ(counted.read.notes, all.notes);
+    EXPECT_TRUE(same_bytes(counted.read.grid.points, all.grid.points));
+    ASSERT_EQ(counted.read.grid.cell_fields.size(), all.grid.cell_fields.size());
+    for (std::size_t i = 0; i < all.grid.cell_fields.size(); ++i)
+        EXPECT_TRUE(same_bytes(counted.read.grid.cell_fields[i].values, all.grid.cell_fields[i].values));
+    if (!stays) {
+        EXPECT_EQ(counted.read.grid.cells.count(), all.grid.cells.count());
+        return;
+    }
+    const GridReport expected = survey(all.grid, {.faces = false}).value();
+    EXPECT_EQ(counted.report->points, expected.points);
+    EXPECT_EQ(counted.report->cells, expected.cells);
+    EXPECT_EQ(counted.report->cells_by_type, expected.cells_by_type);
+    EXPECT_EQ(counted.report->tets, expected.tets);
+    EXPECT_EQ(counted.report->inverted_tets, expected.inverted_tets);
+    EXPECT_EQ(counted.report->unused_points, expected.unused_points);
+    EXPECT_EQ(counted.report->lower, expected.lower);
+    EXPECT_EQ(counted.report->upper, expected.upper);
+    const core::CellReader sample = core::CellReader::open({all.grid.points, counted.read.grid.cells, {}, {}}).value(),
+                           cells = core::CellReader::open(all.grid).value();
+    ASSERT_EQ(counted.sampled.size(), sample.count());
+    for (std::size_t i = 0; i < sample.count(); ++i) {
+        const std::uint64_t cell = counted.sampled[i];
+        ASSERT_EQ(sample.type(i), cells.type(cell));
+        for (std::uint64_t k = 0; k < cells.corners(cell); ++k)
+            ASSERT_EQ(sample.corner(sample.first(i) + k), cells.corner(cells.first(cell) + k)) << cell;
+    }
+}
+
+TEST(ActiveCellsOfPieces, AreCountedAsTheyGoBy) {
+    const test::TemporaryFolder folder;
+    const auto number_cells = [](std::size_t piece, Grid& grid) {
+        std::vector<double> numbers(grid.cells.count());
+        for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<double>(1000 * piece + i);
+        grid.cell_fields.push_back({"number", Array::own(std::move(numbers))});
+    };
+    for (const char* shape : test::some_of({"shuffled", "mixed", "hex"}))
+        for (const bool ids : {false, true}) {
+            SCOPED_TRACE(testing::Message() << shape << (ids ? ", ids" : ""));
+            const Cut cut{.shape = shape, .ids = ids};
+            expect_counted(write_pieces(folder, cut, number_cells), true);
+            expect_counted(in_one_file(folder, cut.pieces), true);
+            expect_counted(as_blocks(folder, cut.pieces), true);
+            expect_counted(write_pieces(folder, {.shape = shape, .ids = ids, .more = 9, .marked = true}), false);
+            expect_counted(write_pieces(folder, {.shape = shape, .ids = ids, .more = 9}), false);
+        }
 }
 
 TEST(ActiveCellsOfPieces, LeaveGhostCellsOut) {

@@ -87,7 +87,7 @@ void SharedCells::add(const std::vector<Cell>& cells) {
     cells_.insert(cells_.end(), cells.begin(), cells.end());
 }
 
-RepeatedCells SharedCells::settle(ActiveCellFilter& filter, bool typed) {
+RepeatedCells SharedCells::settle(CellTaker& taker, bool typed) {
     const auto key = [](const Cell& cell) { return std::tuple(kind_for_repetition(cell.type), cell.ascending); };
     std::ranges::sort(cells_, {}, [&](const Cell& cell) { return std::tuple(key(cell), cell.piece, cell.in_piece); });
     RepeatedCells repeated;
@@ -102,8 +102,7 @@ RepeatedCells SharedCells::settle(ActiveCellFilter& filter, bool typed) {
         }
         const std::size_t corners = core::fixed_corners_of(cell.type);
         const Array numbers(ScalarType::int32, cell.corners.data(), corners, 1, nullptr);
-        if (typed) filter.add_cells(cell.number, std::span(&cell.type, 1), numbers);
-        else filter.add(cell.number * corners, numbers);
+        taker.take(cell.number, std::span(&cell.type, typed ? 1 : 0), numbers);
     }
     repeated.pieces.assign(in.begin(), in.end());
     cells_ = {};
@@ -122,7 +121,7 @@ ActivePass::ActivePass(const Piece& piece, const PieceNumbers& numbers, const Ta
               else broken_ = true;
           });
       }) {
-    if (has_taker()) numbers_ = numbers_of_points(numbers, points_);
+    if (target.taker) numbers_ = numbers_of_points(numbers, points_);
     else kept_ = no_marks(points_), left_out_ = no_marks(points_);
 }
 
@@ -136,8 +135,8 @@ bool ActivePass::finish() {
 std::vector<PointUse> ActivePass::use() const {
     std::vector<PointUse> use(points_, PointUse::none);
     for (std::uint64_t i = 0; i < points_; ++i)
-        if (has_taker() ? (numbers_[i] & used_bit) != 0 : kept_[i] != 0) use[i] = PointUse::kept;
-        else if (!has_taker() && left_out_[i] != 0) use[i] = PointUse::left_out;
+        if (target_.taker ? (numbers_[i] & used_bit) != 0 : kept_[i] != 0) use[i] = PointUse::kept;
+        else if (!target_.taker && left_out_[i] != 0) use[i] = PointUse::left_out;
     return use;
 }
 
@@ -173,7 +172,7 @@ void ActivePass::mark(std::uint64_t cell, std::span<const Index> corners) {
         std::atomic_ref(marks[static_cast<std::size_t>(corner)]).store(1, std::memory_order_relaxed);
 }
 
-/// Without a filter: only who uses which points.
+/// Without a taker: only who uses which points.
 template <class Index, class CornersOf>
 void ActivePass::mark_all(std::uint64_t first_cell, std::uint64_t cells, const Index* corners,
                           const CornersOf& corners_of) {
@@ -189,7 +188,7 @@ void ActivePass::mark_all(std::uint64_t first_cell, std::uint64_t cells, const I
 template <class Index, class CornersOf>
 void ActivePass::pass(std::uint64_t first_cell, std::uint64_t cells, const Index* corners,
                       const CornersOf& corners_of) {
-    if (!has_taker()) return mark_all(first_cell, cells, corners, corners_of);
+    if (!target_.taker) return mark_all(first_cell, cells, corners, corners_of);
     std::array<std::int32_t, 8 * cells_per_send> numbered;
     std::array<std::uint8_t, cells_per_send> types;
     std::vector<core::Keyed> hashes;
@@ -202,7 +201,7 @@ void ActivePass::pass(std::uint64_t first_cell, std::uint64_t cells, const Index
     };
     const std::uint64_t mask = numbers_.size() - 1, points = points_;
     std::uint32_t* const numbers = numbers_.data();
-    const bool typed = target_.typed || target_.around, has_left_out = !piece_.left_out.empty();
+    const bool typed = target_.typed, has_left_out = !piece_.left_out.empty();
     bool broken = false;
     for (std::uint64_t cell = first_cell, n = 0; cell < first_cell + cells; ++cell, corners += n) {
         n = corners_of(cell);
@@ -244,9 +243,7 @@ void ActivePass::pass(std::uint64_t first_cell, std::uint64_t cells, const Index
 void ActivePass::send(std::uint64_t first_cell, std::span<const std::uint8_t> types,
                       std::span<const std::int32_t> corners) const {
     const Array numbers(ScalarType::int32, corners.data(), corners.size(), 1, nullptr);
-    if (target_.around) target_.around->add(types, numbers);
-    else if (target_.typed) target_.filter->add_cells(target_.first + first_cell, types, numbers);
-    else target_.filter->add((target_.first + first_cell) * (corners.size() / types.size()), numbers);
+    target_.taker->take(target_.first + first_cell, target_.typed ? types : types.first(0), numbers);
 }
 
 SharedCells::Cell ActivePass::shared_cell(std::uint64_t cell, std::span<const std::int32_t> corners) const {

@@ -10,12 +10,12 @@
 #include <span>
 #include <vector>
 
-#include <isotet/active_cells.hpp>
 #include <isotet/result.hpp>
 
 #include "base/buffer.hpp"
 #include "base/radix_sort.hpp"
 #include "io/pieces/cell_places.hpp"
+#include "io/pieces/cell_taker.hpp"
 #include "io/pieces/loaded.hpp"
 #include "io/pieces/piece_points.hpp"
 #include "io/pieces/point_numbers.hpp"
@@ -53,9 +53,9 @@ public:
 
     void add(const std::vector<Cell>& cells);
 
-    /// Hands those that no earlier piece has to the filter, and tells of the others.
-    /// `typed`   the filter takes cells with their types
-    RepeatedCells settle(ActiveCellFilter& filter, bool typed);
+    /// Hands those that no earlier piece has to the taker, and tells of the others.
+    /// `typed`   the taker takes cells with their types
+    RepeatedCells settle(CellTaker& taker, bool typed);
 
 private:
     std::mutex mutex_;
@@ -66,21 +66,20 @@ private:
 class ActivePass {
 public:
     struct Target {
-        ActiveCellFilter* filter = nullptr; ///< null, without `around`: uses are looked for, and nothing else
-        bool typed = false;                 ///< the filter takes cells with their types
+        CellTaker* taker = nullptr;         ///< null: uses are looked for, and nothing else
+        bool typed = false;                 ///< the taker takes cells with their types
         std::uint64_t first = 0;            ///< number of the piece's first cell in the joined grid
         std::uint32_t piece = 0;
         SharedHashes* hashes = nullptr; ///< get all shared cells
         std::uint64_t place = 0;        ///< of the piece's first cell there
         std::uint64_t points = 0;       ///< of the piece
-        SharedCells* shared = nullptr;  ///< has those instead of the filter that `repeated` marks
+        SharedCells* shared = nullptr;  ///< has those instead of the taker that `repeated` marks
         std::span<const std::uint8_t> repeated{};
-        CellsAround* around = nullptr; ///< has all cells instead of the filter
     };
 
     static constexpr std::uint64_t max_points = std::uint64_t{1} << 30; ///< of the joined grid
 
-    /// `numbers`   of the points in the joined grid; not looked at without a filter
+    /// `numbers`   of the points in the joined grid; not looked at without a taker
     ActivePass(const Piece& piece, const PieceNumbers& numbers, const Target& target);
 
     /// Corners from place `first` on, of those of all cells.
@@ -89,10 +88,10 @@ public:
     /// When all corners were added. False: a cell has a point that is not there.
     bool finish();
 
-    /// Of the points: without a filter those of left-out cells are told apart, with one all are `kept` or `none`, and
+    /// Of the points: without a taker those of left-out cells are told apart, with one all are `kept` or `none`, and
     /// left-out cells do not count.
     std::vector<PointUse> use() const;
-    bool uses_all_points() const; ///< with a filter
+    bool uses_all_points() const; ///< with a taker
 
 private:
     template <class Index, class CornersOf>
@@ -104,7 +103,6 @@ private:
     template <class Index>
     void mark(std::uint64_t cell, std::span<const Index> corners);
     void see(std::span<const std::uint64_t> points);
-    bool has_taker() const { return target_.filter || target_.around; }
     bool is_left_out(std::uint64_t cell) const { return !piece_.left_out.empty() && piece_.left_out[cell] != 0; }
     void send(std::uint64_t first_cell, std::span<const std::uint8_t> types,
               std::span<const std::int32_t> corners) const;
@@ -114,7 +112,7 @@ private:
     Target target_;
     const CellPlaces& places_;
     std::uint64_t points_;
-    core::Buffer<std::uint32_t> numbers_;        ///< in the joined grid, and two bits; with one who takes cells
+    core::Buffer<std::uint32_t> numbers_;        ///< in the joined grid, and two bits; with a taker
     core::Buffer<std::uint8_t> kept_, left_out_; ///< 1 for a point of such a cell; without
     std::atomic<bool> broken_{false};
     WholeCells whole_;

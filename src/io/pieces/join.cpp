@@ -83,8 +83,9 @@ Array kept_numbers(const std::vector<std::uint8_t>& left_out) {
 }
 
 /// Nothing where `may_free` and pieces that are needed were freed.
+/// `counted`   gets the counts, where cells are counted; else null
 Result<std::optional<ReadResult>> join_loaded(Loaded loaded, const ReadOptions& options, const Progress& progress,
-                                              bool may_free) {
+                                              bool may_free, SurveyedGrid* counted = nullptr) {
     ReadResult result;
     result.info = std::move(loaded.info);
     result.step = loaded.step;
@@ -101,7 +102,8 @@ Result<std::optional<ReadResult>> join_loaded(Loaded loaded, const ReadOptions& 
         return std::optional(std::move(result));
     }
     if (std::ranges::any_of(pieces, [](const Piece& piece) { return piece.unread != nullptr; })) {
-        auto active = join_active(pieces, result, options, progress, may_free);
+        auto active = counted ? join_counted(pieces, result, options, progress, *counted)
+                              : join_active(pieces, result, options, progress, may_free);
         if (!active || *active) return active;
         if (pieces.empty()) return std::optional<ReadResult>();
         if (auto read = read_cells_of(pieces); !read) return read.error();
@@ -129,6 +131,13 @@ Result<std::optional<ReadResult>> join_loaded(Loaded loaded, const ReadOptions& 
 
 Result<ReadResult> join(Loaded loaded, const ReadOptions& options, const Progress& progress) {
     auto joined = join_loaded(std::move(loaded), options, progress, false);
+    if (!joined) return joined.error();
+    return **std::move(joined);
+}
+
+Result<ReadResult> join_counted(Loaded loaded, const ReadOptions& options, const Progress& progress,
+                                SurveyedGrid& counted) {
+    auto joined = join_loaded(std::move(loaded), options, progress, false, &counted);
     if (!joined) return joined.error();
     return **std::move(joined);
 }

@@ -5,6 +5,7 @@
 
 #include <isotet/export.hpp>
 #include <isotet/progress.hpp>
+#include <isotet/read_surveyed.hpp>
 
 #include "io/pieces/loaded.hpp"
 
@@ -26,5 +27,10 @@ ISOTET_API Result<ReadResult> join(Loaded loaded, const ReadOptions& options, co
 /// cells go by, and loaded once more in the rare case that these call for them.
 ISOTET_API Result<ReadResult> load_and_join(const std::function<Result<Loaded>()>& load, const ReadOptions& options,
                                             const Progress& progress = {});
+
+/// join() for read_surveyed(): with a sample of the cells where they can be counted as they go by.
+/// `counted`   then gets report and numbers of the sample
+Result<ReadResult> join_counted(Loaded loaded, const ReadOptions& options, const Progress& progress,
+                                SurveyedGrid& counted);
 
 } // namespace isotet::io

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <iterator>
+#include <memory>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -13,11 +14,13 @@
 #include "base/block.hpp"
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
+#include "grid/fixed_corners.hpp"
 #include "io/files/first_error.hpp"
 #include "io/pieces/active_filter.hpp"
 #include "io/pieces/active_pass.hpp"
 #include "io/pieces/joined_fields.hpp"
 #include "io/pieces/ordered_pieces.hpp"
+#include "io/pieces/survey_unread.hpp"
 
 namespace isotet::io {
 namespace {
@@ -51,11 +54,44 @@ void free_points(std::vector<Piece>& pieces) {
     }
 }
 
+/// Keeps active cells.
+class ActiveTaker final : public CellTaker {
+public:
+    explicit ActiveTaker(ActiveCellFilter filter) : filter_(std::move(filter)) {}
+
+    void take(std::uint64_t first, std::span<const std::uint8_t> types, const Array& corners) override {
+        if (!types.empty()) return filter_.add_cells(first, types, corners);
+        filter_.add(first * corners_of_type_, corners);
+    }
+    void set_type(CellType type) { corners_of_type_ = core::fixed_corners_of(static_cast<std::uint8_t>(type)); }
+
+    ActiveCellFilter& filter() { return filter_; }
+
+private:
+    ActiveCellFilter filter_;
+    std::uint64_t corners_of_type_ = 0;
+};
+
+/// Hands on all cells.
+class AroundTaker final : public CellTaker {
+public:
+    explicit AroundTaker(CellsAround& around) : around_(around) {}
+
+    void take(std::uint64_t, std::span<const std::uint8_t> types, const Array& corners) override {
+        around_.add(types, corners);
+    }
+
+private:
+    CellsAround& around_;
+};
+
 class ActiveJoin {
 public:
+    /// `counted`   gets the counts, where cells are counted; else null
     ActiveJoin(std::vector<Piece>& pieces, const ReadResult& begun, const ReadOptions& options,
-               const Progress& progress, bool may_free)
-        : begun_(begun),
+               const Progress& progress, bool may_free, SurveyedGrid* counted = nullptr)
+        : counted_(counted),
+          begun_(begun),
           options_(options),
           progress_(progress),
           all_(in_order_of_file(std::move(pieces))),
@@ -63,7 +99,7 @@ public:
 
     Result<std::optional<ReadResult>> join() {
         if (!are_unread()) return std::optional<ReadResult>();
-        if (all_.size() == 1 && all_.pieces[0].left_out.empty()) return take_one();
+        if (!counted_ && all_.size() == 1 && all_.pieces[0].left_out.empty()) return take_one();
         if (auto found = find_uses_with_ghosts(); !found) return found.error();
         std::optional<ReadResult> result;
         for (bool again = true; again && !needs_all_ && !freed_;) {
@@ -87,7 +123,9 @@ private:
         std::optional<std::uint8_t> type;
         for (const Piece& piece : all_.pieces) {
             if (piece.cell_count() == 0) continue;
-            if (!piece.unread || !piece.grid.cell_fields.empty() || !check_shape(points_as_piece(piece))) return false;
+            if (counted_ && !may_be_counted(piece, options_)) return false;
+            if (!piece.unread || !check_shape(points_as_piece(piece))) return false;
+            if (!counted_ && !piece.grid.cell_fields.empty()) return false;
             if (!piece.left_out.empty() && (numbers_cells() || piece.left_out.size() != piece.cell_count()))
                 return false;
             const CellPlaces& places = piece.unread->places();
@@ -99,7 +137,40 @@ private:
     }
 
     /// Numbers of cells in the joined grid are those in the file, as long as none is left out.
-    bool numbers_cells() const { return options_.active_cells->options.extract.source_cells; }
+    bool numbers_cells() const { return counted_ || options_.active_cells->options.extract.source_cells; }
+
+    /// What the cells go by for; null where all are needed.
+    std::unique_ptr<CellTaker> make_taker(const Grid& grid) const {
+        if (counted_) return CellCounter::make(grid.points, type_, all_cells());
+        auto filter = active_filter(grid, type_, options_);
+        if (!filter) return nullptr;
+        auto taker = std::make_unique<ActiveTaker>(*std::move(filter));
+        if (type_) taker->set_type(*type_);
+        return taker;
+    }
+
+    /// Nothing where all cells are needed.
+    /// `pass_again`   as with_cells() takes it
+    template <class PassAgain>
+    Result<std::optional<ReadResult>> finished(CellTaker& taker, ReadResult result, const PassAgain& pass_again) {
+        if (!counted_) return with_cells(static_cast<ActiveTaker&>(taker).filter(), std::move(result), pass_again);
+        SurveyedGrid counted;
+        if (!static_cast<CellCounter&>(taker).finish(counted, progress_)) return std::optional<ReadResult>();
+        std::vector<std::uint64_t> kept = cell_counts();
+        auto fields = join_cell_fields(all_.pieces, first_cells(), kept, all_cells(), result, progress_);
+        if (!fields) return fields.error();
+        result.grid.cell_fields = *std::move(fields);
+        result.grid.cells = std::move(counted.read.grid.cells);
+        counted_->report = std::move(counted.report);
+        counted_->sampled = std::move(counted.sampled);
+        return std::optional(std::move(result));
+    }
+
+    std::uint64_t all_cells() const {
+        std::uint64_t count = 0;
+        for (const Piece& piece : all_.pieces) count += piece.cell_count();
+        return count;
+    }
 
     static Piece points_as_piece(const Piece& piece) {
         Piece points;
@@ -123,10 +194,12 @@ private:
         });
         if (options_.active_cells->bounds) used_.assign(piece.grid.points.tuples(), PointUse::none);
         const auto done = piece.unread->each_block([&](std::uint64_t first, const Array& corners) {
+            if (progress_.cancelled()) return;
             type_ ? filter->add(first, corners) : whole.add(first, corners);
             if (!used_.empty()) mark_corners(corners);
         });
         if (!done) return done.error();
+        if (progress_.cancelled()) return Error{ErrorCode::cancelled, "looking for active cells was cancelled"};
         whole.finish();
         result.cells_in_file = places.cells();
         return with_cells(*filter, std::move(result), [&](CellsAround& around) -> Result<void> {
@@ -228,11 +301,11 @@ private:
                                            result.notes.end());
         result.notes.resize(notes);
 
-        auto filter = active_filter(result.grid, type_, options_);
-        if (!filter) needs_all_ = true;
+        auto taker = make_taker(result.grid);
+        if (!taker) needs_all_ = true;
         if (needs_all_) return std::optional<ReadResult>();
         if (options_.active_cells->bounds) used_.assign(joined->numbers.count, PointUse::none);
-        std::vector<ActivePass::Target> targets = targets_for(*filter);
+        std::vector<ActivePass::Target> targets = targets_for(*taker);
         SharedHashes hashes;
         for (ActivePass::Target& target : targets) target.hashes = &hashes;
         if (auto done = pass_all(joined->numbers, targets, again); !done) return done.error();
@@ -241,25 +314,29 @@ private:
         if (!marks) return marks.error();
         RepeatedCells repeated;
         if (!marks->empty()) { // cells were kept that may be those of other pieces
-            filter.reset(); // its memory is needed again
-            filter = active_filter(result.grid, type_, options_);
-            targets = targets_for(*filter);
+            if (counted_) needs_all_ = true;
+            if (needs_all_) return std::optional<ReadResult>();
+            taker.reset(); // its memory is needed again
+            taker = make_taker(result.grid);
+            targets = targets_for(*taker);
             SharedCells shared;
             for (std::size_t p = 0; p < all_.size(); ++p)
                 targets[p].shared = &shared, targets[p].repeated = (*marks)[p];
             if (auto done = pass_all(joined->numbers, targets, again); !done) return done.error();
             if (needs_all_ || again) return std::optional<ReadResult>();
-            repeated = shared.settle(*filter, typed_);
+            repeated = shared.settle(*taker, typed_);
             if (repeated.left_out > 0 && numbers_cells()) needs_all_ = true;
             if (needs_all_) return std::optional<ReadResult>();
         }
         note_repeated(repeated, all_.pieces, result.notes);
-        std::ranges::move(of_fields, std::back_inserter(result.notes));
         result.cells_in_file = kept_cells() - repeated.left_out;
-        return with_cells(*filter, std::move(result), [&](CellsAround& around) {
-            for (ActivePass::Target& target : targets) target = {.points = target.points, .around = &around};
+        auto found = finished(*taker, std::move(result), [&](CellsAround& around) {
+            AroundTaker all(around);
+            for (ActivePass::Target& target : targets) target = {.taker = &all, .typed = true, .points = target.points};
             return pass_all(joined->numbers, targets, again);
         });
+        if (found && *found) std::ranges::move(of_fields, std::back_inserter((*found)->notes));
+        return found;
     }
 
     /// Whether pieces have the same points, so that only their cells could tell which comes first.
@@ -335,12 +412,12 @@ private:
         return counts;
     }
 
-    std::vector<ActivePass::Target> targets_for(ActiveCellFilter& filter) const {
+    std::vector<ActivePass::Target> targets_for(CellTaker& taker) const {
         std::vector<ActivePass::Target> targets(all_.size());
         const std::vector<std::uint64_t> first = first_cells();
         std::uint64_t place = 0;
         for (std::size_t p = 0; p < all_.size(); ++p) {
-            targets[p] = {&filter, typed_, first[p], static_cast<std::uint32_t>(p)};
+            targets[p] = {&taker, typed_, first[p], static_cast<std::uint32_t>(p)};
             targets[p].place = std::exchange(place, place + all_.pieces[p].cell_count());
             targets[p].points = points_[p];
         }
@@ -357,8 +434,12 @@ private:
             if (!piece.unread || failed || needs_all_) return;
             const bool assumed = all_.size() > 1 && all_.uses[p].empty();
             ActivePass pass(piece, numbers.pieces[p], targets[p]);
-            const auto add = [&](std::uint64_t place, const Array& corners) { pass.add(place, corners); };
+            const auto add = [&](std::uint64_t place, const Array& corners) {
+                if (!progress_.cancelled()) pass.add(place, corners);
+            };
             if (auto done = piece.unread->each_block(add); !done) return failed.add(p, done.error());
+            if (progress_.cancelled())
+                return failed.add(p, {ErrorCode::cancelled, "looking for active cells was cancelled"});
             progress_("join pieces", 0.7 + 0.3 * static_cast<double>(++done_pieces) / static_cast<double>(all_.size()));
             if (!pass.finish()) needs_all_ = true;
             else if (assumed && !pass.uses_all_points()) found[p] = pass.use();
@@ -373,6 +454,7 @@ private:
         return {};
     }
 
+    SurveyedGrid* counted_;
     const ReadResult& begun_;
     const ReadOptions& options_;
     const Progress& progress_;
@@ -386,6 +468,15 @@ private:
 };
 
 } // namespace
+
+Result<std::optional<ReadResult>> join_counted(std::vector<Piece>& pieces, const ReadResult& begun,
+                                               const ReadOptions& options, const Progress& progress,
+                                               SurveyedGrid& counted) {
+    ActiveJoin joining(pieces, begun, options, progress, false, &counted);
+    auto result = joining.join();
+    pieces = std::move(joining).pieces();
+    return result;
+}
 
 Result<std::optional<ReadResult>> join_active(std::vector<Piece>& pieces, const ReadResult& begun,
                                               const ReadOptions& options, const Progress& progress, bool may_free) {

@@ -6,6 +6,7 @@
 
 #include <isotet/progress.hpp>
 #include <isotet/read.hpp>
+#include <isotet/read_surveyed.hpp>
 #include <isotet/result.hpp>
 
 #include "io/pieces/loaded.hpp"
@@ -23,5 +24,11 @@ namespace isotet::io {
 /// Returns nothing where all cells are needed, and leaves the pieces as they were; none where they were freed
 Result<std::optional<ReadResult>> join_active(std::vector<Piece>& pieces, const ReadResult& begun,
                                               const ReadOptions& options, const Progress& progress, bool may_free);
+
+/// The same of counts and a sample of the cells (read_surveyed()), with cell fields of all. None may be left out.
+/// `counted`   gets report and numbers of the sample
+Result<std::optional<ReadResult>> join_counted(std::vector<Piece>& pieces, const ReadResult& begun,
+                                               const ReadOptions& options, const Progress& progress,
+                                               SurveyedGrid& counted);
 
 } // namespace isotet::io

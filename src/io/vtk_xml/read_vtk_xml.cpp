@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "io/vtk_xml/read_vtk_xml.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "io/files/escape.hpp"
@@ -79,6 +80,13 @@ Result<Loaded> load_vtk_file(const std::string& path, std::string_view type, con
     if (type.starts_with("vtk")) return load_blocks(path, type, options, depth, progress);
     if (type.starts_with("P")) return vtk_xml::load_pieces(path, type, options, depth, progress);
     return vtk_xml::load_file(path, type, options, depth, ids, progress);
+}
+
+std::optional<Result<Loaded>> load_vtk_xml(const std::string& format, const std::string& path,
+                                           const ReadOptions& options, const Progress& progress) {
+    const auto kind = std::ranges::find_if(kinds, [&](const Named& one) { return format == one.name; });
+    if (kind == kinds.end()) return std::nullopt;
+    return load(*kind, path, options, Depth::arrays, progress);
 }
 
 std::vector<GridReader> vtk_xml_readers() { return all_readers(std::make_index_sequence<kinds.size()>()); }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +15,10 @@ namespace isotet::io {
 
 /// VTU, VTI, VTR, VTS, those in pieces, VTM, VTPC, VTPD, VTH, VTHB and PVD.
 std::vector<GridReader> vtk_xml_readers();
+
+/// A file of the format of this name, with its arrays; nothing where it is none of these.
+std::optional<Result<Loaded>> load_vtk_xml(const std::string& format, const std::string& path,
+                                           const ReadOptions& options, const Progress& progress);
 
 /// The type that the name of a file of these formats stands for ("UnstructuredGrid" for .vtu); empty for others, and for
 /// collections.

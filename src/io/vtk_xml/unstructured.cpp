@@ -105,7 +105,7 @@ Result<std::vector<Piece>> load_unstructured(const std::shared_ptr<Document>& do
     const Wanted of_pieces{wanted.options, wanted.step, wanted.ids || !alone, wanted.path};
     if (auto read = load_fields(*document, layouts, of_pieces, progress, loaded, whole); !read) return read.error();
     const bool later = wanted.options.active_cells && !wanted.path.empty() &&
-                       (are_counted(wanted.options) ? alone : whole.grid.cell_fields.empty());
+                       (are_counted(wanted.options) || whole.grid.cell_fields.empty());
     std::vector<Piece> pieces;
     for (std::size_t i = 0; i < elements.size(); ++i) {
         auto part = read_cells(*document, {elements[i], cells.tuples[i], wanted.step}, later, progress);
