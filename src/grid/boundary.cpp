@@ -37,6 +37,7 @@ Result<Surface> boundary_of_grid(const Grid& grid, const Progress& progress) {
     progress("check", 0.75);
     parallel_pieces(cells->count(), cells_per_piece, progress,
                     [&](std::size_t begin, std::size_t end) { search.keep(begin, *cells, begin, end); });
+    if (!search.has_kept_all()) return std::move(search).finish(grid, *cells, progress);
     auto found = std::move(search).finish(progress);
     if (!found) return found.error();
     return std::move(found->surface);

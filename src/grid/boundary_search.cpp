@@ -27,24 +27,15 @@ Surface surface_of(const Array& all_points, const std::vector<BoundaryFace>& fac
     return surface;
 }
 
-/// Whether a face of a cell may have a doubted point as its lowest one.
-template <class Index>
-bool has_doubted(const Buffer<std::uint8_t>& doubted, std::span<const Index> corners) {
-    return std::ranges::any_of(corners, [&](Index point) { return doubted[static_cast<std::size_t>(point)] != 0; });
-}
-
-/// Of a tet the lowest points of faces are the two lowest of all.
-template <class Index>
-bool has_doubted_tet(const Buffer<std::uint8_t>& doubted, const Index* corners) {
-    const Index a = std::min(corners[0], corners[1]), b = std::max(corners[0], corners[1]);
-    const Index c = std::min(corners[2], corners[3]), d = std::max(corners[2], corners[3]);
-    return (doubted[static_cast<std::size_t>(std::min(a, c))] |
-            doubted[static_cast<std::size_t>(std::min(std::max(a, c), std::min(b, d)))]) != 0;
+/// Of what is free: for kept cells, and for the tables of their faces.
+std::uint64_t share_of_memory() {
+    constexpr std::uint64_t enough_for_small_grids = 1 << 26;
+    return std::max(free_memory() / 4, enough_for_small_grids);
 }
 
 } // namespace
 
-BoundarySearch::BoundarySearch(const Array& points) : sums_(points, false) {
+BoundarySearch::BoundarySearch(const Array& points) : sums_(points, false), most_kept_(share_of_memory()) {
     block_.points = points;
     points_are_sound_ = all_points_are_sound(block_);
 }
@@ -87,27 +78,43 @@ void BoundarySearch::keep(std::uint64_t first, std::span<const std::uint8_t> typ
     if (const auto cells = CellReader::open(block)) keep(first, *cells, 0, cells->count());
 }
 
+/// Whether a face of a cell may have a doubted point as its lowest one: of a tet these are the two lowest of all.
+template <class Index>
+bool BoundarySearch::is_kept(const CellReader& cells, std::size_t cell, std::span<const Index> corners) {
+    const std::uint64_t points = doubted_.size();
+    std::uint8_t any = 0;
+    if (cells.bare_tets()) {
+        const auto [a, b] = std::minmax({widened(corners[0]), widened(corners[1])});
+        const auto [c, d] = std::minmax({widened(corners[2]), widened(corners[3])});
+        if (std::max(b, d) < points)
+            return (doubted_[std::min(a, c)] | doubted_[std::min(std::max(a, c), std::min(b, d))]) != 0;
+        broken_ = true;
+        return false;
+    }
+    for (const Index corner : corners) {
+        if (widened(corner) < points) any |= doubted_[widened(corner)];
+        else broken_ = true;
+    }
+    return any != 0 && is_contoured(cells.type(cell));
+}
+
 void BoundarySearch::keep(std::uint64_t first, const CellReader& cells, std::size_t begin, std::size_t end) {
+    if (!has_kept_all()) return;
     Run run{first, {}, {}};
-    cells.connectivity().visit([&](const auto* corners) {
-        const auto take = [&](const auto* own, std::size_t count, std::uint8_t type) {
-            for (std::size_t k = 0; k < count; ++k) run.corners.push_back(widened(own[k]));
-            run.types.push_back(type);
-        };
-        if (cells.bare_tets()) {
-            for (const auto* tet = corners + 4 * begin; tet < corners + 4 * end; tet += 4)
-                if (has_doubted_tet(doubted_, tet)) take(tet, 4, static_cast<std::uint8_t>(CellType::tetrahedron));
-            return;
-        }
+    cells.connectivity().visit([&]<class Index>(const Index* corners) {
         for (std::size_t cell = begin; cell < end; ++cell) {
-            const auto own = std::span(corners + cells.first(cell), cells.corners(cell));
-            if (is_contoured(cells.type(cell)) && has_doubted(doubted_, own))
-                take(own.data(), own.size(), cells.type(cell));
+            const std::span<const Index> own(corners + cells.first(cell), cells.corners(cell));
+            if (!is_kept(cells, cell, own)) continue;
+            for (const Index corner : own) run.corners.push_back(widened(corner));
+            run.types.push_back(cells.type(cell));
         }
     });
     if (run.types.empty()) return;
+    const std::uint64_t bytes = run.corners.capacity() * sizeof(std::uint64_t) + run.types.capacity();
     const std::lock_guard lock(mutex_);
-    runs_.push_back(std::move(run));
+    kept_bytes_ += bytes;
+    if (has_kept_all()) runs_.push_back(std::move(run));
+    else runs_ = {};
 }
 
 /// Ordered types are among them, so that each has its own.
@@ -144,6 +151,18 @@ Cells BoundarySearch::join_runs() {
     return joined;
 }
 
+Result<Surface> BoundarySearch::find(const Grid& grid, const CellReader& cells, const Progress& progress) {
+    const auto faces =
+        find_boundary_faces_at(std::move(doubted_), grid, cells, sums_.tets(), {.memory = share_of_memory()}, progress);
+    if (!faces) return faces.error();
+    constexpr std::uint64_t max_numbers = std::numeric_limits<std::uint32_t>::max();
+    if (3 * faces->size() > max_numbers && grid.points.tuples() > max_numbers)
+        return Error{ErrorCode::invalid_data, fmt::format("the boundary has {} faces, but of a grid of more than 2^32 "
+                                                          "points it must have at most {}",
+                                                          faces->size(), max_numbers / 3)};
+    return surface_of(grid.points, *faces);
+}
+
 Result<FoundBoundary> BoundarySearch::finish(const Progress& progress) && {
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "finding the boundary was cancelled"};
     FoundBoundary found;
@@ -156,18 +175,15 @@ Result<FoundBoundary> BoundarySearch::finish(const Progress& progress) && {
     grid.cells = found.cells;
     const auto cells = CellReader::open(grid);
     if (!cells) return cells.error();
-    constexpr std::uint64_t enough_for_small_grids = 1 << 26;
-    const std::uint64_t memory = std::max(free_memory() / 4, enough_for_small_grids);
-    const auto faces =
-        find_boundary_faces_at(std::move(doubted_), grid, *cells, sums_.tets(), {.memory = memory}, progress);
-    if (!faces) return faces.error();
-    constexpr std::uint64_t max_numbers = std::numeric_limits<std::uint32_t>::max();
-    if (3 * faces->size() > max_numbers && grid.points.tuples() > max_numbers)
-        return Error{ErrorCode::invalid_data, fmt::format("the boundary has {} faces, but of a grid of more than 2^32 "
-                                                          "points it must have at most {}",
-                                                          faces->size(), max_numbers / 3)};
-    found.surface = surface_of(grid.points, *faces);
+    auto surface = find(grid, *cells, progress);
+    if (!surface) return surface.error();
+    found.surface = *std::move(surface);
     return found;
+}
+
+Result<Surface> BoundarySearch::finish(const Grid& grid, const CellReader& cells, const Progress& progress) && {
+    runs_ = {};
+    return find(grid, cells, progress);
 }
 
 } // namespace isotet::core

@@ -28,7 +28,7 @@ struct FoundBoundary {
 /// Finds the boundary of linear cells that go by twice, in blocks of any order: first sums say at which points there may be
 /// faces of the boundary, then the cells there are kept.
 ///
-/// Memory    18 bytes a point, and the cells that are kept: of 100 tets inside about 6
+/// Memory    17 bytes a point, and the cells that are kept: of 100 tets inside about 6
 /// Threads   add() and keep() are safe from many threads
 class ISOTET_API BoundarySearch {
 public:
@@ -51,11 +51,19 @@ public:
     void keep(std::uint64_t first, std::span<const std::uint8_t> types, const Array& corners);
     void keep(std::uint64_t first, const CellReader& cells, std::size_t begin, std::size_t end);
 
-    /// When all were.
+    /// When all were. False where finish() needs all cells in memory: those that are kept take more than limit_kept(), or
+    /// have points that were not there at first, as where a file is written to meanwhile.
+    bool has_kept_all() const { return !broken_ && kept_bytes_ <= most_kept_; }
+    void limit_kept(std::uint64_t bytes) { most_kept_ = bytes; } ///< else a quarter of the free memory
+
+    /// Then, if it has.
     ///
     /// Guarantees   the surface is that of boundary_of()
     /// Errors       as boundary_of()
     Result<FoundBoundary> finish(const Progress& progress) &&;
+
+    /// The same after look(), of the grid with all cells, of which none need be kept.
+    Result<Surface> finish(const Grid& grid, const CellReader& cells, const Progress& progress) &&;
 
     static std::uint64_t bytes(std::uint64_t points) { return points * FaceSums::bytes_per_point; }
 
@@ -67,13 +75,18 @@ private:
         std::vector<std::uint8_t> types;
     };
 
+    template <class Index>
+    bool is_kept(const CellReader& cells, std::size_t cell, std::span<const Index> corners);
     Cells join_runs();
+    Result<Surface> find(const Grid& grid, const CellReader& cells, const Progress& progress);
 
     Grid block_; ///< points alone
     bool points_are_sound_ = false;
     std::atomic<bool> broken_{false};
     CellSums sums_;
     Buffer<std::uint8_t> doubted_; ///< by point
+    std::atomic<std::uint64_t> kept_bytes_{0};
+    std::uint64_t most_kept_;
     std::mutex mutex_;
     std::vector<Run> runs_; ///< under the mutex
 };

@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include <isotet/boundary.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/make.hpp>
 #include <isotet/pack.hpp>
@@ -18,6 +19,7 @@
 #include "grid/mixed_faces.hpp"
 #include "support/mixed_grid.hpp"
 #include "support/random_grid.hpp"
+#include "support/surface_bytes.hpp"
 
 namespace isotet::test {
 namespace {
@@ -369,6 +371,7 @@ TEST(Survey, FindsTheBoundaryOfCellsThatGoByInBlocks) {
             ASSERT_TRUE(search.look());
             for (std::size_t end = cells.count(); end > 0; end -= std::min(block, end))
                 search.keep(end - std::min(block, end), cells, end - std::min(block, end), end);
+            ASSERT_TRUE(search.has_kept_all());
             const core::FoundBoundary found = std::move(search).finish({}).value();
             std::vector<std::array<std::uint64_t, 3>> faces;
             for (std::size_t i = 0; i < found.surface.triangle_count(); ++i) {
@@ -387,6 +390,40 @@ TEST(Survey, FindsTheBoundaryOfCellsThatGoByInBlocks) {
             EXPECT_TRUE(std::ranges::is_sorted(faces));
         }
     }
+}
+
+TEST(Survey, FindsTheBoundaryOfCellsThatTakeMoreMemoryThanMayBeKept) {
+    for (const char* shape : {"shuffled", "mixed"}) {
+        const Grid grid = make_grid({.shape = shape, .side = 7, .fields = {}}).value();
+        const core::CellReader cells = core::CellReader::open(grid).value();
+        core::BoundarySearch search(grid.points);
+        search.limit_kept(1000);
+        search.add(grid, cells, 0, cells.count());
+        ASSERT_TRUE(search.look());
+        search.keep(0, cells, 0, cells.count() / 2);
+        search.keep(cells.count() / 2, cells, cells.count() / 2, cells.count());
+        ASSERT_FALSE(search.has_kept_all());
+        const Surface found = std::move(search).finish(grid, cells, {}).value();
+        EXPECT_TRUE(bytes_of(found) == bytes_of(boundary_of(grid).value()));
+    }
+}
+
+TEST(Survey, FindsThatCellsWhichGoByAgainHaveOtherPoints) {
+    for (const char* shape : {"shuffled", "mixed"})
+        for (const std::int64_t point : {std::int64_t{-1}, std::int64_t{1} << 40}) {
+            Grid grid = make_grid({.shape = shape, .side = 4, .fields = {}}).value();
+            const core::CellReader cells = core::CellReader::open(grid).value();
+            core::BoundarySearch search(grid.points);
+            search.add(grid, cells, 0, cells.count());
+            ASSERT_TRUE(search.look());
+            std::vector<std::int64_t> corners;
+            for (std::size_t i = 0; i < grid.cells.connectivity.size(); ++i)
+                corners.push_back(static_cast<std::int64_t>(cells.corner(i)));
+            corners[corners.size() / 2] = point;
+            grid.cells.connectivity = Array::own(std::move(corners), grid.cells.connectivity.components());
+            search.keep(0, core::CellReader::open(grid).value(), 0, cells.count());
+            EXPECT_FALSE(search.has_kept_all());
+        }
 }
 
 TEST(Survey, FindsThatEveryTetIsRepeated) {
