@@ -181,7 +181,7 @@ Result<std::optional<FieldChart>> make_chart(const InfoJob& job, const Grid& gri
 /// Which count of hanging points is right. What extraction closes is known exactly; by places alone points near edges that
 /// look at each other count, too, so these are taken where something stays open: faces that do not fit, doubled points.
 std::uint64_t count_of(const HangingReport& closed, std::uint64_t by_places, const GridReport& grid) {
-    if (closed.curved_points > 0) return closed.curved_points; // of the corners
+    if (closed.curved_cells > 0 && closed.open_faces == 0) return closed.points; // by places nodes count, too
     const bool knows_all = closed.points > 0 && closed.open_faces == 0 && grid.duplicate_points == 0;
     return knows_all ? closed.points : std::max(by_places, closed.points);
 }

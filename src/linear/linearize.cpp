@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
 
+#include "base/buffer.hpp"
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
 #include "base/parallel.hpp"
@@ -15,6 +18,7 @@
 #include "linear/by_numbers.hpp"
 #include "linear/curved/curved_kinds.hpp"
 #include "linear/curved/high_degree.hpp"
+#include "linear/curved/lattice_faces.hpp"
 #include "linear/curved/quadratic.hpp"
 #include "linear/curved/refine.hpp"
 #include "linear/parts.hpp"
@@ -111,8 +115,123 @@ Result<void> check_selection(const Grid& grid, const LinearizeOptions& options) 
     return {};
 }
 
+/// `polyhedra`   nothing: they stay for later, without their faces
+LinearGrid split_blocks(const Grid& grid, const core::CellReader& cells, const core::FaceReader& faces,
+                        const LinearizeOptions& options, std::optional<LargeFaces> polyhedra,
+                        const Progress& progress) {
+    const bool narrow = grid.points.tuples() < std::uint64_t{1} << 31;
+    const MetCells met(cells, options);
+    const std::size_t cells_per_block = cells_of_block(cells.count());
+    std::vector<KeptParts> blocks((cells.count() + cells_per_block - 1) / cells_per_block);
+    core::parallel_ranges(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
+        PolyhedronSplitter splitter(grid, cells, faces, options, polyhedra.value_or(LargeFaces::quadrilaterals));
+        HighDegreeSplitter by_degree(cells);
+        std::vector<std::uint64_t> corners;
+        std::vector<double> corner_values;
+        Parts parts;
+        for (std::size_t b = begin; b < end && !progress.cancelled(); ++b) {
+            const std::size_t last = std::min(cells.count(), (b + 1) * cells_per_block);
+            for (std::size_t cell = b * cells_per_block; cell < last; ++cell) {
+                const bool is_split = polyhedra && core::is_polyhedron(cells, faces, cell);
+                if (is_split && !options.isovalues.empty() && !met.meets(cell, corner_values) &&
+                    !std::ranges::binary_search(options.also, cell))
+                    ++parts.report.unmet;
+                else if (is_split) splitter.split(cell, parts);
+                else if (const auto what = high_degree_of(cells.type(cell), cells.corners(cell)))
+                    by_degree.split(cell, *what, parts);
+                else keep_cell(cells, cell, corners, parts);
+            }
+            blocks[b] = KeptParts(parts, narrow);
+        }
+    });
+    if (progress.cancelled()) return {};
+    LinearGrid out = joined(blocks, grid.points.tuples());
+    out.user_cells = cells.count();
+    if (out.report.high_degree > 0) merge_rows(out);
+    return out;
+}
+
+/// Rows of weights of a grid's points, some of which are derived, as of the user's points, behind the rows of these.
+DerivedPoints composed_rows(const LinearGrid& before, const DerivedPoints& rows) {
+    std::vector<std::uint64_t> first{0}, points;
+    std::vector<double> weights;
+    std::vector<std::pair<std::uint64_t, double>> terms;
+    const auto add = [&](const DerivedPoints& from, std::uint64_t row, double share, const auto& use) {
+        const auto ends = from.first.as<std::uint64_t>(), of = from.points.as<std::uint64_t>();
+        const std::uint64_t count = ends[row + 1] - ends[row];
+        for (std::uint64_t i = ends[row]; i < ends[row + 1]; ++i)
+            use(of[i], share * (from.weights.empty() ? 1 / static_cast<double>(count) : from.weights.as<double>()[i]));
+    };
+    const auto put = [&](std::uint64_t point, double weight) {
+        points.push_back(point);
+        weights.push_back(weight);
+    };
+    for (std::uint64_t row = 0; row < before.derived.count(); ++row) {
+        add(before.derived, row, 1, put);
+        first.push_back(points.size());
+    }
+    for (std::uint64_t row = 0; row < rows.count(); ++row) {
+        terms.clear();
+        const auto put_term = [&](std::uint64_t point, double weight) { terms.emplace_back(point, weight); };
+        add(rows, row, 1, [&](std::uint64_t point, double weight) {
+            if (point < before.user_points) put_term(point, weight);
+            else add(before.derived, point - before.user_points, weight, put_term);
+        });
+        std::ranges::sort(terms);
+        for (std::size_t i = 0; i < terms.size(); ++i)
+            if (i > 0 && terms[i].first == terms[i - 1].first) weights.back() += terms[i].second;
+            else put(terms[i].first, terms[i].second);
+        first.push_back(points.size());
+    }
+    return {Array::own(std::move(first)), Array::own(std::move(points)), Array::own(std::move(weights))};
+}
+
+/// Without points.
+LinearGrid composed(const LinearGrid& before, LinearGrid&& after) {
+    LinearGrid out = std::move(after);
+    out.derived = composed_rows(before, out.derived);
+    out.user_points = before.user_points;
+    out.user_cells = before.user_cells;
+    const auto users = before.source_cells.as<std::uint64_t>();
+    if (out.source_cells.empty()) {
+        out.source_cells = before.source_cells;
+    } else {
+        const auto parts = out.source_cells.as<std::uint64_t>();
+        core::Buffer<std::uint64_t> sources(parts.size());
+        core::parallel_each(parts.size(), 1 << 14, [&](std::size_t i) { sources[i] = users[parts[i]]; });
+        out.source_cells = std::move(sources).to_array();
+    }
+    out.report.high_degree = before.report.high_degree;
+    out.report.high_degree_parts = before.report.high_degree_parts;
+    return out;
+}
+
+Result<LinearGrid> split_in_order(const Grid& grid, const LinearizeOptions& options, LargeFaces large,
+                                  const Progress& progress);
+
+/// Cells of degree 3 and above first, then polyhedra, which have their points on common edges and faces.
+Result<LinearGrid> split_by_degree_first(const Grid& grid, const core::CellReader& cells, const core::FaceReader& faces,
+                                         const LinearizeOptions& options, const Progress& progress) {
+    LinearGrid quadratic = split_blocks(grid, cells, faces, options, std::nullopt, progress);
+    if (progress.cancelled()) return linearizing_cancelled();
+    auto points = quadratic.extend(grid.points, {.threads = core::threads_here()});
+    if (!points) return points.error();
+    quadratic.grid.points = *std::move(points);
+    auto listed = with_lattice_faces(cells, faces, quadratic, progress);
+    if (!listed) return listed.error();
+    quadratic.grid.cells = *std::move(listed);
+    auto linear = split_in_order(quadratic.grid, options, LargeFaces::triangles, progress);
+    if (!linear) return linear;
+    LinearGrid out = composed(quadratic, *std::move(linear));
+    points = out.extend(grid.points, {.threads = core::threads_here()});
+    if (!points) return points.error();
+    out.grid.points = *std::move(points);
+    return out;
+}
+
 /// Where numbers decide, they are the indices of points.
-Result<LinearGrid> split_in_order(const Grid& grid, const LinearizeOptions& options, const Progress& progress) {
+Result<LinearGrid> split_in_order(const Grid& grid, const LinearizeOptions& options, LargeFaces large,
+                                  const Progress& progress) {
     const auto cells = core::CellReader::open(grid);
     if (!cells) return cells.error();
     if (auto fits = check_selection(grid, options); !fits) return fits.error();
@@ -125,36 +244,11 @@ Result<LinearGrid> split_in_order(const Grid& grid, const LinearizeOptions& opti
         if (auto sound = check_high_degree(grid, *cells, progress); !sound) return sound.error();
     progress("linearize", 0.1);
 
-    const bool narrow = grid.points.tuples() < std::uint64_t{1} << 31;
-    const MetCells met(*cells, options);
-    const std::size_t cells_per_block = cells_of_block(cells->count());
-    std::vector<KeptParts> blocks((cells->count() + cells_per_block - 1) / cells_per_block);
-    core::parallel_ranges(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
-        PolyhedronSplitter splitter(grid, *cells, *faces, options);
-        HighDegreeSplitter by_degree(*cells);
-        std::vector<std::uint64_t> corners;
-        std::vector<double> corner_values;
-        Parts parts;
-        for (std::size_t b = begin; b < end && !progress.cancelled(); ++b) {
-            const std::size_t last = std::min(cells->count(), (b + 1) * cells_per_block);
-            for (std::size_t cell = b * cells_per_block; cell < last; ++cell) {
-                const bool is_polyhedron = core::is_polyhedron(*cells, *faces, cell);
-                if (is_polyhedron && !options.isovalues.empty() && !met.meets(cell, corner_values) &&
-                    !std::ranges::binary_search(options.also, cell))
-                    ++parts.report.unmet;
-                else if (is_polyhedron) splitter.split(cell, parts);
-                else if (const auto what = high_degree_of(cells->type(cell), cells->corners(cell)))
-                    by_degree.split(cell, *what, parts);
-                else keep_cell(*cells, cell, corners, parts);
-            }
-            blocks[b] = KeptParts(parts, narrow);
-        }
-    });
+    if (high_degree && has_polyhedra_at_lattices(*cells, *faces))
+        return split_by_degree_first(grid, *cells, *faces, options, progress);
+    LinearGrid out = split_blocks(grid, *cells, *faces, options, large, progress);
     if (progress.cancelled()) return linearizing_cancelled();
     progress("linearize", 0.8);
-    LinearGrid out = joined(blocks, grid.points.tuples());
-    out.user_cells = cells->count();
-    if (high_degree) merge_rows(out);
     const auto types = out.grid.cells.types.as<std::uint8_t>();
     if (out.report.unmet == 0 && std::ranges::none_of(types, core::is_contoured) && !has_curved_cells(grid.cells))
         return nothing_left(grid, out.report);
@@ -179,10 +273,10 @@ Result<LinearGrid> split_polyhedra(const Grid& user, const LinearizeOptions& opt
         same.user_cells = cells->count();
         return same;
     }
-    if (grid.point_numbers.empty()) return split_in_order(grid, options, progress);
+    if (grid.point_numbers.empty()) return split_in_order(grid, options, LargeFaces::quadrilaterals, progress);
     const auto sorted = sort_by_numbers(grid, progress);
     if (!sorted) return sorted.error();
-    auto linear = split_in_order(sorted->grid, options, progress);
+    auto linear = split_in_order(sorted->grid, options, LargeFaces::quadrilaterals, progress);
     if (!linear) return linear.error();
     return in_users_order(*std::move(linear), grid, sorted->original);
 }

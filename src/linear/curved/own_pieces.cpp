@@ -628,6 +628,24 @@ void follow_carried(const Grid& user, const LinearGrid& before, const QuadraticT
     });
 }
 
+/// Polyhedra are quadratic on faces and edges that cells of degree 3 and above have, too: nothing is divided there.
+void keep_beside_polyhedra(const Grid& user, const LinearGrid& before, const QuadraticTets& tets,
+                           std::vector<std::uint8_t>& levels) {
+    if (before.report.polyhedra == 0 || before.report.high_degree == 0) return;
+    const auto users = core::CellReader::open({user.points, user.cells, {}, {}}).value();
+    const auto sources = before.source_cells.as<std::uint64_t>();
+    constexpr std::uint8_t high = 1, linear = 2;
+    std::vector<std::uint8_t> has(levels.size(), 0);
+    for (std::size_t tet = 0; tet < tets.tets.size(); ++tet) {
+        const std::uint64_t cell = sources[tets.sources[tet]];
+        const auto what = high_degree_of(users.type(cell), users.corners(cell));
+        if (is_curved(users.type(cell)) && !(what && what->degree > 2)) continue;
+        for (std::size_t i = 0; i < 4; ++i) has[tets.tets[tet][i]] |= what ? high : linear;
+    }
+    for (std::size_t point = 0; point < levels.size(); ++point)
+        if (has[point] == (high | linear)) levels[point] = 0;
+}
+
 Error following_cancelled() { return {ErrorCode::cancelled, "refining was cancelled"}; }
 
 } // namespace
@@ -686,6 +704,7 @@ Result<OwnBounds> follow_own_functions(const Grid& user, LinearGrid& before, Qua
     });
     for (const CarriedValues& carried : rule.carried)
         follow_carried(user, before, tets, cells, points, carried, levels, progress);
+    keep_beside_polyhedra(user, before, tets, levels);
     if (progress.cancelled()) return following_cancelled();
     if (!rule.carried.empty() && std::ranges::any_of(levels, [](std::uint8_t level) { return level > 0; }))
         differs = deep = true;

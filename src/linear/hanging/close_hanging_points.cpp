@@ -13,7 +13,6 @@
 #include "base/parallel.hpp"
 #include "linear/checked_cells.hpp"
 #include "linear/curved/curved_kinds.hpp"
-#include "linear/curved/high_degree.hpp"
 #include "linear/derived.hpp"
 #include "linear/hanging/corner_cells.hpp"
 #include "linear/hanging/covers.hpp"
@@ -101,10 +100,6 @@ Result<ClosedGrid> close_curved_cells(const Grid& grid, const Progress& progress
     if (!cells || !faces || !can_be_copied(*cells)) return out; // refining tells what is wrong
     ClosedGrid found{corners.grid, {}, {}, {}};
     describe_hanging(all->open, *covers, points, grid.points.type() == ScalarType::float32, found);
-    if (has_high_degree(*cells)) { // their nodes on edges are made when they are refined, and cannot be listed
-        out.report.curved_points = found.report.points;
-        return out;
-    }
     out.report = found.report;
     out.report.open_faces = covers->open.size();
     if (covers->whole.empty()) return out;
@@ -226,11 +221,6 @@ std::vector<std::string> HangingReport::notes() const {
             fmt::format("{} of these are cells above degree 1: they are linear between their points, without a "
                         "bound of the error, and hanging points have their own values",
                         curved_cells));
-    if (curved_points > 0)
-        out.push_back(
-            fmt::format("{} points hang on faces or edges of larger cells, in a grid with cells above degree 2, "
-                        "which cannot list them: the surface is open there (docs/cells.md)",
-                        curved_points));
     if (near_faces > 0)
         out.push_back(fmt::format("hanging points of {} of {} faces are beside these, by up to {:.3g}: the surface "
                                   "follows the smaller cells",

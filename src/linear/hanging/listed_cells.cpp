@@ -40,7 +40,7 @@ public:
             CellLoops loops(cells_, faces_);
             std::vector<ListedCell> part;
             ListedCell listed{};
-            std::vector<Edge> edges;
+            FaceEdges edges;
             auto cover = first_cover(begin);
             for (std::size_t cell = begin; cell < end; ++cell) {
                 const auto covers = cover;
@@ -49,8 +49,7 @@ public:
                 if (!loops.read(cell) || (covers == cover && !has_split_edge(loops))) continue;
                 listed.cell = cell;
                 list_faces(loops, covers, listed);
-                if (!closes(listed.faces, edges)) continue;
-                find_points(edges, listed.points);
+                if (!edges.find_points(listed)) continue;
                 part.push_back(listed);
             }
             const std::lock_guard lock(mutex);
@@ -89,23 +88,10 @@ private:
         return false;
     }
 
-    /// A triangle with one point on an edge becomes two triangles: as a quadrilateral it would have three corners on a
-    /// line.
     void add_loop(std::span<const std::uint64_t> loop, ListedCell& out) const {
-        const std::size_t at = out.faces.size();
-        out.faces.push_back(0);
+        const std::size_t at = begin_face(out);
         covers_.edges.expand(loop, out.faces);
-        const std::size_t count = out.faces[at] = out.faces.size() - at - 1;
-        ++out.faces[0];
-        if (loop.size() != 3 || count != 4) return;
-        const std::array<std::uint64_t, 4> all{out.faces[at + 1], out.faces[at + 2], out.faces[at + 3],
-                                               out.faces[at + 4]};
-        const auto is_corner = [&](std::uint64_t point) { return std::ranges::find(loop, point) != loop.end(); };
-        const auto between = static_cast<std::size_t>(std::ranges::find_if_not(all, is_corner) - all.begin());
-        const auto around = [&](std::size_t i) { return all[(between + i) % 4]; };
-        out.faces.resize(at);
-        out.faces.insert(out.faces.end(), {3, around(0), around(1), around(2), 3, around(0), around(2), around(3)});
-        ++out.faces[0];
+        end_face(at, loop, out);
     }
 
     /// `cover`   the first one of the cell, or of one behind it
@@ -120,41 +106,6 @@ private:
             for (const Cover::Part& part : cover->by) add_loop(open_.loop(part.face), out);
             ++cover;
         }
-    }
-
-    struct Edge {
-        std::uint64_t low, high;
-        friend auto operator<=>(const Edge&, const Edge&) = default;
-    };
-
-    /// Whether each edge is in two faces.
-    /// `edges`   set to all, ascending
-    static bool closes(const std::vector<std::uint64_t>& faces, std::vector<Edge>& edges) {
-        edges.clear();
-        for (std::size_t at = 1; at < faces.size(); at += faces[at] + 1) {
-            std::uint64_t before = faces[at + faces[at]];
-            for (std::size_t i = 1; i <= faces[at]; ++i) {
-                const std::uint64_t point = faces[at + i];
-                edges.push_back({std::min(before, point), std::max(before, point)});
-                before = point;
-            }
-        }
-        std::ranges::sort(edges);
-        for (std::size_t i = 0; i < edges.size(); i += 2)
-            if (i + 1 == edges.size() || edges[i] != edges[i + 1] || (i + 2 < edges.size() && edges[i] == edges[i + 2]))
-                return false;
-        return true;
-    }
-
-    /// The ends of edges that are there twice.
-    static void find_points(const std::vector<Edge>& edges, std::vector<std::uint64_t>& out) {
-        out.clear();
-        for (std::size_t i = 0; i < edges.size(); i += 2) {
-            if (i == 0 || edges[i].low != edges[i - 2].low) out.push_back(edges[i].low);
-            out.push_back(edges[i].high);
-        }
-        std::ranges::sort(out);
-        out.erase(std::unique(out.begin(), out.end()), out.end());
     }
 
     const core::CellReader& cells_;
@@ -238,6 +189,52 @@ private:
 };
 
 } // namespace
+
+std::size_t begin_face(ListedCell& cell) {
+    cell.faces.push_back(0);
+    return cell.faces.size() - 1;
+}
+
+void end_face(std::size_t at, std::span<const std::uint64_t> loop, ListedCell& cell) {
+    const std::size_t count = cell.faces[at] = cell.faces.size() - at - 1;
+    ++cell.faces[0];
+    if (loop.size() != 3 || count != 4) return;
+    const std::array<std::uint64_t, 4> all{cell.faces[at + 1], cell.faces[at + 2], cell.faces[at + 3],
+                                           cell.faces[at + 4]};
+    const auto is_corner = [&](std::uint64_t point) { return std::ranges::find(loop, point) != loop.end(); };
+    const auto between = static_cast<std::size_t>(std::ranges::find_if_not(all, is_corner) - all.begin());
+    const auto around = [&](std::size_t i) { return all[(between + i) % 4]; };
+    cell.faces.resize(at);
+    cell.faces.insert(cell.faces.end(), {3, around(0), around(1), around(2), 3, around(0), around(2), around(3)});
+    ++cell.faces[0];
+}
+
+bool FaceEdges::find_points(ListedCell& cell) {
+    const std::vector<std::uint64_t>& faces = cell.faces;
+    edges_.clear();
+    for (std::size_t at = 1; at < faces.size(); at += faces[at] + 1) {
+        std::uint64_t before = faces[at + faces[at]];
+        for (std::size_t i = 1; i <= faces[at]; ++i) {
+            const std::uint64_t point = faces[at + i];
+            edges_.push_back({std::min(before, point), std::max(before, point)});
+            before = point;
+        }
+    }
+    std::ranges::sort(edges_);
+    for (std::size_t i = 0; i < edges_.size(); i += 2)
+        if (i + 1 == edges_.size() || edges_[i] != edges_[i + 1] ||
+            (i + 2 < edges_.size() && edges_[i] == edges_[i + 2]))
+            return false;
+    std::vector<std::uint64_t>& points = cell.points;
+    points.clear();
+    for (std::size_t i = 0; i < edges_.size(); i += 2) {
+        if (i == 0 || edges_[i].low != edges_[i - 2].low) points.push_back(edges_[i].low);
+        points.push_back(edges_[i].high);
+    }
+    std::ranges::sort(points);
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    return true;
+}
 
 std::vector<ListedCell> list_cells(const core::CellReader& cells, const core::FaceReader& faces,
                                    const OpenFaces& open, const Covers& covers, const Progress& progress) {

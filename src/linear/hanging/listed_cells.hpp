@@ -2,7 +2,10 @@
 // Cells with hanging points as polyhedra that list them.
 #pragma once
 
+#include <compare>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <isotet/grid.hpp>
@@ -18,6 +21,29 @@ struct ListedCell {
     std::uint64_t cell;
     std::vector<std::uint64_t> faces;
     std::vector<std::uint64_t> points; ///< ascending, each once
+};
+
+/// Begins a face behind those that are there; end_face() takes the place that it returns.
+std::size_t begin_face(ListedCell& cell);
+
+/// Ends a face whose points were appended. A triangle with one point on an edge becomes two triangles: as a quadrilateral
+/// it would have three corners on a line.
+///
+/// `loop`   the face without points on its edges
+void end_face(std::size_t at, std::span<const std::uint64_t> loop, ListedCell& cell);
+
+/// Edges of faces, with memory to be used again.
+class FaceEdges {
+public:
+    /// Sets the points of a cell to those of its faces. False: some edge is not in two of them.
+    bool find_points(ListedCell& cell);
+
+private:
+    struct Edge {
+        std::uint64_t low, high;
+        friend auto operator<=>(const Edge&, const Edge&) = default;
+    };
+    std::vector<Edge> edges_;
 };
 
 /// Cells with a covered face or an edge with points on it: covered faces are those that cover them, with the points on

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Nodes of quadratic cells on edges, where these cells list hanging points and so become polyhedra.
+// Nodes of curved cells on edges, where these cells list hanging points and so become polyhedra.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,9 @@
 
 namespace isotet::linear {
 
-/// The nodes on edges of some cells, but for edges that another curved cell has, whose nodes all cells with the edge
-/// take when curved cells are refined, and for edges with points on them.
+/// The nodes on edges of some cells, but for edges that another curved cell has, whose points all cells with the edge
+/// take when curved cells are refined, for edges with points on them, and for those on which two cells have other nodes.
+/// The nodes of Bezier cells are none of their points.
 ///
 /// `cells`    of the grid, curved ones as they are
 /// `listed`   cells that become polyhedra, ascending

@@ -22,6 +22,16 @@ constexpr std::uint8_t vtk_type_of(core::CellKind kind) {
     return static_cast<std::uint8_t>(CellType::hexahedron);
 }
 
+void halve_quadrilaterals(std::vector<LoopPiece>& pieces) {
+    const std::size_t count = pieces.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        if (pieces[i].count == 3) continue;
+        const auto [a, b, c, d] = pieces[i].corners;
+        pieces[i] = {{a, b, c, 0}, 3};
+        pieces.push_back({{a, c, d, 0}, 3});
+    }
+}
+
 PieceKey key_of(const OutwardPiece& piece, std::uint32_t number) {
     std::array<std::uint64_t, 4> around = piece.corners;
     const auto end = around.begin() + piece.count;
@@ -66,6 +76,7 @@ void PolyhedronSplitter::cut_faces() {
         const auto loop = shell_.loop(face);
         loop_pieces_.clear();
         cut_face(loop, points_, loop_pieces_);
+        if (loop.size() > 4 && large_ == LargeFaces::triangles) halve_quadrilaterals(loop_pieces_);
         for (const LoopPiece& piece : loop_pieces_) {
             OutwardPiece& outward = pieces_.emplace_back();
             outward.count = piece.count;

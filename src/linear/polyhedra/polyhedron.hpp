@@ -32,14 +32,19 @@ struct PieceKey {
     friend auto operator<=>(const PieceKey&, const PieceKey&) = default;
 };
 
+/// What faces of more than four points are cut into. Where cells are refined, a quadrilateral is bilinear, and the tets on
+/// a large one would be bent by that.
+enum class LargeFaces : std::uint8_t { quadrilaterals, triangles };
+
 /// Splits polyhedra, one after another, and keeps its memory between them. Borrows all it is given.
 class PolyhedronSplitter {
 public:
     PolyhedronSplitter(const Grid& grid, const core::CellReader& cells, const core::FaceReader& faces,
-                       const LinearizeOptions& options)
+                       const LinearizeOptions& options, LargeFaces large = LargeFaces::quadrilaterals)
         : cells_(cells),
           faces_(faces),
           options_(options),
+          large_(large),
           points_(grid.points),
           single_(grid.points.type() == ScalarType::float32) {}
 
@@ -60,6 +65,7 @@ private:
     const core::CellReader& cells_;
     const core::FaceReader& faces_;
     const LinearizeOptions& options_;
+    LargeFaces large_;
     core::PointReader points_;
     bool single_;
     Shell shell_;
