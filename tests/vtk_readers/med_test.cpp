@@ -155,6 +155,82 @@ TEST_F(ReadMed, PolyhedraHaveTheirFaces) {
     EXPECT_EQ(text_of(result->grid.cell_fields.at(0).values), "1 2 3");
 }
 
+TEST_F(ReadMed, FlatCellsAreReadWhereNoneHasAVolume) {
+    {
+        MedWriter file(path());
+        file.mesh("plate", {0, 0, 1, 0, 1, 1, 0, 1, 2, 0, 2, 1}, 2);
+        file.cells("PO1", 1, {6}, {0});
+        file.polygons("POG", {1, 2, 3, 2, 5, 6, 3}, {1, 4, 8});
+        file.cells("QU4", 4, {1, 2, 3, 4}, {-1});
+        file.cells("SE2", 2, {1, 2}, {-2});
+        file.cells("TR3", 3, {2, 5, 3, 5, 6, 3}, {-1, 0});
+        file.family("plate", "one", -1, {"steel"});
+        file.family("plate", "two", -2, {"edge"});
+        file.field("u", "plate", 1);
+        file.step(-1, 0);
+        file.values<double>("NOE", {1, 2, 3, 4, 5, 6});
+        file.field("s", "plate", 1);
+        file.step(-1, 0);
+        file.values<double>("MAI.QU4", {7});
+        file.values<double>("MAI.TR3", {8, 9});
+        file.field("e", "plate", 1);
+        file.step(-1, 0);
+        file.values<double>("NOE.TR3", {2, 5, 3, 5, 6, 4}, 3);
+    }
+    const auto result = read(path());
+    ASSERT_TRUE(result) << result.error().message;
+    const Grid& grid = result->grid;
+    EXPECT_TRUE(has_only_flat_cells(grid.cells));
+    EXPECT_EQ(text_of(grid.points), "0 0 0 1 0 0 1 1 0 0 1 0 2 0 0 2 1 0");
+    EXPECT_EQ(text_of(grid.cells.types), "1 7 7 9 3 5 5");
+    EXPECT_EQ(text_of(grid.cells.offsets), "0 1 4 8 12 14 17 20");
+    EXPECT_EQ(text_of(grid.cells.connectivity), "5 0 1 2 1 4 5 2 0 1 2 3 0 1 1 4 2 4 5 2");
+    ASSERT_EQ(grid.point_fields.size(), 2u);
+    EXPECT_EQ(text_of(grid.point_fields[0].values), "- 2 3.5 - 5 6");
+    EXPECT_EQ(text_of(grid.point_fields[1].values), "1 2 3 4 5 6");
+    EXPECT_EQ(text_of(grid.cell_fields.at(0).values), "- - - 7 - 8 9");
+    EXPECT_EQ(text_of(grid.cell_fields.at(1).values), "0 0 0 -1 -2 -1 0");
+    EXPECT_TRUE(result->info.left_out.empty());
+    ReadOptions options;
+    options.blocks = {"steel"};
+    const auto steel = read(path(), options);
+    ASSERT_TRUE(steel) << steel.error().message;
+    EXPECT_EQ(text_of(steel->grid.cells.types), "9 5");
+}
+
+TEST_F(ReadMed, CurvedFlatCellsHaveVtksTypes) {
+    struct Flat {
+        const char* type;
+        std::size_t nodes;
+        double vtk_type;
+    };
+    const std::vector<double> points(27, 0.5);
+    for (const Flat& flat : {Flat{"SE3", 3, 21},
+                             {"SE4", 4, 35},
+                             {"TR6", 6, 22},
+                             {"TR7", 7, 34},
+                             {"QU8", 8, 23},
+                             {"QU9", 9, 28},
+                             {"PO2", 8, 36}}) {
+        MedNumbers nodes;
+        std::vector<double> expected;
+        for (std::size_t i = 0; i < flat.nodes; ++i) {
+            nodes.push_back(static_cast<std::int64_t>(i + 1));
+            expected.push_back(static_cast<double>(i));
+        }
+        {
+            MedWriter file(path());
+            file.mesh("m", points);
+            if (flat.vtk_type == 36) file.polygons(flat.type, nodes, {1, 9});
+            else file.cells(flat.type, flat.nodes, nodes);
+        }
+        const auto result = read(path());
+        ASSERT_TRUE(result) << flat.type << ": " << result.error().message;
+        EXPECT_EQ(numbers_of(result->grid.cells.types), std::vector<double>{flat.vtk_type}) << flat.type;
+        EXPECT_EQ(numbers_of(result->grid.cells.connectivity), expected) << flat.type;
+    }
+}
+
 TEST_F(ReadMed, StepsHaveTheirTimesAndFieldsOfAllTimesHoldAtEach) {
     write([](MedWriter& file) {
         file.field("T", "m", 1);
@@ -377,7 +453,21 @@ TEST_F(ReadMed, AFileThatIsNotSoundIsAnErrorThatSaysWhy) {
     EXPECT_NE(message(mesh("TE4", 4, {1, 2, 3, 0})).find("has node 0"), std::string::npos);
     EXPECT_NE(message(mesh("TE4", 5, {1, 2, 3, 4, 5})).find("has 5 numbers, but cells of TE4 have 4"),
               std::string::npos);
-    EXPECT_NE(message(mesh("TR3", 3, {1, 2, 3})).find("it has no cells with a volume"), std::string::npos);
+    EXPECT_NE(message([](MedWriter& file) { file.mesh("m", points_of_tets); }).find("it has no cells"),
+              std::string::npos);
+    EXPECT_NE(message(mesh("TR3", 3, {1, 2, 6})).find("has node 6"), std::string::npos);
+    for (const MedNumbers& offsets :
+         {MedNumbers{1, 4, 99}, MedNumbers{1, 3, 2}, MedNumbers{-5, 4, 6}, MedNumbers{1, 4}})
+        EXPECT_NE(message([&](MedWriter& file) {
+                      file.mesh("m", points_of_tets);
+                      file.polygons("POG", {1, 2, 3, 4, 5}, offsets);
+                  }).find("INN\" does not rise from 1"),
+                  std::string::npos);
+    EXPECT_NE(message([&](MedWriter& file) {
+                  file.mesh("m", points_of_tets);
+                  file.polygons("POG", {1, 2, 6}, {1, 4});
+              }).find("a polygon has node 6"),
+              std::string::npos);
     EXPECT_NE(message([](MedWriter&) {}).find("it has no mesh"), std::string::npos);
     EXPECT_NE(message(mesh("TE4", 4, two_tets), 2).find("a MED file of version 2.1, but 3.0 and later are read"),
               std::string::npos);

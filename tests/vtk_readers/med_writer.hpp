@@ -23,11 +23,13 @@ public:
     }
     Hdf5Writer& hdf5() { return file_; }
 
-    /// `points`   3 coordinates each, one after another
-    void mesh(const std::string& name, const std::vector<double>& points) {
+    /// `points`   so many coordinates each, one after another
+    void mesh(const std::string& name, const std::vector<double>& points, std::size_t axes = 3) {
+        axes_ = axes;
         group_ = "/ENS_MAA/" + name;
         file_.group(group_);
-        for (const auto& [key, value] : {std::pair("DIM", 3), {"ESP", 3}, {"TYP", 0}, {"REP", 0}})
+        const auto dimension = static_cast<std::int64_t>(axes);
+        for (const auto& [key, value] : {std::pair("DIM", dimension), {"ESP", dimension}, {"TYP", 0}, {"REP", 0}})
             file_.attribute(group_, key, MedNumbers{value});
         group_ = add_step(group_, -1, -1, 0);
         file_.group(group_ + "/MAI");
@@ -52,6 +54,13 @@ public:
         file_.data(group + "/NOD", nodes, {nodes.size()});
         file_.data(group + "/INN", face_offsets, {face_offsets.size()});
         file_.data(group + "/IFN", cell_offsets, {cell_offsets.size()});
+    }
+    /// All numbers from 1.
+    void polygons(const std::string& type, const MedNumbers& nodes, const MedNumbers& offsets) {
+        const std::string group = group_ + "/MAI/" + type;
+        file_.group(group);
+        file_.data(group + "/NOD", nodes, {nodes.size()});
+        file_.data(group + "/INN", offsets, {offsets.size()});
     }
     void family(const std::string& mesh, const std::string& name, std::int64_t number,
                 const std::vector<std::string>& groups) {
@@ -111,7 +120,7 @@ private:
     }
     void coordinates(const std::vector<double>& points) {
         file_.group(group_ + "/NOE");
-        file_.data(group_ + "/NOE/COO", by_component(points, 3), {points.size()});
+        file_.data(group_ + "/NOE/COO", by_component(points, axes_), {points.size()});
     }
     template <class T>
     static std::vector<T> by_component(const std::vector<T>& rows, std::size_t width) {
@@ -122,6 +131,7 @@ private:
     }
 
     Hdf5Writer file_;
+    std::size_t axes_ = 3;
     std::string group_, field_, step_, place_, families_of_;
 };
 

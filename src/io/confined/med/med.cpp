@@ -23,7 +23,8 @@ constexpr const char* family_name = "med:family";
 
 class MedLoader {
 public:
-    MedLoader(const MedFile& file, const ReadOptions& options) : file_(file), options_(options), fields_(file) {}
+    MedLoader(const MedFile& file, const ReadOptions& options)
+        : file_(file), options_(options), kind_(cells_to_read(file)), fields_(file, kind_) {}
 
     Result<Loaded> load(Depth depth);
 
@@ -46,6 +47,7 @@ private:
 
     const MedFile& file_;
     const ReadOptions& options_;
+    MedCells kind_;
     MedFields fields_;
     std::vector<Placed> meshes_;
     core::PatchList patch_numbers_; ///< of all meshes
@@ -62,7 +64,7 @@ void MedLoader::choose_times() {
 Result<void> MedLoader::place_meshes() {
     std::string first_problem;
     for (const std::string& name : file_.groups("/ENS_MAA")) {
-        MedMesh mesh(file_, name);
+        MedMesh mesh(file_, name, kind_);
         std::string problem = mesh.problem();
         if (problem.empty()) {
             const MedStep step = fields_.step_of_mesh(name, loaded_.step);
@@ -72,7 +74,7 @@ Result<void> MedLoader::place_meshes() {
                 meshes_.push_back({std::move(mesh), *std::move(place)});
                 continue;
             }
-            problem = "it has no cells with a volume";
+            problem = kind_ == MedCells::flat ? "it has no cells" : "it has no cells with a volume";
         }
         if (first_problem.empty()) first_problem = fmt::format("mesh \"{}\": {}", escaped(name), problem);
         leave_out(loaded_.info, {"mesh", name, problem});

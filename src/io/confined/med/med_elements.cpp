@@ -36,22 +36,32 @@ constexpr std::array med_solids{
     MedElement{"POE", 0, med_polyhedron_type, {}},
 };
 
+/// As in VTK.
+constexpr std::array<std::uint8_t, 9> same_order{0, 1, 2, 3, 4, 5, 6, 7, 8};
+constexpr MedElement flat_element(std::string_view name, std::uint32_t nodes, std::uint8_t vtk_type) {
+    return {name, nodes, vtk_type, Order(same_order).first(nodes)};
+}
+constexpr std::array flat_elements{flat_element("PO1", 1, 1),  flat_element("SE2", 2, 3), flat_element("SE3", 3, 21),
+                                   flat_element("SE4", 4, 35), flat_element("TR3", 3, 5), flat_element("TR6", 6, 22),
+                                   flat_element("TR7", 7, 34), flat_element("QU4", 4, 9), flat_element("QU8", 8, 23),
+                                   flat_element("QU9", 9, 28), flat_element("POG", 0, 7), flat_element("PO2", 0, 36),
+                                   flat_element("PG2", 0, 36)};
+
+const MedElement* found_in(std::span<const MedElement> elements, std::string_view name) {
+    const auto found = std::ranges::find(elements, name, &MedElement::name);
+    return found == elements.end() ? nullptr : &*found;
+}
+
 } // namespace
 
-const MedElement* med_element(std::string_view name) {
-    const auto* const found = std::ranges::find(med_solids, name, &MedElement::name);
-    return found == med_solids.end() ? nullptr : found;
+const MedElement* med_element(std::string_view name, MedCells cells) {
+    return cells == MedCells::flat ? found_in(flat_elements, name) : found_in(med_solids, name);
 }
 
 std::uint32_t nodes_of_med_face(std::string_view name) {
-    if (name.size() != 3 || !(name.starts_with("TR") || name.starts_with("QU"))) return 0;
-    return is_flat_med_element(name) ? static_cast<std::uint32_t>(name.back() - '0') : 0;
-}
-
-bool is_flat_med_element(std::string_view name) {
-    static constexpr std::array<std::string_view, 13> flat{"PO1", "SE2", "SE3", "SE4", "TR3", "TR6", "TR7",
-                                                           "QU4", "QU8", "QU9", "POG", "PO2", "PG2"};
-    return std::ranges::find(flat, name) != flat.end();
+    if (!name.starts_with("TR") && !name.starts_with("QU")) return 0;
+    const MedElement* const face = found_in(flat_elements, name);
+    return face ? face->nodes : 0;
 }
 
 } // namespace isotet::io::confined

@@ -10,20 +10,20 @@ namespace isotet::io::confined {
 
 struct MedElement {
     std::string_view name;
-    std::uint32_t nodes = 0;              ///< 0: of polyhedra, each its own
+    std::uint32_t nodes = 0; ///< 0: of polyhedra and polygons, each its own
     std::uint8_t vtk_type = 0;
     std::span<const std::uint8_t> order;  ///< for each node in VTK's order its position in MED's
 };
 
 inline constexpr std::uint8_t med_polyhedron_type = 42;
 
-/// Cells with a volume; null for all others.
-const MedElement* med_element(std::string_view name);
+/// Which cells are read.
+enum class MedCells { with_a_volume, flat };
+
+/// Flat ones are points, lines and faces. Null for the others.
+const MedElement* med_element(std::string_view name, MedCells cells);
 
 /// Of a triangle or quadrilateral; 0 for all others.
 std::uint32_t nodes_of_med_face(std::string_view name);
-
-/// Points, lines and faces, of which nothing is read.
-bool is_flat_med_element(std::string_view name);
 
 } // namespace isotet::io::confined

@@ -50,7 +50,7 @@ const char* kind_of_values(Association association) {
 
 } // namespace
 
-MedFields::MedFields(const MedFile& file) : file_(file) {
+MedFields::MedFields(const MedFile& file, MedCells kind) : file_(file), kind_(kind) {
     for (const std::string& name : file.groups("/CHA")) fields_.push_back(describe(name));
     for (const MedField& field : fields_)
         for (const MedStep& step : field.steps)
@@ -75,11 +75,11 @@ MedFields::MedField MedFields::describe(const std::string& name) const {
     for (const MedStep& step : field.steps)
         for (const std::string& place : file_.groups(step.group)) {
             const std::string cells = place.size() > 4 ? place.substr(4) : std::string();
-            const bool solid = med_element(cells) != nullptr;
+            const bool read = med_element(cells, kind_) != nullptr;
             if (place == "NOE") field.at_nodes = true;
-            else if (place.starts_with("MAI.") && solid) field.in_cells = true;
-            else if (place.starts_with("NOE.") && solid) field.at_cell_nodes = true;
-            else field.on_flat = true;
+            else if (place.starts_with("MAI.") && read) field.in_cells = true;
+            else if (place.starts_with("NOE.") && read) field.at_cell_nodes = true;
+            else field.on_others = true;
         }
     return field;
 }
@@ -95,8 +95,9 @@ void MedFields::announce_all(FileInfo& info) const {
         else if (field.at_nodes || field.at_cell_nodes)
             announce(info, {field.name, Association::point, field.type, field.components});
         if (field.in_cells) announce(info, {field.name, Association::cell, field.type, field.components});
-        if (field.on_flat && !field.at_nodes && !field.at_cell_nodes && !field.in_cells)
-            drop("it has values on points, lines and faces only");
+        if (field.on_others && !field.at_nodes && !field.at_cell_nodes && !field.in_cells)
+            drop(kind_ == MedCells::flat ? "it has values on none of the cells that are read"
+                                         : "it has values on points, lines and faces only");
     }
 }
 

@@ -16,7 +16,7 @@ namespace isotet::io::confined {
 
 class MedFields {
 public:
-    explicit MedFields(const MedFile& file);
+    MedFields(const MedFile& file, MedCells kind);
 
     /// Of all fields, ascending; those of fields that hold always aside.
     const std::vector<MedStep>& steps() const { return steps_; }
@@ -42,7 +42,7 @@ private:
         ScalarType type = ScalarType::float64;
         bool swaps_last = false; ///< of a symmetric tensor that ends in XY XZ YZ: VTK has XY YZ XZ
         std::vector<MedStep> steps;
-        bool at_nodes = false, in_cells = false, at_cell_nodes = false, on_flat = false; ///< at any step
+        bool at_nodes = false, in_cells = false, at_cell_nodes = false, on_others = false; ///< at any step
 
         /// Of a component of the file in the grid.
         std::size_t place_of(std::size_t component) const {
@@ -79,6 +79,7 @@ private:
     static Array joined(const MedField& field, const std::vector<MedPart>& parts, std::uint64_t count);
 
     const MedFile& file_;
+    MedCells kind_;
     std::vector<MedField> fields_;
     std::vector<MedStep> steps_;
 };

@@ -17,7 +17,13 @@
 namespace isotet::io::confined {
 namespace {
 
-constexpr std::size_t cells_at_once = std::size_t{1} << 14, space_axes = 3;
+constexpr std::size_t cells_at_once = std::size_t{1} << 14;
+
+/// What says how many cells there are: one more offset, or the nodes of them.
+std::string counted_in(const MedElement& element, const std::string& group) {
+    const char* const name = element.nodes > 0 ? "NOD" : element.vtk_type == med_polyhedron_type ? "IFN" : "INN";
+    return fmt::format("{}/{}", group, name);
+}
 
 /// Of any number that a file may hold.
 std::int64_t one_less(std::int64_t number) {
@@ -77,30 +83,43 @@ void append_in_order(const std::vector<std::int64_t>& nodes, const MedElement& e
 
 } // namespace
 
-MedMesh::MedMesh(const MedFile& file, const std::string& name) : file_(file), name_(name) {
+MedCells cells_to_read(const MedFile& file) {
+    for (const std::string& mesh : file.groups("/ENS_MAA"))
+        for (const MedStep& step : med_steps(file, "/ENS_MAA/" + mesh))
+            for (const std::string& type : file.groups(step.group + "/MAI"))
+                if (const MedElement* const solid = med_element(type, MedCells::with_a_volume)) {
+                    const auto shape = file.shape(counted_in(*solid, step.group + "/MAI/" + type));
+                    if (!shape || shape->rows > (solid->nodes > 0 ? 0u : 1u)) return MedCells::with_a_volume;
+                }
+    return MedCells::flat;
+}
+
+MedMesh::MedMesh(const MedFile& file, const std::string& name, MedCells kind) : file_(file), name_(name), kind_(kind) {
     const std::string group = "/ENS_MAA/" + name;
     steps_ = med_steps(file, group);
     const auto dimension = file.integer(group, "ESP");
     if (file.integer(group, "TYP").value_or(0) != 0) problem_ = "it is a structured mesh, which is not read";
     else if (file.integer(group, "REP").value_or(0) != 0) problem_ = "its coordinates are not Cartesian";
-    else if (dimension != 3) problem_ = fmt::format("it is a mesh in {} dimensions", dimension.value_or(0));
+    else if (dimension < 1 || dimension > 3)
+        problem_ = fmt::format("it is a mesh in {} dimensions", dimension.value_or(0));
     else if (steps_.empty()) problem_ = "it has no points and cells";
+    else axes_ = static_cast<std::uint64_t>(*dimension);
 }
 
 Result<MedCellRun> MedMesh::run_of(const MedElement& element, const std::string& group) const {
     MedCellRun run{&element, group, 0, 0};
-    const bool faces = element.vtk_type == med_polyhedron_type;
-    const std::string data_set = group + (faces ? "/IFN" : "/NOD");
+    const bool offsets = element.nodes == 0;
+    const std::string data_set = counted_in(element, group);
     const auto shape = file_.shape(data_set);
     if (!shape || shape->columns != 1 || is_floating(shape->type))
         return file_.wrong(fmt::format("\"{}\" is no list of integers", escaped(data_set)));
-    if (faces && shape->rows == 0) return file_.wrong(fmt::format("\"{}\" is empty", escaped(data_set)));
-    run.count = faces ? shape->rows - 1 : shape->rows / element.nodes;
-    if (!faces && run.count * element.nodes != shape->rows)
+    if (offsets && shape->rows == 0) return file_.wrong(fmt::format("\"{}\" is empty", escaped(data_set)));
+    run.count = offsets ? shape->rows - 1 : shape->rows / element.nodes;
+    if (!offsets && run.count * element.nodes != shape->rows)
         return file_.wrong(fmt::format("\"{}\" has {} numbers, but cells of {} have {} nodes each", escaped(data_set),
                                        shape->rows, element.name, element.nodes));
     const auto stated = file_.integer(data_set, "NBR");
-    if (!faces && stated && static_cast<std::uint64_t>(*stated) != run.count)
+    if (!offsets && stated && static_cast<std::uint64_t>(*stated) != run.count)
         return file_.wrong(fmt::format("\"{}\" has the nodes of {} cells, but states {}", escaped(data_set), run.count,
                                        *stated));
     return run;
@@ -118,11 +137,11 @@ Result<MedMeshPlace> MedMesh::place_at(std::int64_t number, std::int64_t iterati
     }
     place.elements = cells;
     const auto shape = file_.shape(place.coordinates);
-    if (!shape || shape->columns != 1 || !is_floating(shape->type) || shape->rows % space_axes != 0)
+    if (!shape || shape->columns != 1 || !is_floating(shape->type) || shape->rows % axes_ != 0)
         return file_.wrong(fmt::format("mesh \"{}\" has no table of coordinates", escaped(name_)));
-    place.points = shape->rows / space_axes;
+    place.points = shape->rows / axes_;
     for (const std::string& type : file_.groups(cells)) {
-        const MedElement* const element = med_element(type);
+        const MedElement* const element = med_element(type, kind_);
         if (!element) continue;
         auto run = run_of(*element, cells + "/" + type);
         if (!run) return run.error();
@@ -134,12 +153,12 @@ Result<MedMeshPlace> MedMesh::place_at(std::int64_t number, std::int64_t iterati
 }
 
 Result<Array> MedMesh::points(const MedMeshPlace& place) const {
-    const auto stored = file_.numbers(place.coordinates, place.points * space_axes);
+    const auto stored = file_.numbers(place.coordinates, place.points * axes_);
     if (!stored) return stored;
     std::vector<double> points(3 * place.points);
     stored->visit([&](auto from) {
         core::parallel_ranges(place.points, cells_at_once, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t axis = 0; axis < space_axes; ++axis)
+            for (std::size_t axis = 0; axis < axes_; ++axis)
                 for (std::size_t i = begin; i < end; ++i)
                     points[3 * i + axis] = static_cast<double>(from[axis * place.points + i]);
         });
@@ -184,6 +203,29 @@ Result<void> MedMesh::add_polyhedra(const MedMeshPlace& place, Cells& cells) con
     return {};
 }
 
+/// The nodes of one polygon after those of another; from 0.
+Result<std::vector<std::int64_t>> MedMesh::polygon_nodes(const MedCellRun& run, std::uint64_t points) const {
+    auto nodes = from_zero(file_, run.group + "/NOD");
+    if (!nodes) return nodes;
+    if (const auto at = first_outside(*nodes, points))
+        return file_.wrong(fmt::format("mesh \"{}\": a polygon has node {}, but the nodes are 1 to {}", escaped(name_),
+                                       (*nodes)[*at] + 1, points));
+    return nodes;
+}
+
+Result<void> MedMesh::add_polygon_offsets(const MedCellRun& run, std::vector<std::int64_t>& offsets) const {
+    const auto own = from_zero(file_, run.group + "/INN");
+    if (!own) return own.error();
+    const auto nodes = file_.shape(run.group + "/NOD");
+    if (own->front() != 0 || !std::ranges::is_sorted(*own) || !nodes ||
+        static_cast<std::uint64_t>(own->back()) != nodes->rows)
+        return file_.wrong(fmt::format("\"{}/INN\" does not rise from 1 to one more than the nodes of the polygons",
+                                       escaped(run.group)));
+    const std::int64_t before = offsets.back();
+    for (std::size_t i = 1; i < own->size(); ++i) offsets.push_back(before + (*own)[i]);
+    return {};
+}
+
 template <class Index>
 Result<Array> MedMesh::connectivity(const MedMeshPlace& place) const {
     std::vector<Index> all;
@@ -191,10 +233,13 @@ Result<Array> MedMesh::connectivity(const MedMeshPlace& place) const {
     for (const MedCellRun& run : place.runs) count += run.count * run.element->nodes;
     all.reserve(count);
     for (const MedCellRun& run : place.runs) {
-        if (run.element->nodes == 0) continue;
-        auto nodes = nodes_of(run, place.points);
+        if (run.element->vtk_type == med_polyhedron_type) continue;
+        const bool polygons = run.element->nodes == 0;
+        const auto nodes = polygons ? polygon_nodes(run, place.points) : nodes_of(run, place.points);
         if (!nodes) return nodes.error();
-        append_in_order(*nodes, *run.element, all);
+        if (!polygons) append_in_order(*nodes, *run.element, all);
+        else
+            for (const std::int64_t node : *nodes) all.push_back(static_cast<Index>(node));
     }
     return Array::own(std::move(all));
 }
@@ -209,6 +254,10 @@ Result<Cells> MedMesh::cells(const MedMeshPlace& place) const {
     std::vector<std::uint8_t> types;
     for (const MedCellRun& run : place.runs) {
         types.insert(types.end(), run.count, run.element->vtk_type);
+        if (run.element->nodes == 0 && run.element->vtk_type != med_polyhedron_type) {
+            if (auto done = add_polygon_offsets(run, offsets); !done) return done.error();
+            continue;
+        }
         for (std::uint64_t i = 0; i < run.count; ++i) offsets.push_back(offsets.back() + run.element->nodes);
     }
     cells.offsets = Array::own(std::move(offsets));

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// A mesh of a MED file: points, cells with a volume, families and groups.
+// A mesh of a MED file: points, cells, families and groups.
 #pragma once
 
 #include <cstdint>
@@ -33,10 +33,13 @@ struct MedMeshPlace {
     std::uint64_t cells = 0;
 };
 
+/// Those with a volume, unless no mesh of the file has any.
+MedCells cells_to_read(const MedFile& file);
+
 class MedMesh {
 public:
     /// Looks at the groups of a mesh, not at its numbers.
-    MedMesh(const MedFile& file, const std::string& name);
+    MedMesh(const MedFile& file, const std::string& name, MedCells kind);
 
     const std::string& name() const { return name_; }
     /// Why it cannot be read; empty where it can.
@@ -81,9 +84,13 @@ private:
                            const std::map<std::int64_t, std::vector<std::string>>& groups, core::PatchList& numbers,
                            core::PatchList& list) const;
     Result<void> add_polyhedra(const MedMeshPlace& place, Cells& cells) const;
+    Result<std::vector<std::int64_t>> polygon_nodes(const MedCellRun& run, std::uint64_t points) const;
+    Result<void> add_polygon_offsets(const MedCellRun& run, std::vector<std::int64_t>& offsets) const;
 
     const MedFile& file_;
     std::string name_, problem_;
+    MedCells kind_;
+    std::uint64_t axes_ = 3;
     std::vector<MedStep> steps_;
 };
 
