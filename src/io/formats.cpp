@@ -275,6 +275,8 @@ Result<const GridReader*> choose_reader(const std::string& path, const ReadOptio
     constexpr int by_content = 4;
     if (const auto wrapping = wrapping_of(head->bytes); best_score < by_content && !wrapping.empty())
         return Error{ErrorCode::file, fmt::format("{} {}", path, wrapping)};
+    if (const auto is = foreign_content(head->bytes, extension); best_score < by_content && !is.empty())
+        return Error{ErrorCode::file, fmt::format("{} {}", path, is)}; // many programs share the ending .msh
     if (!best) best = named_reader(readers, *head, extension);
     if (!best) return nobody_knows(path, *head, extension);
     return best;

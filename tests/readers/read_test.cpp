@@ -7,6 +7,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <string>
+#include <string_view>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -19,6 +22,7 @@ namespace isotet::test {
 namespace {
 
 namespace fs = std::filesystem;
+using namespace std::string_view_literals;
 
 /// A folder for one test, gone afterwards.
 class ReadFile : public testing::Test {
@@ -129,6 +133,27 @@ TEST_F(ReadFile, ThatIsPackedOrAPointerOrOfAnotherProgramIsNamed) {
     EXPECT_NE(message("a.dat", "TITLE = \"x\"\n").find("a Tecplot file"), std::string::npos);
     EXPECT_NE(message("a.su2", "NDIME= 3\n").find("a mesh of SU2"), std::string::npos);
     EXPECT_NE(message("a.stl", "solid x\n").find("is a surface"), std::string::npos);
+    for (const auto& [name, content, is] : {
+             std::tuple("a.msh", " (1 \"TGrid\")\n(2 2)\n"sv, "a mesh of Fluent"),
+             {"a.msh", " 112 184 40\n 4.0 8.0E-01 1\n"sv, "a mesh of FreeFem"},
+             {"a.msh", "MESH dimension 3 ElemType Hexahedra Nnode 8\n"sv, "a mesh of GiD"},
+             {"a.msh", "*NODE, NSET=Nall\n"sv, "a mesh of CalculiX"},
+             {"a.cas.h5", "\x89HDF\r\n\x1a\n meshes\0 settings\0"sv, "an HDF5 file of Fluent"},
+             {"a.hdf", "\x89HDF\r\n\x1a\n STUDY_STRUCTURE"sv, "a study of Salome"},
+             {"a.h5", "\x89HDF\r\n\x1a\n data"sv, "an HDF5 file"},
+             {"a.silo", "!<<PDB:II>>!\n"sv, "a Silo file"},
+             {"a",
+              "\0\0\0\x10"
+              "FILEHEAD\0\0\0\x64INTE\0\0\0\x10"sv,
+              "a binary file of Eclipse"},
+             {"a.neu", "        CONTROL INFO 1.2.1\n"sv, "a neutral file of Gambit"},
+             {"a.nc", "CDF\1 Conventions UGRID"sv, "a NetCDF file of 2D cells (UGRID)"},
+             {"a.nc", "CDF\1 Conventions CF"sv, "a NetCDF file"},
+             {"a.xyz", "1\n2 3 2\n0.5 1 1\n"sv, "a PLOT3D file"},
+             {"a.q", "\4\0\0\0\2\0\0\0"sv, "a PLOT3D file"},
+         })
+        EXPECT_NE(message(name, content).find(std::string("is ") + is), std::string::npos) << message(name, content);
+    EXPECT_NE(message("a.msh", "1 2 3\n").find("no $MeshFormat"), std::string::npos);
     EXPECT_NE(message("a.xyz", "1 2 3\n").find("has no format that isotet reads"), std::string::npos);
 }
 

@@ -12,4 +12,7 @@ namespace isotet::io {
 /// `extension`   in small letters, with its dot
 std::string_view foreign_file(std::string_view head, std::string_view extension);
 
+/// The same of files that tell it by their first bytes.
+std::string_view foreign_content(std::string_view head, std::string_view extension);
+
 } // namespace isotet::io
