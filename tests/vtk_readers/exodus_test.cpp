@@ -101,7 +101,15 @@ TEST_P(ReadExodus, HasNaNInBlocksWithoutAVariable) {
     EXPECT_EQ(result->grid.cell_fields[0].values.at(0), 0);
     EXPECT_TRUE(std::isnan(result->grid.cell_fields[0].values.at(1)));
     ASSERT_EQ(result->notes.size(), 1u);
-    EXPECT_NE(result->notes[0].find("not defined in 1 of 2 element blocks"), std::string::npos);
+    EXPECT_NE(result->notes[0].find("cell field \"load\" is not defined in 1 of 2 element blocks"), std::string::npos);
+    ExodusSample sample;
+    sample.more_loads = true;
+    const auto several = read(written(sample));
+    ASSERT_TRUE(several) << several.error().message;
+    ASSERT_EQ(several->notes.size(), 1u);
+    EXPECT_NE(
+        several->notes[0].find("cell fields \"load\", \"drag\", \"lift\" are not defined in 1 of 2 element blocks"),
+        std::string::npos);
 }
 
 TEST_P(ReadExodus, MovesThePointsWhenAsked) {

@@ -1,6 +1,8 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "vtk_readers/sample_exodus.hpp"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 #include <vtk_exodusII.h>
 
@@ -52,15 +54,16 @@ void write(const ExodusSample& sample, const std::string& path) {
     if (sample.steps > 0) {
         char names[4][8] = {"disp_x", "disp_y", "disp_z", "temp"};
         char* node_names[] = {names[0], names[1], names[2], names[3]};
-        char load[] = "load";
-        char* cell_names[] = {load};
+        char load[] = "load", drag[] = "drag", lift[] = "lift";
+        char* cell_names[] = {load, drag, lift};
+        const int variables = sample.more_loads ? 3 : 1;
         ex_put_variable_param(file, EX_NODAL, 4);
         ex_put_variable_names(file, EX_NODAL, 4, node_names);
-        ex_put_variable_param(file, EX_ELEM_BLOCK, 1);
-        ex_put_variable_names(file, EX_ELEM_BLOCK, 1, cell_names);
-        std::vector<int> truth(sample.blocks.size(), 0);
-        truth[0] = 1;
-        ex_put_truth_table(file, EX_ELEM_BLOCK, static_cast<int>(sample.blocks.size()), 1, truth.data());
+        ex_put_variable_param(file, EX_ELEM_BLOCK, variables);
+        ex_put_variable_names(file, EX_ELEM_BLOCK, variables, cell_names);
+        std::vector<int> truth(sample.blocks.size() * static_cast<std::size_t>(variables), 0);
+        std::fill_n(truth.begin(), variables, 1);
+        ex_put_truth_table(file, EX_ELEM_BLOCK, static_cast<int>(sample.blocks.size()), variables, truth.data());
     }
     for (int step = 0; step < sample.steps; ++step) {
         const Real time = static_cast<Real>(0.5 * step);
@@ -71,7 +74,8 @@ void write(const ExodusSample& sample, const std::string& path) {
                                                         : static_cast<Real>(10 * step + static_cast<int>(node)));
         for (int variable = 1; variable <= 4; ++variable)
             ex_put_var(file, step + 1, EX_NODAL, variable, 1, count, values.data());
-        ex_put_var(file, step + 1, EX_ELEM_BLOCK, 1, 10, cells_of(sample, 0), values.data());
+        for (int variable = 1; variable <= (sample.more_loads ? 3 : 1); ++variable)
+            ex_put_var(file, step + 1, EX_ELEM_BLOCK, variable, 10, cells_of(sample, 0), values.data());
     }
     ASSERT_GE(ex_close(file), 0);
 }

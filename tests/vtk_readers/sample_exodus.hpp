@@ -18,6 +18,7 @@ struct ExodusSample {
     bool single = false; ///< float32
     int steps = 2;       ///< with disp_x, disp_y, disp_z and temp on nodes: 10 * step + node; load on the first block
                          ///< only
+    bool more_loads = false; ///< two more variables like load
     int filled_from = 1000; ///< from this step on all values are netCDF's fill value
     int format = 0;      ///< a flag of ex_create: EX_64BIT_OFFSET, EX_NETCDF4 and so on
     std::vector<std::string> block_names; ///< empty: none has a name; ids are 10, 20 and so on

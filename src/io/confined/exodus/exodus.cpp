@@ -93,18 +93,21 @@ Result<void> read_fields(OpenPart& part, const ReadOptions& options, Loaded& loa
         auto taken = take_variable(Association::point, name, std::move(values), loaded.info, grid.point_fields);
         if (!taken) return taken;
     }
+    std::map<std::size_t, std::vector<std::string>> undefined; // by the blocks that lack them
     for (std::size_t i = 0; i < file.cell_variables().size(); ++i) {
         const std::string& name = file.cell_variables()[i];
         if (!is_read(Association::cell, name, i)) continue;
         ExodusFile::Gaps gaps;
         auto values = file.cell_variable(i, loaded.step, gaps);
         if (values) note_unwritten(Association::cell, name, gaps, file.cells(), loaded);
-        if (values && gaps.blocks > 0)
-            loaded.notes.push_back(fmt::format("cell field \"{}\" is not defined in {} of {} element blocks: NaN there",
-                                               escaped(name), gaps.blocks, file.blocks().size()));
+        if (values && gaps.blocks > 0) undefined[gaps.blocks].push_back(fmt::format("\"{}\"", escaped(name)));
         auto taken = take_variable(Association::cell, name, std::move(values), loaded.info, grid.cell_fields);
         if (!taken) return taken;
     }
+    for (const auto& [blocks, names] : undefined)
+        loaded.notes.push_back(fmt::format("cell field{} {} {} not defined in {} of {} element blocks: NaN there",
+                                           names.size() == 1 ? "" : "s", fmt::join(names, ", "),
+                                           names.size() == 1 ? "is" : "are", blocks, file.blocks().size()));
     return {};
 }
 
