@@ -184,6 +184,7 @@ Result<void> LegacyData::read_scalars() {
     Header header{read_name(words_behind_name()), {}, 1, tuples_};
     scalars_.emplace_back(data_ == Data::points ? Association::point : Association::cell, header.name);
     header.type = lower(scanner_.word());
+    if (header.type.ends_with('1') && !legacy_type(header.type)) header.type.pop_back(); // FreeFem 3 writes "int1"
     if (!scanner_.at_line_end() && !scanner_.number_of_line(header.components))
         return values_.before_here("not a number of components");
     const auto before = scanner_.position();
