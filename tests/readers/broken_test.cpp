@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Every truncation of a small file of each kind, and every byte of it changed: an error, or a grid that is consistent.
+#include <algorithm>
 #include <functional>
 
 #include <gtest/gtest.h>
@@ -67,6 +68,11 @@ bool is_part_of(const std::vector<Field>& part, const std::vector<Field>& whole)
     });
 }
 
+bool says_no_end(const ReadResult& result) {
+    return std::ranges::any_of(result.notes,
+                               [](const std::string& note) { return note.find("has no END") != std::string::npos; });
+}
+
 class BrokenFile : public testing::TestWithParam<Sample> {};
 
 // A cut between two sections leaves a file that is whole, and so may lack fields; what is there must be right.
@@ -77,7 +83,7 @@ TEST_P(BrokenFile, CutShortAnywhereIsAnErrorOrTheSameGridOrNoted) {
         // A copy of just this length, so that a sanitizer sees every read beyond.
         const std::vector<char> cut(sample.bytes.begin(), sample.bytes.begin() + static_cast<std::ptrdiff_t>(length));
         const auto result = sample.parse({cut.data(), cut.size()});
-        if (!result || result->notes.size() > whole.notes.size()) continue;
+        if (!result || result->notes.size() > whole.notes.size() || says_no_end(*result)) continue;
         const Grid &a = result->grid, &b = whole.grid;
         ASSERT_TRUE(same_bits(a.points, b.points)) << "cut to " << length << " bytes";
         ASSERT_TRUE(same_bits(a.cells.connectivity, b.cells.connectivity)) << "cut to " << length << " bytes";

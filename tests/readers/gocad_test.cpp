@@ -1,4 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -135,9 +136,17 @@ TEST(ReadGocadErrors, NameTheValueAndTheRule) {
               "does not begin with GOCAD TSolid, but 'GOCAD TSurf 1\\x0aEND\\x0a'");
 }
 
-TEST(ReadGocadErrors, SayThatAFileWithoutEndIsCutShort) {
+TEST(ReadGocad, WithoutEndIsNotedWhereTheRestIsWhole) {
     const std::string text = gocad_sample;
-    EXPECT_EQ(gocad_error(text.substr(0, text.rfind("END"))), "has no END: the file is cut short");
+    const std::string without = text.substr(0, text.find("MODEL"));
+    const auto result = io::parse_gocad(without, {}, {});
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(result->grid.cells.count(), io::parse_gocad(text, {}, {}).value().grid.cells.count());
+    EXPECT_TRUE(std::ranges::any_of(
+        result->notes, [](const std::string& note) { return note.find("has no END") != std::string::npos; }));
+    EXPECT_EQ(gocad_error(without.substr(0, without.size() - 1)), "has no END: the file is cut short");
+    EXPECT_EQ(gocad_error(text.substr(0, text.rfind("END"))), "has no END: the file is cut short") << "in a surface";
+    EXPECT_EQ(gocad_error(text.substr(0, text.find("TETRA"))), "has no END: the file is cut short");
 }
 
 } // namespace

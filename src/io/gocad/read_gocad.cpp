@@ -90,6 +90,7 @@ public:
     /// Reads points and tets; after read_header().
     Result<void> read_content() {
         bool ended = false;
+        std::string_view last;
         for (; !ended && !scanner_.at_end(); scanner_.next_line()) {
             const std::string_view keyword = scanner_.word();
             Result<void> read;
@@ -103,8 +104,10 @@ public:
             else if (!keyword.empty()) note_unread(keyword);
             if (!read) return read;
             if (!pace_.goes_on(scanner_.position())) return Pace::cancelled();
+            if (!keyword.empty()) last = keyword;
         }
-        if (!ended) return Error{ErrorCode::invalid_data, "has no END: the file is cut short"};
+        without_end_ = !ended && last == "TETRA" && text_.ends_with('\n');
+        if (!ended && !without_end_) return Error{ErrorCode::invalid_data, "has no END: the file is cut short"};
         if (points_.empty()) return Error{ErrorCode::invalid_data, "has no vertices before END"};
         another_ =
             text_.find("\nGOCAD ", scanner_.position() == 0 ? 0 : scanner_.position() - 1) != std::string_view::npos;
@@ -373,6 +376,8 @@ private:
             notes.push_back(
                 fmt::format("properties of atoms that differ from those of their points are dropped: {}", dropped_));
         }
+        if (without_end_)
+            notes.emplace_back("the file has no END: if it was cut short behind a line, tetrahedra are missing");
         if (another_) notes.emplace_back("the file holds more than one Gocad object: the first is read");
     }
 
@@ -387,7 +392,7 @@ private:
     Pace pace_;
     bool depth_ = false;
     bool wants_volumes_ = true;
-    bool another_ = false;
+    bool another_ = false, without_end_ = false;
     std::vector<Property> point_properties_, cell_properties_;
     NumberMap numbers_;                          ///< of vertices and atoms
     std::vector<std::uint64_t> point_of_vertex_; ///< empty as long as there are no atoms
