@@ -120,6 +120,41 @@ TEST_F(DrawOnCpu, TheOrderOfTranslucentSurfacesShowsNowhere) {
     EXPECT_TRUE(draw(scene_, options_).value().pixels == picture.pixels);
 }
 
+TEST_F(DrawOnCpu, OfSurfacesInTheSamePlaceTheFirstIsSeen) {
+    const Surface surface = gyroid(0.2, 40);
+    Surface reversed = surface;
+    const auto corners = surface.triangles.as<std::uint32_t>();
+    std::vector<std::uint32_t> triangles;
+    for (std::size_t i = corners.size(); i > 0; i -= 3)
+        triangles.insert(triangles.end(), &corners[i - 3], &corners[i - 3] + 3);
+    reversed.triangles = Array::own(std::move(triangles), 3);
+    add(surface, 1);
+    const Picture alone = draw(scene_, options_).value();
+    add(reversed, 1).color = {1, 0, 0, 1};
+    EXPECT_TRUE(draw(scene_, options_).value().pixels == alone.pixels);
+    std::swap(scene_.surfaces[0], scene_.surfaces[1]);
+    const Picture red = draw(scene_, options_).value();
+    EXPECT_FALSE(red.pixels == alone.pixels);
+    scene_.surfaces.pop_back();
+    EXPECT_TRUE(draw(scene_, options_).value().pixels == red.pixels);
+}
+
+TEST_F(DrawOnCpu, WhatIsBehindAWallChangesNothing) {
+    const Surface behind = gyroid(0.2, 40);
+    Surface wall;
+    wall.positions = Array::own(std::vector<float>{1.5F, -9, -9, 1.5F, 9, -9, 1.5F, 9, 9, 1.5F, -9, 9}, 3);
+    wall.triangles = Array::own(std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3}, 3);
+    options_.camera = camera_of(View::plus_x);
+    options_.camera.fit({{-1, -1, -1}, {2, 1, 1}}, 4.0 / 3);
+    scene_.bounds = {{-9, -9, -9}, {9, 9, 9}};
+    add(wall, 1);
+    const Picture alone = draw(scene_, options_).value();
+    scene_.surfaces.clear();
+    add(behind, 1);
+    add(wall, 1);
+    EXPECT_TRUE(draw(scene_, options_).value().pixels == alone.pixels);
+}
+
 TEST_F(DrawOnCpu, ACameraInsideSeesWhatIsBeforeIt) {
     const Surface surface = gyroid(0);
     add(surface, 1);

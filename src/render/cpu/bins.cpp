@@ -2,6 +2,7 @@
 #include "render/cpu/bins.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 #include "base/parallel.hpp"
 #include "render/cpu/clip.hpp"
@@ -18,6 +19,7 @@ struct BinChunk {
     std::size_t begin = 0, end = 0;
     struct Pair {
         std::uint32_t tile, triangle;
+        float nearest;
     };
     std::vector<Pair> pairs;
 };
@@ -42,10 +44,11 @@ void fill_chunk(BinChunk& chunk, const Sheet& sheet, const Tiling& tiling, const
         const SampleRange x(left.x, right.x, std::int64_t{tiling.width} * tiling.samples),
             y(top.y, bottom.y, std::int64_t{tiling.height} * tiling.samples);
         if (x.first > x.last || y.first > y.last) continue;
+        const float nearest = std::ranges::min(points, {}, &FixedPoint::depth).depth;
         for (std::int64_t row = y.first / tile_samples; row <= y.last / tile_samples; ++row)
             for (std::int64_t column = x.first / tile_samples; column <= x.last / tile_samples; ++column)
                 chunk.pairs.push_back({static_cast<std::uint32_t>(row * tiling.columns() + column),
-                                       static_cast<std::uint32_t>(triangle)});
+                                       static_cast<std::uint32_t>(triangle), nearest});
     }
 }
 
@@ -69,7 +72,19 @@ Bins::Bins(const std::vector<Sheet>& sheets, const Tiling& tiling, const Sight& 
     entries_ = core::Buffer<BinEntry>(begins_.back());
     std::vector<std::size_t> next(begins_.begin(), begins_.end() - 1);
     for (const BinChunk& chunk : chunks)
-        for (const BinChunk::Pair& pair : chunk.pairs) entries_[next[pair.tile]++] = {chunk.sheet, pair.triangle};
+        for (const BinChunk::Pair& pair : chunk.pairs)
+            entries_[next[pair.tile]++] = {chunk.sheet, pair.triangle, pair.nearest};
+    const auto first_translucent = std::ranges::find_if(sheets, &Sheet::translucent);
+    const auto opaque = static_cast<std::uint32_t>(first_translucent - sheets.begin());
+    core::parallel_pieces(tiling.tiles(), 16, progress, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t tile = begin; tile < end; ++tile) {
+            const std::span<BinEntry> entries(entries_.data() + begins_[tile], begins_[tile + 1] - begins_[tile]);
+            const auto rest = std::ranges::lower_bound(entries, opaque, {}, &BinEntry::sheet);
+            std::sort(entries.begin(), rest, [](const BinEntry& a, const BinEntry& b) {
+                return std::tie(a.nearest, a.sheet, a.triangle) < std::tie(b.nearest, b.sheet, b.triangle);
+            });
+        }
+    });
 }
 
 } // namespace isotet::render

@@ -13,6 +13,7 @@ namespace isotet::render {
 
 struct BinEntry {
     std::uint32_t sheet, triangle;
+    float nearest; ///< the least depth of what is in view
 };
 
 /// How the picture is cut into tiles, row by row.
@@ -25,7 +26,8 @@ struct Tiling {
     std::size_t tiles() const noexcept { return std::size_t{columns()} * rows(); }
 };
 
-/// The triangles of all tiles, in the order of sheets and triangles.
+/// The triangles of all tiles: what is opaque, nearest first, then what is translucent in the order of sheets and
+/// triangles. Opaque sheets come before translucent ones.
 class Bins {
 public:
     Bins(const std::vector<Sheet>& sheets, const Tiling& tiling, const Sight& sight, const Progress& progress);

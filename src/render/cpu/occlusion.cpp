@@ -99,9 +99,20 @@ void Occlusion::find_distances(const std::vector<Sheet>& sheets, const Bins& bin
                            top = static_cast<std::int64_t>(tile / tiling_.columns()) * side;
         const TileFrame frame{left, top, static_cast<std::int32_t>(std::min(side, width_ - left)),
                               static_cast<std::int32_t>(std::min(side, height_ - top)), 1};
+        const auto farthest_in_tile = [&] {
+            float farthest = 0;
+            for (std::int64_t y = top; y < top + frame.height; ++y)
+                farthest = std::max(farthest, *std::max_element(&distances_[place(left, y)],
+                                                                &distances_[place(left, y)] + frame.width));
+            return farthest;
+        };
+        constexpr std::size_t triangles_between = 64;
+        std::size_t drawn = 0;
         for (const BinEntry& entry : bins.of(tile)) {
             const Sheet& sheet = sheets[entry.sheet];
             if (sheet.translucent || !sheet.lit) continue;
+            if (++drawn % triangles_between == 0 && entry.nearest >= farthest_in_tile())
+                break; // nor is what follows seen
             const FixedPolygon polygon = polygon_of(sheet, entry.triangle, screen.sight);
             for (std::size_t i = 2; i < polygon.count; ++i) {
                 const auto samples = static_cast<std::int32_t>(tiling_.samples);

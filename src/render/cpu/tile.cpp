@@ -40,7 +40,7 @@ void Tile::draw(std::size_t number, std::span<const BinEntry> entries, Picture& 
             measure_opaque();
             measured = true;
         }
-        add(entry);
+        if (measured || may_be_seen(entry.nearest)) add(entry);
     }
     if (scene_.batch && scene_.stage != TileStage::whole) return give_rays();
     if (volumes_) follow_rays();
@@ -70,6 +70,7 @@ void Tile::start(std::size_t number) {
     const std::size_t pixels = static_cast<std::size_t>(frame_.width) * static_cast<std::size_t>(frame_.height);
     facets_.clear();
     farthest_ = INFINITY;
+    until_measured_ = 0;
     if (volumes_) volumes_->start(number, column, row);
     fragments_.clear();
     depths_.assign(pixels * count_, INFINITY);
@@ -102,6 +103,17 @@ void Tile::add_facet(const Sheet& sheet, std::uint32_t triangle, const FixedPoin
     });
 }
 
+/// Of an opaque triangle, and of all that come after it.
+bool Tile::may_be_seen(float nearest) {
+    constexpr std::size_t triangles_between = 64; // a look at all samples takes as long as a few triangles
+    if (until_measured_-- == 0) {
+        until_measured_ = triangles_between;
+        farthest_ =
+            std::ranges::find(covered_, std::uint8_t{0}) == covered_.end() ? std::ranges::max(depths_) : INFINITY;
+    }
+    return nearest <= farthest_; // of those at the same depth the first one is seen, in the order of sheets
+}
+
 /// What is translucent need not be compared sample by sample where all of it is in front of the opaque, or behind.
 void Tile::measure_opaque() {
     ranges_.resize(covered_.size());
@@ -113,15 +125,24 @@ void Tile::measure_opaque() {
     }
 }
 
-/// The samples of a mask that lie in front of what is opaque.
-SampleMask Tile::in_front(const DepthPlane& plane, std::size_t pixel, float depth, SampleMask mask) const {
+/// The samples of a mask that lie in front of what is opaque: an opaque facet also where the other one comes later, so
+/// that the order of drawing shows nowhere.
+SampleMask Tile::in_front(const Facet& facet, std::size_t pixel, float depth, SampleMask mask) const {
+    const DepthPlane& plane = facet.depth;
     const auto per_x = static_cast<float>(plane.per_x), per_y = static_cast<float>(plane.per_y);
     const float* const nearest = depths_.data() + pixel * count_;
-    SampleMask seen = 0;
+    SampleMask seen = 0, equal = 0;
     for (std::uint32_t i = 0; i < count_; ++i) {
         const float at = std::clamp(depth + per_x * right_[i] + per_y * down_[i], plane.lower, plane.upper);
         seen |= SampleMask{at < nearest[i]} << i;
+        equal |= SampleMask{at == nearest[i]} << i;
     }
+    if (!facet.sheet->translucent)
+        for (equal &= mask; equal; equal &= equal - 1) {
+            const auto i = static_cast<std::size_t>(std::countr_zero(equal));
+            const std::uint32_t owner = owners_[pixel * count_ + i];
+            if (owner != 0 && facet.is_before(facets_[owner - 1])) seen |= SampleMask{1} << i;
+        }
     return seen & mask;
 }
 
@@ -130,7 +151,7 @@ void Tile::cover(std::uint32_t facet, std::size_t pixel, float depth, SampleMask
     const bool translucent = one.sheet->translucent;
     if (translucent && one.depth.lower >= ranges_[pixel].farthest) return;
     const bool all_in_front = translucent && one.depth.upper < ranges_[pixel].nearest;
-    if (covered_[pixel] && !all_in_front) mask = in_front(one.depth, pixel, depth, mask);
+    if (covered_[pixel] && !all_in_front) mask = in_front(one, pixel, depth, mask);
     if (mask == 0) return;
     if (translucent) {
         fragments_.push_back({facet, heads_[pixel], mask});

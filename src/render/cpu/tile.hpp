@@ -54,6 +54,10 @@ private:
         const Sheet* sheet;
         std::uint32_t triangle;
         DepthPlane depth;
+
+        bool is_before(const Facet& other) const {
+            return sheet != other.sheet ? sheet < other.sheet : triangle < other.triangle;
+        }
     };
     /// Samples of a pixel that a translucent facet covers.
     struct Fragment {
@@ -85,9 +89,10 @@ private:
     void add(const BinEntry& entry);
     void add_facet(const Sheet& sheet, std::uint32_t triangle, const FixedPoint& a, const FixedPoint& b,
                    const FixedPoint& c);
+    bool may_be_seen(float nearest);
     void measure_opaque();
     void cover(std::uint32_t facet, std::size_t pixel, float depth, SampleMask mask);
-    SampleMask in_front(const DepthPlane& plane, std::size_t pixel, float depth, SampleMask mask) const;
+    SampleMask in_front(const Facet& facet, std::size_t pixel, float depth, SampleMask mask) const;
     Shade shade_of(const Facet& facet, std::int32_t x, std::int32_t y, SampleMask mask) const;
     Light opaque_color(const Facet& facet, std::int32_t x, std::int32_t y, SampleMask mask) const;
     Blend resolve(std::int32_t x, std::int32_t y);
@@ -121,7 +126,8 @@ private:
     std::vector<Fragment> fragments_;
     std::vector<float> depths_;         ///< of the nearest opaque facet a sample
     std::vector<DepthRange> ranges_;    ///< of the depths of a pixel, once all that is opaque is there
-    float farthest_ = INFINITY;         ///< of all
+    float farthest_ = INFINITY;         ///< of all, or more while what is opaque is drawn
+    std::size_t until_measured_ = 0;    ///< opaque triangles until farthest_ is found again
     std::vector<std::uint32_t> owners_; ///< 1 + that facet, or 0
     std::vector<std::uint32_t> heads_;  ///< 1 + the last fragment of a pixel, or 0
     std::vector<std::uint8_t> covered_; ///< whether a pixel has anything opaque
