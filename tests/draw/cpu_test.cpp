@@ -12,6 +12,8 @@
 #include <isotet/picture.hpp>
 #include <isotet/render.hpp>
 
+#include "numbers/level.hpp"
+
 namespace isotet::test {
 namespace {
 
@@ -65,6 +67,12 @@ TEST_F(DrawOnCpu, GivesTheSameBytesOnAnyThreadsAndMachines) {
     const Picture one = draw(scene_, options_, {.threads = 1}).value();
     for (const int threads : {2, 7, 64})
         EXPECT_TRUE(draw(scene_, options_, {.threads = threads}).value().pixels == one.pixels) << threads;
+    for (const core::Level level : {core::Level::portable, core::Level::avx2, core::Level::avx512}) {
+        if (level > core::best_level()) continue;
+        core::force_level(level);
+        EXPECT_TRUE(draw(scene_, options_).value().pixels == one.pixels) << core::name_of(level);
+    }
+    core::force_level({});
     EXPECT_EQ(hash_of(one), 17389724797160526800U);
 }
 

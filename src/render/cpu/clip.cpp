@@ -57,18 +57,10 @@ FixedPolygon clipped(const std::array<const PlacedVertex*, 3>& corners, const Si
 
 } // namespace
 
-FixedPolygon polygon_of(const Sheet& sheet, std::size_t triangle, const Sight& sight) {
+FixedPolygon clipped_polygon_of(const Sheet& sheet, std::size_t triangle, const Sight& sight) {
     std::array<const PlacedVertex*, 3> corners{};
-    bool in_view = true;
-    for (std::size_t i = 0; i < 3; ++i) {
-        corners[i] = &sheet.vertices[sheet.triangles[3 * triangle + i]];
-        in_view = in_view && corners[i]->fixed.x != out_of_view;
-    }
-    if (!in_view) return clipped(corners, sight);
-    FixedPolygon polygon;
-    polygon.count = 3;
-    for (std::size_t i = 0; i < 3; ++i) polygon.points[i] = corners[i]->fixed;
-    return polygon;
+    for (std::size_t i = 0; i < 3; ++i) corners[i] = &sheet.vertices[sheet.triangles[3 * triangle + i]];
+    return clipped(corners, sight);
 }
 
 } // namespace isotet::render

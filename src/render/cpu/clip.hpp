@@ -15,7 +15,19 @@ struct FixedPolygon {
     std::size_t count = 0;
 };
 
+/// A triangle of which some corner is out of view.
+FixedPolygon clipped_polygon_of(const Sheet& sheet, std::size_t triangle, const Sight& sight);
+
 /// Triangle `triangle` of a sheet; no points where nothing of it is in view.
-FixedPolygon polygon_of(const Sheet& sheet, std::size_t triangle, const Sight& sight);
+inline FixedPolygon polygon_of(const Sheet& sheet, std::size_t triangle, const Sight& sight) {
+    FixedPolygon polygon;
+    polygon.count = 3;
+    bool in_view = true;
+    for (std::size_t i = 0; i < 3; ++i) {
+        polygon.points[i] = sheet.fixed[sheet.triangles[3 * triangle + i]];
+        in_view = in_view && polygon.points[i].x != out_of_view;
+    }
+    return in_view ? polygon : clipped_polygon_of(sheet, triangle, sight);
+}
 
 } // namespace isotet::render

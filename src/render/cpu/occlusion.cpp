@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/parallel.hpp"
+#include "numbers/at_level.hpp"
 #include "render/cpu/clip.hpp"
 #include "render/cpu/raster.hpp"
 
@@ -134,14 +135,18 @@ void Occlusion::find_distances(const std::vector<Sheet>& sheets, const Bins& bin
             }
     };
     core::parallel_pieces(tiling_.tiles(), 4, progress, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t tile = begin; tile < end; ++tile) draw_tile(tile);
+        core::at_level([&] {
+            for (std::size_t tile = begin; tile < end; ++tile) draw_tile(tile);
+        });
     });
 }
 
 void Occlusion::find_openness(const Progress& progress) {
     core::parallel_pieces(static_cast<std::size_t>(height_), 8, progress, [&](std::size_t begin, std::size_t end) {
-        for (auto y = static_cast<std::int64_t>(begin); y < static_cast<std::int64_t>(end); ++y)
-            for (std::int64_t x = 0; x < width_; ++x) openness_[place(x, y)] = openness_at(x, y);
+        core::at_level([&] {
+            for (auto y = static_cast<std::int64_t>(begin); y < static_cast<std::int64_t>(end); ++y)
+                for (std::int64_t x = 0; x < width_; ++x) openness_[place(x, y)] = openness_at(x, y);
+        });
     });
 }
 

@@ -34,7 +34,7 @@ Result<void> take_values(Sheet& sheet, const SurfaceColors& colors, const MeshAr
 
 /// Both ends of a line as a rectangle of its width, in vertices 0 to 3.
 void widen_line(PlacedVertex a, PlacedVertex b, double half_width, double lift, PlacedVertex* rectangle,
-                const Sight& sight) {
+                FixedPoint* fixed, const Sight& sight) {
     // What lies behind the eye has no place in the picture: the line ends where it gets there.
     const double nearest = 1e-5 * std::max(a.w, b.w);
     const auto mixed = [](const PlacedVertex& from, const PlacedVertex& to, double part) {
@@ -58,7 +58,7 @@ void widen_line(PlacedVertex a, PlacedVertex b, double half_width, double lift, 
         vertex.x += (end * along_x - side * along_y) * vertex.w;
         vertex.y += (end * along_y + side * along_x) * vertex.w;
         const double z = sight.z.at({vertex.place[0], vertex.place[1], vertex.place[2]});
-        vertex.fixed = fixed_point(vertex.x, vertex.y, z < 0 ? z : std::max(z - lift * vertex.w, 0.0), vertex.w);
+        fixed[corner] = fixed_point(vertex.x, vertex.y, z < 0 ? z : std::max(z - lift * vertex.w, 0.0), vertex.w);
         rectangle[corner] = vertex;
     }
 }
@@ -80,8 +80,11 @@ PlacedVertex Screen::placed(const std::array<float, 3>& place) const {
     vertex.w = sight.w.at(point);
     vertex.x = (sight.x.at(point) + vertex.w) * (0.5 * width * samples);
     vertex.y = (sight.y.at(point) + vertex.w) * (0.5 * height * samples);
-    vertex.fixed = fixed_point(vertex.x, vertex.y, sight.z.at(point), vertex.w);
     return vertex;
+}
+
+FixedPoint Screen::fixed(const PlacedVertex& vertex) const {
+    return fixed_point(vertex.x, vertex.y, sight.z.at({vertex.place[0], vertex.place[1], vertex.place[2]}), vertex.w);
 }
 
 Result<Sheet> sheet_of(const DrawnSurface& drawn, const Space& space, const Screen& screen) {
@@ -101,10 +104,12 @@ Result<Sheet> sheet_of(const DrawnSurface& drawn, const Space& space, const Scre
     std::array<float, 3> offset{};
     for (std::size_t axis = 0; axis < 3; ++axis) offset[axis] = static_cast<float>(origin[axis]);
     sheet.vertices = core::Buffer<PlacedVertex>(mesh->vertices);
+    sheet.fixed = core::Buffer<FixedPoint>(mesh->vertices);
     core::parallel_each(mesh->vertices, vertex_grain, [&](std::size_t i) {
         std::array<float, 3> place{};
         for (std::size_t axis = 0; axis < 3; ++axis) place[axis] = mesh->positions[3 * i + axis] * scale + offset[axis];
         sheet.vertices[i] = screen.placed(place);
+        sheet.fixed[i] = screen.fixed(sheet.vertices[i]);
     });
     sheet.triangles = std::move(mesh->triangles);
     sheet.normals = std::move(mesh->normals);
@@ -118,6 +123,7 @@ Result<Sheet> sheet_of(const DrawnLines& lines, const Space& space, const Screen
     sheet.color = linear_light(lines.color);
     const std::size_t count = lines.lines.size();
     sheet.vertices = core::Buffer<PlacedVertex>(4 * count);
+    sheet.fixed = core::Buffer<FixedPoint>(4 * count);
     sheet.triangles = core::Buffer<std::uint32_t>(6 * count);
     core::parallel_each(count, vertex_grain, [&](std::size_t i) {
         std::array<PlacedVertex, 2> ends;
@@ -127,7 +133,7 @@ Result<Sheet> sheet_of(const DrawnLines& lines, const Space& space, const Screen
                 {static_cast<float>(place[0]), static_cast<float>(place[1]), static_cast<float>(place[2])});
         }
         widen_line(ends[0], ends[1], lines.width / 2 * screen.samples, lines.lift, sheet.vertices.data() + 4 * i,
-                   screen.sight);
+                   sheet.fixed.data() + 4 * i, screen.sight);
         constexpr std::array<std::uint32_t, 6> corners{0, 1, 2, 0, 2, 3};
         for (std::size_t k = 0; k < 6; ++k) sheet.triangles[6 * i + k] = static_cast<std::uint32_t>(4 * i) + corners[k];
     });

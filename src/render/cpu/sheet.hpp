@@ -28,10 +28,8 @@ struct FixedPoint {
 /// A vertex in the picture.
 ///
 /// `x`, `y`   in samples from the upper left corner of the picture, times w
-/// `fixed`    where it is; x is `out_of_view` where triangles must be clipped before they have a place
 struct PlacedVertex {
     double x, y, w;
-    FixedPoint fixed;
     std::array<float, 3> place; ///< in the scene
 };
 inline constexpr std::int32_t out_of_view = INT32_MIN;
@@ -41,6 +39,7 @@ enum class Coloring : std::uint8_t { one_color, by_vertex, by_triangle };
 /// A surface, or lines of one colour (`lit` is false), ready to be drawn.
 struct Sheet {
     core::Buffer<PlacedVertex> vertices;
+    core::Buffer<FixedPoint> fixed; ///< where they are; x is `out_of_view` where triangles must be clipped first
     core::Buffer<std::uint32_t> triangles; ///< three vertices each
     core::Buffer<float> normals;           ///< three a vertex, or empty
     core::Buffer<float> values, table;     ///< color_places() and color_table()
@@ -60,6 +59,7 @@ struct Screen {
     std::uint32_t samples = 0;           ///< an axis and pixel
 
     PlacedVertex placed(const std::array<float, 3>& place) const;
+    FixedPoint fixed(const PlacedVertex& vertex) const;
 };
 
 /// Where a vertex is; out_of_view before the nearest and behind the farthest depth, and far beside the picture.

@@ -7,6 +7,7 @@
 #include <span>
 #include <tuple>
 
+#include "numbers/at_level.hpp"
 #include "render/cpu/clip.hpp"
 
 namespace isotet::render {
@@ -33,6 +34,10 @@ Tile::Tile(const TileScene& scene)
 }
 
 void Tile::draw(std::size_t number, std::span<const BinEntry> entries, Picture& picture) {
+    core::at_level([&] { draw_all(number, entries, picture); });
+}
+
+void Tile::draw_all(std::size_t number, std::span<const BinEntry> entries, Picture& picture) {
     start(number);
     bool measured = false;
     for (const BinEntry& entry : entries) {

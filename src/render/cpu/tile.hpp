@@ -85,6 +85,7 @@ private:
         }
     };
 
+    void draw_all(std::size_t number, std::span<const BinEntry> entries, Picture& picture);
     void start(std::size_t number);
     void add(const BinEntry& entry);
     void add_facet(const Sheet& sheet, std::uint32_t triangle, const FixedPoint& a, const FixedPoint& b,
