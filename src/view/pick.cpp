@@ -44,27 +44,36 @@ struct NearestTriangle {
     double distance = INFINITY; ///< squared
 };
 
+/// Calls work(positions, corners) with the arrays of a surface.
+template <class Work>
+void with_arrays(const Surface& surface, const Work& work) {
+    const auto with_corners = [&](auto positions) {
+        if (surface.triangles.type() == ScalarType::uint64) work(positions, surface.triangles.as<std::uint64_t>());
+        else work(positions, surface.triangles.as<std::uint32_t>());
+    };
+    if (surface.positions.type() == ScalarType::float32) with_corners(surface.positions.as<float>());
+    else with_corners(surface.positions.as<double>());
+}
+
 NearestTriangle nearest_triangle(const Surface& surface, const PickPoint& point) {
     NearestTriangle nearest;
-    surface.positions.visit([&](auto positions) {
-        surface.triangles.visit([&](auto corners) {
-            for (std::size_t i = 0; i < surface.triangle_count(); ++i) {
-                std::array<std::size_t, 3> of{};
-                std::array<PickPoint, 3> at{};
-                for (std::size_t k = 0; k < 3; ++k) {
-                    of[k] = static_cast<std::size_t>(corners[3 * i + k]);
-                    for (std::size_t axis = 0; axis < 3; ++axis)
-                        at[k][axis] = static_cast<double>(positions[3 * of[k] + axis]);
-                }
-                const PickPoint weights = nearest_weights(at[0], at[1], at[2], point);
-                PickPoint place{};
-                for (std::size_t k = 0; k < 3; ++k)
-                    for (std::size_t axis = 0; axis < 3; ++axis) place[axis] += weights[k] * at[k][axis];
-                const PickPoint away = pick_minus(place, point);
-                const double distance = pick_dot(away, away);
-                if (distance < nearest.distance) nearest = {i, of, weights, place, distance};
+    with_arrays(surface, [&](auto positions, auto corners) {
+        for (std::size_t i = 0; i < surface.triangle_count(); ++i) {
+            std::array<std::size_t, 3> of{};
+            std::array<PickPoint, 3> at{};
+            for (std::size_t k = 0; k < 3; ++k) {
+                of[k] = static_cast<std::size_t>(corners[3 * i + k]);
+                for (std::size_t axis = 0; axis < 3; ++axis)
+                    at[k][axis] = static_cast<double>(positions[3 * of[k] + axis]);
             }
-        });
+            const PickPoint weights = nearest_weights(at[0], at[1], at[2], point);
+            PickPoint place{};
+            for (std::size_t k = 0; k < 3; ++k)
+                for (std::size_t axis = 0; axis < 3; ++axis) place[axis] += weights[k] * at[k][axis];
+            const PickPoint away = pick_minus(place, point);
+            const double distance = pick_dot(away, away);
+            if (distance < nearest.distance) nearest = {i, of, weights, place, distance};
+        }
     });
     return nearest;
 }
@@ -115,25 +124,23 @@ std::optional<double> first_on_ray(const Surface& surface, const std::array<doub
                                    [&](const Plane& plane) { return pick_dot(plane.normal, place) > plane.offset; });
     };
     double first = INFINITY;
-    surface.positions.visit([&](auto positions) {
-        surface.triangles.visit([&](auto corners) {
-            for (std::size_t i = 0; i < surface.triangle_count(); ++i) {
-                std::array<PickPoint, 3> at{};
-                for (std::size_t k = 0; k < 3; ++k)
-                    for (std::size_t axis = 0; axis < 3; ++axis)
-                        at[k][axis] =
-                            static_cast<double>(positions[3 * static_cast<std::size_t>(corners[3 * i + k]) + axis]);
-                // Moller, Trumbore 1997.
-                const PickPoint e1 = pick_minus(at[1], at[0]), e2 = pick_minus(at[2], at[0]);
-                const PickPoint p = cross(direction, e2), from = pick_minus(origin, at[0]), q = cross(from, e1);
-                const double determinant = pick_dot(e1, p);
-                if (determinant == 0) continue;
-                const double u = pick_dot(from, p) / determinant, v = pick_dot(direction, q) / determinant;
-                const double along = pick_dot(e2, q) / determinant;
-                const bool inside = u >= 0 && v >= 0 && u + v <= 1;
-                if (inside && along > 0 && along < first && !is_clipped(along)) first = along;
-            }
-        });
+    with_arrays(surface, [&](auto positions, auto corners) {
+        for (std::size_t i = 0; i < surface.triangle_count(); ++i) {
+            std::array<PickPoint, 3> at{};
+            for (std::size_t k = 0; k < 3; ++k)
+                for (std::size_t axis = 0; axis < 3; ++axis)
+                    at[k][axis] =
+                        static_cast<double>(positions[3 * static_cast<std::size_t>(corners[3 * i + k]) + axis]);
+            // Moller, Trumbore 1997.
+            const PickPoint e1 = pick_minus(at[1], at[0]), e2 = pick_minus(at[2], at[0]);
+            const PickPoint p = cross(direction, e2), from = pick_minus(origin, at[0]), q = cross(from, e1);
+            const double determinant = pick_dot(e1, p);
+            if (determinant == 0) continue;
+            const double u = pick_dot(from, p) / determinant, v = pick_dot(direction, q) / determinant;
+            const double along = pick_dot(e2, q) / determinant;
+            const bool inside = u >= 0 && v >= 0 && u + v <= 1;
+            if (inside && along > 0 && along < first && !is_clipped(along)) first = along;
+        }
     });
     return std::isfinite(first) ? std::optional(first) : std::nullopt;
 }

@@ -27,6 +27,14 @@ struct Entry {
     bool has_part = false, has_time = false;
 };
 
+std::vector<pugi::xml_node> data_sets(const pugi::xml_document& document) {
+    std::vector<pugi::xml_node> found;
+    for (const pugi::xml_node file : document.children("VTKFile"))
+        for (const pugi::xml_node collection : file.children("Collection"))
+            for (const pugi::xml_node data_set : collection.children("DataSet")) found.push_back(data_set);
+    return found;
+}
+
 Result<std::vector<Entry>> entries(const std::string& path) {
     const auto file = WholeFile::read(path, {});
     if (!file) return file.error();
@@ -34,8 +42,7 @@ Result<std::vector<Entry>> entries(const std::string& path) {
     const auto parsed = document.load_buffer(file->text().data(), file->text().size());
     if (!parsed) return broken(path, fmt::format("broken XML at byte {}: {}", parsed.offset, parsed.description()));
     std::vector<Entry> entries;
-    for (const auto& found : document.select_nodes("/VTKFile/Collection/DataSet")) {
-        const pugi::xml_node node = found.node();
+    for (const pugi::xml_node node : data_sets(document)) {
         const std::string_view time = without_blanks(node.attribute("timestep").value());
         const pugi::xml_attribute part = node.attribute("part");
         Entry entry{0,
