@@ -107,7 +107,6 @@ std::string grid_table(const GridSummary& found, const std::string& path) {
           {found.hanging_points, "hanging points, in a face or edge of a larger cell"},
           {found.hanging.cells, "cells that list them for extraction"},
           {found.hanging.curved_cells, "of these above degree 1: they are linear between their points"},
-          {found.hanging.curved_points, "of these where cells are above degree 2: the surface is open there"},
           {found.hanging.open_faces, "faces on smaller ones that do not cover them: the surface may be open there"}}) {
         if (count > 0) table.row({"", fmt::format("{} {}", grouped(count), what)});
     }
@@ -347,7 +346,6 @@ Json json_of(const GridSummary& found, const std::string& path) {
                              {"near_faces", found.hanging.near_faces},
                              {"largest_distance", found.hanging.largest_distance},
                              {"open_faces", found.hanging.open_faces},
-                             {"curved_points", found.hanging.curved_points},
                              {"curved_cells", found.hanging.curved_cells}};
     }
     report["bounds"] = {{"lower", grid.lower}, {"upper", grid.upper}};

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -165,8 +164,8 @@ ISOTET_API Result<std::vector<double>> relative_volumes(const Grid& grid, const 
 ///
 /// Where some cells are quadratic, all cells become tets, each edge with a node bisected once, and cells that cannot be
 /// contoured are gone: VTK's types 24 to 27, 29, 31 to 33, 37, and 71 to 74 of order 1 and 2. Those of 71 to 74 up to degree
-/// 10, and 78 to 80 (Bezier), are quadratic cells on their lattice first, with derived points. Others of degree 2 and above
-/// are left out.
+/// 10, and 78 to 80 (Bezier), are quadratic cells on their lattice first, with derived points, which polyhedra beside them
+/// take on common edges and faces. Others of degree 2 and above are left out.
 ///
 /// Faces may be wound in any way and stand in any order: the result is the same.
 ///
@@ -248,8 +247,6 @@ struct HangingReport {
     /// Of the cells that list hanging points: those above degree 1. As polyhedra they are linear between their points, and
     /// the bounds of refine() are not against their own functions.
     std::uint64_t curved_cells = 0;
-    /// That hang in a grid with cells above degree 2 or Bezier cells, which cannot list them: the surface stays open there.
-    std::uint64_t curved_points = 0;
 
     /// Sentences for the user.
     ISOTET_API std::vector<std::string> notes() const;
@@ -284,9 +281,8 @@ struct ISOTET_API ClosedGrid {
 /// count. Faces may be warped, cells of any kinds, and several levels meet in one face. Points that coincide must be
 /// one (merge_points()).
 ///
-/// Quadratic cells that list hanging points become polyhedra of their corners and of their nodes on edges that no other
-/// quadratic cell has; points that hang on these have no parents. Grids with cells above degree 2 or Bezier cells are
-/// returned as they are; only curved_points of the report is set.
+/// Cells above degree 1 that list hanging points become polyhedra of their corners and of their nodes on edges that no
+/// other such cell has (of Bezier cells of corners alone); points that hang on these have no parents.
 ///
 /// Guarantees   the same bytes for any thread count; a face that has a neighbour of its own is never looked at, but for
 ///              hashes that are equal by chance: 2^-64 a face
@@ -315,15 +311,5 @@ private:
     struct Data;
     std::unique_ptr<Data> data_;
 };
-
-/// Whether the surfaces of isovalues may end at hanging points, by places: a face that they cut, and that no other cell
-/// has, lies on a larger one. For grids of which only the cells that the isovalues cut are there (active_cells.hpp):
-/// their other faces have lost their neighbours. True of thin grids, too; false where only the smaller cells are cut.
-///
-/// `field`  one scalar a point
-/// Cost     two passes over the cells, and the places of faces at which the surfaces end
-/// Errors   invalid_argument when the field does not fit; else as close_hanging_points()
-ISOTET_API Result<bool> may_have_hanging_points(const Grid& active, const PointField& field,
-                                                std::span<const double> isovalues, const Run& run = {});
 
 } // namespace isotet

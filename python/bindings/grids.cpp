@@ -304,7 +304,6 @@ void add_grids(nb::module_& module) {
             report["near_faces"] = closed.report.near_faces;
             report["largest_distance"] = closed.report.largest_distance;
             report["open_faces"] = closed.report.open_faces;
-            report["curved_points"] = closed.report.curved_points;
             report["curved_cells"] = closed.report.curved_cells;
             for (Field& field : closed.grid.point_fields) {
                 const Array& values = field.values;

@@ -423,8 +423,8 @@ class Grid:
         """The grid with points on faces and edges of larger cells listed by these, as polyhedra, so that surfaces are closed
         there, and a report of it: hanging `points`, `levels` (n: an edge meets up to 2^n smaller ones), `cells` that list them,
         `faces` that smaller ones cover, `near_faces` of these whose points are up to `largest_distance` beside them,
-        `open_faces` that stay open, `curved_cells`, of those that list points, above degree 1, `curved_points` that hang in a grid with cells above degree
-        2, which stays open there, and `differences`: by how much each point field differs from the larger cells there.
+        `open_faces` that stay open, `curved_cells`, of those that list points, above degree 1, and `differences`: by how much
+        each point field differs from the larger cells there.
 
         interpolate
             Hanging points get the values of the larger cells.

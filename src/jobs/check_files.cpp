@@ -149,7 +149,7 @@ Result<bool> has_hanging_points_on_curved_cells(const Grid& grid, const Run& run
     if (!has_curved_cells(grid.cells)) return false;
     const Result<ClosedGrid> found = close_hanging_points(grid, run);
     if (!found) return found.error();
-    return found->report.curved_points + found->report.points > 0;
+    return found->report.points > 0;
 }
 
 } // namespace

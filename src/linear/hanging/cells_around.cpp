@@ -2,7 +2,6 @@
 // A surface that ends or goes on at a larger cell's face cuts one of the smaller faces on it, which one active cell has: all
 // cells with a cut face are active. So only larger faces at these are looked for, among all cells.
 #include <isotet/active_cells.hpp>
-#include <isotet/linear_cells.hpp>
 
 #include <algorithm>
 #include <array>
@@ -274,25 +273,6 @@ Result<bool> CellsAround::may_have_hanging_points(const Run& run) {
             }
         return std::ranges::any_of(cells_of, [](const auto& face) { return face.second.size() % 2 == 1; });
     });
-}
-
-Result<bool> may_have_hanging_points(const Grid& active, const PointField& field, std::span<const double> isovalues,
-                                     const Run& run) {
-    auto around = CellsAround::of(active, field, isovalues, run);
-    if (!around) return around.error();
-    if (!around->are_needed()) return false;
-    const auto cells = core::CellReader::open(active);
-    if (!cells) return cells.error();
-    std::vector<std::uint8_t> types;
-    std::vector<std::uint64_t> corners;
-    for (std::size_t cell = 0; cell < cells->count(); ++cell) {
-        if (!core::is_contoured(cells->type(cell))) continue;
-        types.push_back(cells->type(cell));
-        const std::uint64_t first = cells->first(cell), end = first + cells->corners(cell);
-        for (std::uint64_t i = first; i < end; ++i) corners.push_back(cells->corner(i));
-    }
-    around->add(types, Array::own(std::move(corners)));
-    return around->may_have_hanging_points(run);
 }
 
 } // namespace isotet
