@@ -219,8 +219,9 @@ class GridAccessor:
             if session.others == cells.n_cells:
                 return
             (surface,) = contour_all([(session, how)], values)
+            known = session.others + session.empty_cells
         left_out = cells.n_cells if surface is None else surface._how["cells_left_out"]
-        self._warn_of_cells("leaves out", left_out and left_out - session.others - session.empty_cells)
+        self._warn_of_cells("leaves out", left_out and left_out - known)
         if surface is None:
             return
         finish(surface, values, scalars, fields, compute_scalars, True, out)

@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -18,7 +19,9 @@
 #include <isotet/jobs/number_text.hpp>
 #include <isotet/jobs/output_names.hpp>
 
+#include "grid/cells.hpp"
 #include "grid/patches.hpp"
+#include "grid/points/used_points.hpp"
 #include "jobs/refuse.hpp"
 
 namespace isotet::jobs {
@@ -161,6 +164,33 @@ void add_offsets(Cells& cells) {
     cells.offsets = Array::own(std::move(offsets));
 }
 
+/// Points have a value where a cell uses it, one with a volume if `solid`: ranges and shares are of the cells that are left.
+void leave_values_of_cells(Grid& grid, bool solid) {
+    const auto cells = core::CellReader::open(grid);
+    if (!cells) return; // the checks of the grid say why
+    std::vector<std::uint8_t> used(grid.points.tuples());
+    for (std::size_t cell = 0; cell < cells->count(); ++cell) {
+        if (cells->type(cell) == 0 || (solid && !core::has_a_volume(cells->type(cell)))) continue;
+        const std::uint64_t first = cells->first(cell), end = first + cells->corners(cell);
+        for (std::uint64_t i = first; i < end && i < cells->connectivity_size(); ++i)
+            if (const std::uint64_t point = cells->corner(i); point < used.size()) used[point] = 1;
+    }
+    core::mark_points_of_faces(grid.cells, used);
+    for (Field& field : grid.point_fields) {
+        const std::size_t width = field.values.components();
+        const auto without_unused = [&](auto from) {
+            using Value = std::remove_const_t<typename decltype(from)::value_type>;
+            if constexpr (std::is_floating_point_v<Value>) {
+                std::vector<Value> to(from.begin(), from.end());
+                for (std::size_t i = 0; i < to.size(); ++i)
+                    if (i / width < used.size() && !used[i / width]) to[i] = std::numeric_limits<Value>::quiet_NaN();
+                field.values = Array::own(std::move(to), width);
+            }
+        };
+        field.values.visit(without_unused);
+    }
+}
+
 } // namespace
 
 Result<std::vector<CellChoice>> parse_cell_choices(const std::vector<std::string>& texts,
@@ -220,6 +250,7 @@ Result<ChosenCells> choose_cells(Grid grid, std::span<const CellChoice> choices,
         if (!chosen[cell] && (chosen_solid == 0 || core::has_a_volume(types[cell]))) types[cell] = 0;
     add_offsets(result.grid.cells);
     result.grid.cells.types = Array::own(std::move(types));
+    leave_values_of_cells(result.grid, chosen_solid > 0);
     return result;
 }
 

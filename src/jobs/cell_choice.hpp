@@ -29,7 +29,8 @@ Result<std::vector<CellChoice>> parse_cell_choices(const std::vector<std::string
 Result<void> check_cell_choices(std::span<const CellChoice> choices, const std::vector<RegionName>& regions);
 
 struct ChosenCells {
-    Grid grid;                        ///< other cells have VTK's type 0, so that all keep their numbers
+    Grid grid; ///< other cells have VTK's type 0, so that all keep their numbers; points that they alone use
+               ///< have no value, of integers they keep it
     std::size_t count = 0;            ///< all choices hold for them
     std::size_t of = 0;               ///< cells among which was chosen
     std::vector<std::string> missing; ///< sentences about numbers and ranges that no cell has

@@ -201,10 +201,10 @@ Result<void> choose_first_of(ExtractJob& job, GridSource& source, ExtractPlan& p
     if (!job.field.name.empty() || fields.empty()) return {};
     if (choice->view.field.empty())
         return Error{ErrorCode::invalid_data,
-                     fmt::format("{} two different values: there is nothing to contour; `field` x, y or z contours a "
-                                 "coordinate",
-                                 fields.size() == 1 ? "the only field does not have"
-                                                    : fmt::format("none of the {} fields has", fields.size()))};
+                     fmt::format("no field was named, and {} does not vary, numbers something, or has more than 3 "
+                                 "components: `field` names one, or x, y, z for a coordinate",
+                                 fields.size() == 1 ? fmt::format("the only one, '{}',", fields[0].name)
+                                                    : fmt::format("each of the {} fields", fields.size()))};
     if (choice->view.draw == FirstDraw::regions_on_boundary)
         return refusal("no field was named, and only numbers of regions vary, such as '{}': `field` names one to "
                        "contour",

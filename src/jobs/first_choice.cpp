@@ -43,8 +43,7 @@ private:
         const Result<FoundField> found = choose_field(source_, wish_.field);
         if (!found) return is_missing(found.error());
         FieldsToRead read{found->point, found->cell};
-        add_twins(read);
-        const Result<ReadResult> some = read_with_others(read, step);
+        const Result<ReadResult> some = read_with_twins(read, step);
         if (!some && some.error().code == ErrorCode::invalid_argument) return is_missing(some.error());
         if (!some) return some.error();
         was_there_ = true;
@@ -65,13 +64,22 @@ private:
         return !view_.walls && (view_.draw == FirstDraw::isosurfaces || view_.draw == FirstDraw::field_on_boundary);
     }
 
-    /// Cell fields with the names of point fields: they tell whether these vary at the walls alone.
-    void add_twins(FieldsToRead& read) const {
-        if (!read.point || !read.cell) return;
+    /// With the cell fields that have names of point fields, which tell whether these vary at the walls alone; without them
+    /// where they cannot be read.
+    Result<ReadResult> read_with_twins(FieldsToRead& read, std::size_t step) {
+        FieldsToRead both = read;
         for (const FieldInfo& field : source_.info().fields)
-            if (field.association == Association::cell &&
+            if (read.point && read.cell && field.association == Association::cell &&
                 std::ranges::find(*read.point, field.name) != read.point->end())
-                add_names(*read.cell, {field.name});
+                add_names(*both.cell, {field.name});
+        if (both != read) {
+            Result<ReadResult> some = read_with_others(both, step);
+            if (some || some.error().code == ErrorCode::cancelled || some.error().code == ErrorCode::out_of_memory) {
+                read = std::move(both);
+                return some;
+            }
+        }
+        return read_with_others(read, step);
     }
 
     /// Names that are preferred are looked at first: most often one of them is taken.
@@ -88,8 +96,7 @@ private:
             ++named;
         }
         if (named > 0 && fields.size() > most_at_first) {
-            add_twins(read);
-            const Result<ReadResult> some = read_with_others(read, step);
+            const Result<ReadResult> some = read_with_twins(read, step);
             if (!some) return some.error();
             view_ = first_view(some->grid, fields);
             if (!view_.rough && !view_.walls &&

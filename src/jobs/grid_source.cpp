@@ -24,7 +24,6 @@
 #include <isotet/slice.hpp>
 
 #include "grid/orientation.hpp"
-#include "grid/points/used_points.hpp"
 #include "jobs/block_field.hpp"
 #include "jobs/cell_choice.hpp"
 #include "base/parallel.hpp"
@@ -507,7 +506,6 @@ Result<void> GridSource::choose(ReadResult& read, Caller& caller) const {
         return Error{ErrorCode::invalid_argument, chosen->missing.front()};
     caller.notes(chosen->missing);
     read.grid = std::move(chosen->grid);
-    core::keep_used_points(read.grid); // ranges and shares are of the chosen cells
     caller.note(
         fmt::format("{} of {} are in {}", grouped(chosen->count), counted(chosen->of, "cell"), text_of(*choices_)));
     return {};

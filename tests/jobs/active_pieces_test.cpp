@@ -330,6 +330,24 @@ void expect_counted(const std::string& file, bool stays) {
     }
 }
 
+TEST(ActiveCellsOfPieces, AreNotCountedBesideFlatOnesWithValues) {
+    const test::TemporaryFolder folder;
+    const auto piece = [](const std::string& cells, const std::string& offsets, const std::string& types,
+                          const std::string& values, int count) {
+        return "<Piece NumberOfPoints='4' NumberOfCells='" + std::to_string(count) +
+               "'><CellData><DataArray type='Float64' Name='q'>" + values +
+               "</DataArray></CellData><Points><DataArray type='Float64' NumberOfComponents='3'>0 0 0 1 0 0 0 1 0 0 0 1"
+               "</DataArray></Points><Cells><DataArray type='Int64' Name='connectivity'>" +
+               cells + "</DataArray><DataArray type='Int64' Name='offsets'>" + offsets +
+               "</DataArray><DataArray type='UInt8' Name='types'>" + types + "</DataArray></Cells></Piece>";
+    };
+    const std::string file =
+        folder.write("both.vtu", "<VTKFile type='UnstructuredGrid'><UnstructuredGrid>" +
+                                     piece("0 1 2 0 2 3", "3 6", "5 5", "100 200", 2) +
+                                     piece("0 1 2 3", "4", "10", "7", 1) + "</UnstructuredGrid></VTKFile>");
+    expect_counted(file, false);
+}
+
 TEST(ActiveCellsOfPieces, AreCountedAsTheyGoBy) {
     const test::TemporaryFolder folder;
     const auto number_cells = [](std::size_t piece, Grid& grid) {

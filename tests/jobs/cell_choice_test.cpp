@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // GridOptions::cells: cells chosen by the values of a cell field.
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include <gtest/gtest.h>
@@ -173,24 +174,31 @@ TEST(ChosenCells, OfAGridThatWasReadAreThoseOfReadingIt) {
     EXPECT_TRUE(source.only_cells(whole, {"layer=sand"}, {{"layer", 2, "sand"}}));
 }
 
-TEST(ChosenCells, HaveTheirPointsAlone) {
+TEST(ChosenCells, HaveTheValuesOfTheirPointsAlone) {
     const test::TemporaryFolder folder;
-    const Grid grid = layered("kuhn");
-    const std::string file = written(folder, grid);
-    const Grid some = chosen(file, {"layer=1"});
+    Grid grid = layered("kuhn");
+    grid.point_fields.push_back({"count", Array::own(std::vector<std::int32_t>(grid.points.tuples(), 7))});
+    const Grid some = chosen(written(folder, grid), {"layer=1"});
     std::vector<std::uint8_t> used(some.points.tuples());
     for (std::size_t cell = 0; cell < some.cells.count(); ++cell)
         for (std::size_t k = 4 * cell; some.cells.types.at(cell) != 0 && k < 4 * cell + 4; ++k)
             used[static_cast<std::size_t>(some.cells.connectivity.at(k))] = 1;
-    EXPECT_EQ(std::ranges::count(used, 1), static_cast<std::ptrdiff_t>(used.size()));
-    EXPECT_EQ(some.point_fields[0].values.tuples(), used.size());
-    EXPECT_LT(some.points.tuples(), grid.points.tuples());
+    EXPECT_NE(std::ranges::count(used, 0), 0);
+    for (std::size_t point = 0; point < used.size(); ++point) {
+        const double value = some.point_fields[0].values.at(point);
+        EXPECT_EQ(std::isnan(value), used[point] == 0);
+        if (used[point]) {
+            EXPECT_EQ(value, grid.point_fields[0].values.at(point));
+        }
+        EXPECT_EQ(some.point_fields.back().values.at(point), 7);
+    }
 }
 
-TEST(ChosenCells, LeaveNumbersOfCellsAsTheyAre) {
+TEST(ChosenCells, LeaveAllNumbersAsTheyAre) {
     const test::TemporaryFolder folder;
     const std::string file = written(folder, layered("mixed"));
     const Grid whole = chosen(file, {}), some = chosen(file, {"layer=1"});
+    EXPECT_EQ(some.points.tuples(), whole.points.tuples());
     ASSERT_EQ(some.cells.count(), whole.cells.count());
     for (std::size_t cell = 0; cell < some.cells.count(); ++cell)
         EXPECT_EQ(some.cells.types.at(cell),

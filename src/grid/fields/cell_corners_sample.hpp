@@ -32,7 +32,7 @@ public:
     /// The same of the coordinates, the largest of the three: what a linear field has on this grid.
     double roughness_of_linear_fields() const { return linear_; }
 
-    /// False where none of the cells has a value, at its corners or its own.
+    /// False where none of the cells of the sample has a value, at its corners or its own.
     bool has_values(const Array& values, Association association) const;
 
     /// Whether the grid is one cell thick along an axis, and many along the others.

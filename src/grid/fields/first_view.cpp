@@ -9,10 +9,13 @@
 #include <isotet/fields.hpp>
 #include <isotet/grid.hpp>
 
+#include "grid/cells.hpp"
 #include "grid/fields/cell_corners_sample.hpp"
 #include "grid/fields/name_kind.hpp"
 #include "grid/fields/sampled_values.hpp"
 #include "grid/fields/sampled_view.hpp"
+#include "grid/fields/scalar_of.hpp"
+#include "grid/patches.hpp"
 
 namespace isotet {
 
@@ -115,7 +118,7 @@ public:
     Judged judge(const Array& values, Association association) {
         Judged judged;
         const core::SampledValues sample = core::sample_values(values);
-        judged.varies = has_two_values(sample.values) && cells().has_values(values, association);
+        judged.varies = has_two_values(sample.values) && has_values_in_cells(values, association);
         if (!judged.varies) return judged;
         judged.whole = core::holds_whole_numbers(values, sample);
         const bool may_number = !is_floating(values.type()) || association == Association::cell;
@@ -129,6 +132,28 @@ public:
     bool is_one_cell_thick() { return cells().is_one_cell_thick(); }
 
 private:
+    /// Whether a cell with a volume has a value; all are looked at where those of the sample have none.
+    bool has_values_in_cells(const Array& values, Association association) {
+        if (cells().has_values(values, association) || !sampled_.empty()) return true;
+        const auto all = core::CellReader::open(grid_);
+        if (!all) return true;
+        const core::Scalar scalar{0, values.components() > 1};
+        const auto has_value = [&](std::uint64_t item) {
+            return item < values.tuples() && std::isfinite(core::scalar_at(values, scalar, item));
+        };
+        for (std::size_t cell = 0; cell < all->count(); ++cell) {
+            if (!core::has_a_volume(all->type(cell))) continue;
+            if (association == Association::cell) {
+                if (has_value(cell)) return true;
+                continue;
+            }
+            const std::uint64_t first = all->first(cell), end = first + all->corners(cell);
+            for (std::uint64_t i = first; i < end && i < all->connectivity_size(); ++i)
+                if (has_value(all->corner(i))) return true;
+        }
+        return false;
+    }
+
     const core::CellCornersSample& cells() {
         if (!cells_) cells_.emplace(grid_, sampled_);
         return *cells_;

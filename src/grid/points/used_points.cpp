@@ -29,45 +29,35 @@ void renumber_faces(Cells& cells, const Number& number) {
     cells.faces = Array::own(std::move(stream));
 }
 
-/// By point: 1 where a cell uses it. Cells that do not fit the connectivity use what there is.
-std::vector<std::uint8_t> used_points(const Grid& grid, const std::vector<std::uint8_t>& is_corner) {
-    std::vector<std::uint8_t> used(grid.points.tuples());
-    IndexColumn(grid.cells.connectivity).visit([&](const auto* corners) {
-        for (std::size_t i = 0; i < is_corner.size(); ++i)
-            if (const std::uint64_t point = widened(corners[i]); is_corner[i] && point < used.size()) used[point] = 1;
-    });
-    return used;
-}
-
-/// By place in the connectivity: 0 where it is of a cell of type 0.
-std::vector<std::uint8_t> corners_of_cells(const Grid& grid) {
-    std::vector<std::uint8_t> is_corner(grid.cells.connectivity.size(), 1);
-    const auto cells = CellReader::open(grid);
-    if (!cells) return is_corner;
-    for (std::size_t cell = 0; cell < cells->count(); ++cell) {
-        if (cells->type(cell) != 0) continue;
-        const std::uint64_t first = std::min<std::uint64_t>(cells->first(cell), is_corner.size());
-        const std::uint64_t count = std::min<std::uint64_t>(cells->corners(cell), is_corner.size() - first);
-        std::fill_n(is_corner.begin() + static_cast<std::ptrdiff_t>(first), count, std::uint8_t{0});
-    }
-    return is_corner;
-}
-
 } // namespace
 
+void mark_points_of_faces(const Cells& cells, std::vector<std::uint8_t>& used) {
+    const auto faces = FaceReader::open(cells);
+    if (!faces || !faces->has_faces()) return;
+    for (std::size_t cell = 0; cell < cells.count(); ++cell) {
+        if (!fault_of_faces(*faces, cell, std::numeric_limits<std::uint64_t>::max()).empty()) return;
+        for (std::uint64_t at = faces->begin(cell) + 1; at < faces->end(cell);)
+            for (std::uint64_t left = faces->at(at++); left > 0; --left, ++at)
+                if (faces->at(at) < used.size()) used[faces->at(at)] = 1;
+    }
+}
+
 std::vector<std::uint8_t> keep_used_points(Grid& grid) {
-    const std::vector<std::uint8_t> is_corner = corners_of_cells(grid), used = used_points(grid, is_corner);
+    std::vector<std::uint8_t> used(grid.points.tuples());
+    IndexColumn(grid.cells.connectivity).visit([&](const auto* corners) {
+        for (std::size_t i = 0; i < grid.cells.connectivity.size(); ++i)
+            if (const std::uint64_t point = widened(corners[i]); point < used.size()) used[point] = 1;
+    });
+    mark_points_of_faces(grid.cells, used);
     std::vector<std::int64_t> place(used.size(), -1);
     std::int64_t next = 0;
     for (std::size_t i = 0; i < used.size(); ++i)
         if (used[i]) place[i] = next++;
     if (static_cast<std::size_t>(next) == used.size()) return {};
-    const auto number = [&](std::uint64_t point) { // of a corner that counts
-        return point < place.size() ? std::max(place[point], std::int64_t{0}) : next;
-    };
-    std::vector<std::int64_t> corners(is_corner.size());
+    const auto number = [&](std::uint64_t point) { return point < place.size() ? place[point] : next; };
+    std::vector<std::int64_t> corners(grid.cells.connectivity.size());
     IndexColumn(grid.cells.connectivity).visit([&](const auto* from) {
-        for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = is_corner[i] ? number(widened(from[i])) : 0;
+        for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = number(widened(from[i]));
     });
     grid.patches = renumbered(
         grid.patches, [&](std::uint64_t point) { return point < place.size() ? place[point] : std::int64_t{-1}; });

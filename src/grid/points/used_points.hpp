@@ -10,11 +10,14 @@
 
 namespace isotet::core {
 
-/// Keeps the points that a cell uses, in their order, and what belongs to them. Cells of VTK's type 0 use none: their corners
-/// become point 0. A corner that is no point stays none, so that the checks of the grid say so.
+/// Keeps the points that a cell uses, as a corner or in a face, in their order, and what belongs to them. A corner that is no
+/// point stays none, so that the checks of the grid say so.
 ///
 /// Returns   a byte a point of before, 1 where it was kept; empty: all were
 ISOTET_API std::vector<std::uint8_t> keep_used_points(Grid& grid);
+
+/// Sets the bytes of the points in faces of polyhedra.
+ISOTET_API void mark_points_of_faces(const Cells& cells, std::vector<std::uint8_t>& used);
 
 /// The tuples of `values` whose number `kept` marks; an empty array stays empty.
 ISOTET_API Array kept_tuples(const Array& values, const std::vector<std::uint8_t>& kept);

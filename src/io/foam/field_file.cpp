@@ -114,6 +114,7 @@ private:
                 patch.value = std::move(*values);
                 return {};
             }
+            if (read.error().code != ErrorCode::invalid_data) return read;
             field_.faults.insert(read.error().message);
             scanner = std::move(at_value);
         }

@@ -246,11 +246,11 @@ Result<void> read_fields(const CaseFiles& files, const CaseLayout& layout, const
                                                fmt::join(read->lacking, ", "),
                                                read->lacking.size() > 1 ? "have" : "has", escaped(field.name)));
         if (!read->misfits.empty())
-            loaded.notes.push_back(*read->misfits.begin() +
-                                   (read->misfits.size() > 1
-                                        ? fmt::format(": it and {} others of {} are not used",
-                                                      read->misfits.size() - 1, escaped(field.name))
-                                        : ": it is not used"));
+            loaded.notes.push_back(
+                *read->misfits.begin() +
+                (read->misfits.size() > 1
+                     ? fmt::format(": it and {} more of {} are not used", read->misfits.size() - 1, escaped(field.name))
+                     : ": it is not used"));
         for (const std::string& file : read->unread) fields_including[file].push_back(escaped(field.name));
     }
     for (const auto& [file, names] : fields_including)

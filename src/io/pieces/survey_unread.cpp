@@ -153,8 +153,9 @@ bool may_be_counted(const Piece& piece, const ReadOptions& options) {
     for (const Field& field : piece.grid.cell_fields)
         if (field.values.tuples() != piece.cell_count()) return false;
     const CellPlaces& places = piece.unread->places();
-    return piece.grid.cell_fields.empty() || places.are_uniform() ||
-           std::ranges::all_of(places.types(0, places.cells()), core::has_a_volume);
+    if (piece.grid.cell_fields.empty()) return true; // else all cells have a volume, those of other pieces too
+    return places.are_uniform() ? core::has_a_volume(places.type(0))
+                                : std::ranges::all_of(places.types(0, places.cells()), core::has_a_volume);
 }
 
 Result<std::optional<SurveyedGrid>> survey_unread(const Piece& piece, const ReadOptions& options,
