@@ -192,12 +192,18 @@ Result<void> choose_first_of(ExtractJob& job, GridSource& source, ExtractPlan& p
         plan.steps = *std::move(steps);
         return {};
     }
+    const std::vector<FieldInfo>& fields = source.info().fields;
+    if (job.field.name.empty() && fields.size() == 1 &&
+        names_isovalues(job)) { // whatever it is, its values are asked for
+        const std::vector<FirstCandidate> candidates = first_candidates(fields);
+        job.field.name = candidates.empty() ? fields[0].name : candidates[0].name;
+        wish.field = job.field;
+    }
     wish.only_field_will_do = true;
     if (!job.with && plan.holds_fields) wish.also.point.reset();
     const Result<FirstChoice> choice = choose_first(source, job.grid, wish, caller, caller.run());
     if (!choice) return choice.error();
     plan.steps = choice->steps;
-    const std::vector<FieldInfo>& fields = source.info().fields;
     if (!job.field.name.empty() || fields.empty()) return {};
     if (choice->view.field.empty())
         return Error{ErrorCode::invalid_data,

@@ -139,7 +139,8 @@ std::string known_name(const GridSource& source, const ChoiceWish& wish) {
     const std::vector<FieldInfo>& fields = source.info().fields;
     if (fields.size() != 1 || !wish.only_field_will_do) return {};
     const std::vector<FirstCandidate> candidates = first_candidates(fields);
-    const bool may_number = fields[0].type != ScalarType::float32 && fields[0].type != ScalarType::float64;
+    const bool may_number = fields[0].association == Association::cell && fields[0].type != ScalarType::float32 &&
+                            fields[0].type != ScalarType::float64;
     if (candidates.empty() || (may_number && candidates[0].reason == FirstReason::variation)) return {};
     return candidates[0].name;
 }

@@ -349,6 +349,9 @@ TEST(ExtractWithoutAField, RefusesNumbersOfRegionsAlone) {
               std::string::npos);
     job.grid.file = write_made({"", {{"material", Values::halves, 1, cell}}, {}}, folder.file("only.vtu"));
     EXPECT_EQ(extract_files(job, listener).error().code, ErrorCode::invalid_argument);
+    job.isovalues = {2};
+    EXPECT_EQ(extract_files(job, listener).value().field.name, "material") << "its values are asked for";
+    job.isovalues.clear();
     job.field.name = "material";
     EXPECT_TRUE(extract_files(job, listener));
     job.field.name.clear();

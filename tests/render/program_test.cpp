@@ -357,7 +357,7 @@ TEST_F(Render, FollowsRaysThroughVolumesOnADevice) {
         EXPECT_GT(report["volume"]["segments"], 0);
         EXPECT_GT(report["drawing"]["bytes_up"], 0);
         EXPECT_TRUE(content(path("device.png")) == content(path("cpu.png")));
-        words.insert(words.end(), {"--device-memory", "4MB"});
+        words.insert(words.end(), {"--device-memory", "1MB"});
         const RunResult short_of_memory = isotet(words);
         EXPECT_EQ(short_of_memory.status, 0);
         EXPECT_NE(short_of_memory.err.find("the CPU draws the volume: "), std::string::npos) << short_of_memory.err;
