@@ -5,6 +5,7 @@
 #include <numeric>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -131,12 +132,32 @@ Result<GridSummary> look_at_heads(const GridSource& source, const GridOptions& o
     return summary;
 }
 
-Result<CurvedSummary> look_at_curved_cells(const Grid& grid, const std::vector<FieldSummary>& summaries,
-                                           const Run& run) {
-    CurvedSummary found;
-    if (!has_curved_cells(grid.cells)) return found;
-    const auto linear = linearize(grid, {}, run);
+/// Linear cells, where some are curved; nothing where none is.
+Result<std::optional<LinearGrid>> linear_if_curved(const Grid& grid, const Run& run) {
+    if (!has_curved_cells(grid.cells)) return std::optional<LinearGrid>();
+    Result<LinearGrid> linear = linearize({grid.points, grid.cells, {}, {}}, {}, run);
     if (!linear) return linear.error();
+    return std::optional(*std::move(linear));
+}
+
+/// survey() of a grid by the linear cells that it has, if it has curved ones.
+Result<GridReport> survey_by(const std::optional<LinearGrid>& linear, const Grid& grid, const SurveyOptions& options,
+                             const Run& run) {
+    if (!linear) return survey(grid, options, run);
+    Result<GridReport> report = survey(linear->grid, options, run);
+    if (!report) return report;
+    report->points = grid.points.tuples();
+    report->cells = linear->user_cells;
+    report->cells_left_out += linear->refinement.left_out;
+    report->cells_by_type.clear();
+    for (const auto& [type, count] : count_cells_by_type(grid.cells)) report->cells_by_type[type] = count;
+    return report;
+}
+
+Result<CurvedSummary> look_at_curved_cells(const std::optional<LinearGrid>& linear, const Grid& grid,
+                                           const std::vector<FieldSummary>& summaries, const Run& run) {
+    CurvedSummary found;
+    if (!linear) return found;
     found.cells = linear->refinement.curved_cells;
     found.left_out = linear->refinement.unknown_cells;
     for (std::size_t i = 0; i < grid.point_fields.size(); ++i) { // first in the summaries, in this order
@@ -218,7 +239,10 @@ Result<GridSummary> look_into(const InfoJob& job, Caller& caller) {
     if (!read) return read.error();
     const Grid* const grid = &read->read.grid;
     summary.point_type = grid->points.type();
-    Result<GridReport> surveyed = read->report ? *read->report : survey(*grid, {.faces = job.survey}, caller.run());
+    const Result<std::optional<LinearGrid>> linear = linear_if_curved(*grid, caller.run());
+    if (!linear) return linear.error();
+    Result<GridReport> surveyed =
+        read->report ? *read->report : survey_by(*linear, *grid, {.faces = job.survey}, caller.run());
     if (!surveyed) return surveyed.error();
     summary.report = *std::move(surveyed);
     summary.report.cells_left_out -=
@@ -237,7 +261,7 @@ Result<GridSummary> look_into(const InfoJob& job, Caller& caller) {
     summary.fields = *std::move(fields);
     summary.vectors = vectors_of(describe_fields(*grid));
     summary.first = core::first_view_of_sample(*grid, source->info().fields, read->sampled);
-    Result<CurvedSummary> curved = look_at_curved_cells(*grid, summary.fields, caller.run());
+    Result<CurvedSummary> curved = look_at_curved_cells(*linear, *grid, summary.fields, caller.run());
     if (!curved) return curved.error();
     summary.curved = *std::move(curved);
     Result<std::optional<FieldChart>> chart = make_chart(job, *grid, summary.first, caller);
