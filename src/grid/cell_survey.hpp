@@ -13,10 +13,22 @@
 #include <isotet/export.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/progress.hpp>
+#include <isotet/result.hpp>
 
 #include "grid/tet_survey.hpp"
+#include "numbers/bounds.hpp"
 
 namespace isotet::core {
+
+/// Linear cells that others are split into, and places of their own.
+struct MadeCells {
+    static constexpr std::uint64_t made_bit = std::uint64_t{1} << 63;
+
+    std::span<const std::uint8_t> types;
+    std::span<const std::uint32_t> counts;  ///< of corners, one each
+    std::span<const std::uint64_t> corners; ///< points, or made_bit and the number of a place
+    std::span<const Point> places;
+};
 
 /// survey_tets() of cells that come by in blocks.
 class TetSurveyor {
@@ -25,14 +37,23 @@ public:
 
     /// Cells [begin, end) of a reader of the same points, which were checked. Safe from many threads.
     void add(const CellReader& cells, std::size_t begin, std::size_t end);
+    /// Safe from many threads. Places count as points.
+    void add(const MadeCells& cells);
 
     TetSurvey finish(const Progress& progress) &&;
 
 private:
     PointReader points_;
     TetSurvey survey_;
+    Bounds made_; ///< around used places of MadeCells
     std::mutex mutex_;
 };
+
+/// survey() of linear cells; others are left out.
+Result<GridReport> survey_linear_cells(const Grid& grid, const SurveyOptions& options, const Progress& progress);
+
+/// What survey() tells without faces. `cells`   how many there are
+GridReport report_of(const TetSurvey& tets, const Array& points, std::uint64_t cells);
 
 /// What survey() counts without faces, of linear cells that come by in blocks.
 ///

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include <isotet/grid.hpp>
-#include <isotet/linear_cells.hpp>
 
 #include "base/carry_out.hpp"
 #include "base/memory.hpp"
@@ -39,52 +38,6 @@ void take_bounds_of_all(GridReport& report, const Array& points) {
     report.upper = bounds.upper;
 }
 
-GridReport report_of(const TetSurvey& tets, const Array& points, std::uint64_t cells) {
-    GridReport report;
-    report.points = points.tuples();
-    report.cells = cells;
-    for (std::size_t type = 0; type < tets.cells_by_type.size(); ++type)
-        if (tets.cells_by_type[type]) report.cells_by_type[static_cast<std::uint8_t>(type)] = tets.cells_by_type[type];
-    report.cells_left_out = tets.left_out;
-    report.tets = tets.tets;
-    report.collapsed_tets = tets.collapsed;
-    report.negative_tets = tets.orientation.negative + tets.orientation.twisted;
-    report.inverted_tets = tets.orientation.inverted(tets.mostly_negative());
-    report.flat_tets = tets.orientation.flat;
-    report.unused_points = tets.unused;
-    report.lower = tets.lower;
-    report.upper = tets.upper;
-    if (tets.tets == 0) take_bounds_of_all(report, points);
-    return report;
-}
-
-Result<GridReport> survey(const Grid& grid, const SurveyOptions& options, const Progress& progress) {
-    auto cells = CellReader::open(grid);
-    if (!cells) return cells.error();
-    if (auto ok = check_cells(grid, *cells, progress); !ok) return ok.error();
-    progress("check", 0.1);
-    const TetSurvey tets = survey_tets(grid, *cells, progress);
-    if (progress.cancelled()) return cancelled();
-    GridReport report = report_of(tets, grid.points, cells->count());
-    if (tets.tets == 0) return report;
-    if (options.faces) {
-        progress("check", 0.4);
-        report.duplicate_points = count_duplicates(PointReader(grid.points), tets.used, progress);
-        if (progress.cancelled()) return cancelled();
-        progress("check", 0.6);
-        // A quarter of what is free, but no less than a small grid needs.
-        const std::uint64_t memory = std::max<std::uint64_t>(free_memory() / 4, 1 << 26);
-        const auto faces = survey_faces(grid, *cells, tets, {.memory = memory}, progress);
-        if (!faces) return faces.error();
-        report.repeated_tets = faces->repeated;
-        report.boundary_faces = faces->boundary_faces;
-        report.quads_on_triangles = count_quads_on_triangles(*cells, memory, progress);
-        if (progress.cancelled()) return cancelled();
-    }
-    progress("check", 1);
-    return report;
-}
-
 Result<TetList> split_by_index(const Grid& grid, const Progress& progress) {
     auto cells = CellReader::open(grid);
     if (!cells) return cells.error();
@@ -113,21 +66,53 @@ Result<TetList> split(const Grid& grid, const Progress& progress) {
     return list;
 }
 
-/// Tets, faces and bounds are those of the linear cells; points and cells are counted as the user has them.
-Result<GridReport> survey_linear(const Grid& grid, const SurveyOptions& options, const Progress& progress) {
-    const auto linear = linearize({grid.points, grid.cells, {}, {}}, {}, {.threads = threads_here(), .progress = {}});
-    if (!linear) return linear.error();
-    auto report = survey(linear->grid, options, progress);
-    if (!report) return report;
-    report->points = grid.points.tuples();
-    report->cells = linear->user_cells;
-    report->cells_left_out += linear->refinement.left_out;
-    report->cells_by_type.clear();
-    for (const auto& [type, count] : count_cells_by_type(grid.cells)) report->cells_by_type[type] = count;
+} // namespace
+
+GridReport report_of(const TetSurvey& tets, const Array& points, std::uint64_t cells) {
+    GridReport report;
+    report.points = points.tuples();
+    report.cells = cells;
+    for (std::size_t type = 0; type < tets.cells_by_type.size(); ++type)
+        if (tets.cells_by_type[type]) report.cells_by_type[static_cast<std::uint8_t>(type)] = tets.cells_by_type[type];
+    report.cells_left_out = tets.left_out;
+    report.tets = tets.tets;
+    report.collapsed_tets = tets.collapsed;
+    report.negative_tets = tets.orientation.negative + tets.orientation.twisted;
+    report.inverted_tets = tets.orientation.inverted(tets.mostly_negative());
+    report.flat_tets = tets.orientation.flat;
+    report.unused_points = tets.unused;
+    report.lower = tets.lower;
+    report.upper = tets.upper;
+    if (tets.tets == 0) take_bounds_of_all(report, points);
     return report;
 }
 
-} // namespace
+Result<GridReport> survey_linear_cells(const Grid& grid, const SurveyOptions& options, const Progress& progress) {
+    auto cells = CellReader::open(grid);
+    if (!cells) return cells.error();
+    if (auto ok = check_cells(grid, *cells, progress); !ok) return ok.error();
+    progress("check", 0.1);
+    const TetSurvey tets = survey_tets(grid, *cells, progress);
+    if (progress.cancelled()) return cancelled();
+    GridReport report = report_of(tets, grid.points, cells->count());
+    if (tets.tets == 0) return report;
+    if (options.faces) {
+        progress("check", 0.4);
+        report.duplicate_points = count_duplicates(PointReader(grid.points), tets.used, progress);
+        if (progress.cancelled()) return cancelled();
+        progress("check", 0.6);
+        // A quarter of what is free, but no less than a small grid needs.
+        const std::uint64_t memory = std::max<std::uint64_t>(free_memory() / 4, 1 << 26);
+        const auto faces = survey_faces(grid, *cells, tets, {.memory = memory}, progress);
+        if (!faces) return faces.error();
+        report.repeated_tets = faces->repeated;
+        report.boundary_faces = faces->boundary_faces;
+        report.quads_on_triangles = count_quads_on_triangles(*cells, memory, progress);
+        if (progress.cancelled()) return cancelled();
+    }
+    progress("check", 1);
+    return report;
+}
 
 CellSurvey::CellSurvey(const Array& points) : tets_(points) {
     block_.points = points;
@@ -156,13 +141,6 @@ std::optional<GridReport> CellSurvey::finish(const Progress& progress) {
 }
 
 } // namespace core
-
-Result<GridReport> survey(const Grid& grid, const SurveyOptions& options, const Run& run) {
-    return core::carry_out("checking the grid", run, [&](const Progress& progress) {
-        return has_cells_to_linearize(grid.cells) ? core::survey_linear(grid, options, progress)
-                                                  : core::survey(grid, options, progress);
-    });
-}
 
 Result<TetList> split(const Grid& grid, const Run& run) {
     return core::carry_out("splitting the cells", run,

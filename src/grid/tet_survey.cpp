@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <atomic>
 #include <mutex>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "base/parallel.hpp"
 #include "grid/cell/native_cells.hpp"
@@ -67,7 +69,8 @@ struct PositionList {
     void add(std::uint8_t a, std::uint8_t b, std::uint8_t c, std::uint8_t d) { tets[count++] = {a, b, c, d}; }
 };
 
-void add_cell(const WholeCell& cell, std::uint8_t type, const PointReader& points, const Marker& used, Partial& out) {
+template <class Points, class Marks>
+void add_cell(const WholeCell& cell, std::uint8_t type, const Points& points, Marks&& used, Partial& out) {
     PositionList positions;
     Splitter(cell.corners.data(), positions).split(cell.kind);
     const bool repeated = has_repeated_corner(cell);
@@ -111,6 +114,36 @@ void add_cells(const CellReader& cells, const PointReader& points, std::size_t b
     }
 }
 
+/// Corners of MadeCells: points, and places of the cells' own.
+class MadeCorners {
+public:
+    MadeCorners(const PointReader& points, const Marker& used, std::span<const Point> places)
+        : points_(points), used_points_(used), places_(places), used_(places.size()) {}
+
+    Point operator[](std::uint64_t corner) const {
+        return corner & MadeCells::made_bit ? places_[corner - MadeCells::made_bit] : points_[corner];
+    }
+    void mark(std::uint64_t corner) {
+        if (corner & MadeCells::made_bit) used_[corner - MadeCells::made_bit] = 1;
+        else used_points_.mark(corner);
+    }
+
+    /// The box around places that are used, and how many are not.
+    std::uint64_t unused(Bounds& bounds) const {
+        std::uint64_t count = 0;
+        for (std::size_t i = 0; i < used_.size(); ++i)
+            if (used_[i] != 0) bounds.add(places_[i]);
+            else ++count;
+        return count;
+    }
+
+private:
+    const PointReader& points_;
+    const Marker& used_points_;
+    std::span<const Point> places_;
+    std::vector<std::uint8_t> used_;
+};
+
 /// Bounds of the used points, and how many are not.
 struct UsedPoints {
     Bounds bounds;
@@ -133,6 +166,14 @@ UsedPoints look_at_used(const PointReader& points, const Buffer<std::uint8_t>& u
     return total;
 }
 
+void add_to(TetSurvey& survey, const Partial& part) {
+    survey.tets += part.tets;
+    survey.collapsed += part.collapsed;
+    survey.mirrored += part.mirrored;
+    survey.orientation.combine(part.orientation);
+    for (std::size_t type = 0; type < part.by_type.size(); ++type) survey.cells_by_type[type] += part.by_type[type];
+}
+
 void clear(Buffer<std::uint8_t>& flags) {
     parallel_ranges(flags.size(), 1 << 18,
                     [&](std::size_t begin, std::size_t end) { std::fill_n(flags.data() + begin, end - begin, 0); });
@@ -149,18 +190,40 @@ void TetSurveyor::add(const CellReader& cells, std::size_t begin, std::size_t en
     Partial part;
     add_cells(cells, points_, begin, end, Marker(survey_.used), part);
     const std::lock_guard lock(mutex_);
-    survey_.tets += part.tets;
-    survey_.collapsed += part.collapsed;
-    survey_.mirrored += part.mirrored;
-    survey_.orientation.combine(part.orientation);
-    for (std::size_t type = 0; type < part.by_type.size(); ++type) survey_.cells_by_type[type] += part.by_type[type];
+    add_to(survey_, part);
+}
+
+void TetSurveyor::add(const MadeCells& cells) {
+    Partial part;
+    const Marker used(survey_.used);
+    MadeCorners corners(points_, used, cells.places);
+    const std::uint64_t* corner = cells.corners.data();
+    for (std::size_t i = 0; i < cells.types.size(); ++i) {
+        const std::uint8_t type = cells.types[i];
+        ++part.by_type[type];
+        if (const auto kind = kind_of(type)) {
+            WholeCell cell;
+            cell.kind = *kind;
+            std::copy_n(corner, corner_count(*kind), cell.corners.begin());
+            order_as_kind(type, cell.corners);
+            add_cell(cell, type, corners, corners, part);
+        }
+        corner += cells.counts[i];
+    }
+    Bounds bounds;
+    const std::uint64_t unused = corners.unused(bounds);
+    const std::lock_guard lock(mutex_);
+    add_to(survey_, part);
+    survey_.unused += unused;
+    made_.combine(bounds);
 }
 
 TetSurvey TetSurveyor::finish(const Progress& progress) && {
     for (std::size_t type = 0; type < survey_.cells_by_type.size(); ++type)
         if (!is_contoured(static_cast<std::uint8_t>(type))) survey_.left_out += survey_.cells_by_type[type];
-    const UsedPoints of_used = look_at_used(points_, survey_.used, progress);
-    survey_.unused = of_used.unused;
+    UsedPoints of_used = look_at_used(points_, survey_.used, progress);
+    of_used.bounds.combine(made_);
+    survey_.unused += of_used.unused;
     if (survey_.tets) {
         survey_.lower = of_used.bounds.lower;
         survey_.upper = of_used.bounds.upper;

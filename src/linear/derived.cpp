@@ -70,11 +70,8 @@ Array extended(const DerivedPoints& derived, const RefinedPoints& refined, std::
                     return static_cast<double>(from[points[first[row] + i] * components + c]);
                 };
                 const double equal = 1 / static_cast<double>(count);
-                double value =
-                    weights.empty()
-                        ? linear::weighted_sum(
-                              count, [&](std::size_t) { return equal; }, at)
-                        : linear::weighted_sum(count, [&](std::size_t i) { return weights[first[row] + i]; }, at);
+                double value = linear::derived_value(
+                    weights.empty() ? std::span(&equal, 1) : weights.subspan(first[row], count), count, at);
                 if (inside) value = linear::within(value, count, at);
                 to[(users + row) * components + c] = static_cast<To>(value);
             }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <span>
 
 namespace isotet::linear {
 
@@ -30,6 +31,13 @@ double within(double value, std::size_t count, const At& at) {
         upper = next > upper ? next : upper;
     }
     return value < lower ? lower : value > upper ? upper : value;
+}
+
+/// Of a point with these weights, or with equal ones where there is one.
+template <class At>
+double derived_value(std::span<const double> weights, std::size_t count, const At& at) {
+    const std::size_t step = weights.size() == count ? 1 : 0;
+    return weighted_sum(count, [&](std::size_t i) { return weights[i * step]; }, at);
 }
 
 } // namespace isotet::linear

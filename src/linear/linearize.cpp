@@ -35,14 +35,6 @@ std::size_t cells_of_block(std::size_t cells) { return std::clamp<std::size_t>(c
 
 Error linearizing_cancelled() { return {ErrorCode::cancelled, "making linear cells was cancelled"}; }
 
-/// A cell that stays as it is.
-void keep_cell(const core::CellReader& cells, std::size_t cell, std::vector<std::uint64_t>& corners, Parts& out) {
-    corners.clear();
-    const std::uint64_t first = cells.first(cell), count = cells.corners(cell);
-    for (std::uint64_t i = 0; i < count; ++i) corners.push_back(cells.corner(first + i));
-    out.add_cell(cells.type(cell), corners, cell);
-}
-
 /// Nothing can be contoured: says why.
 Error nothing_left(const Grid& grid, const LinearizeReport& report) {
     return invalid_data(
@@ -126,7 +118,6 @@ LinearGrid split_blocks(const Grid& grid, const core::CellReader& cells, const c
     core::parallel_ranges(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
         PolyhedronSplitter splitter(grid, cells, faces, options, polyhedra.value_or(LargeFaces::quadrilaterals));
         HighDegreeSplitter by_degree(cells);
-        std::vector<std::uint64_t> corners;
         std::vector<double> corner_values;
         Parts parts;
         for (std::size_t b = begin; b < end && !progress.cancelled(); ++b) {
@@ -139,7 +130,7 @@ LinearGrid split_blocks(const Grid& grid, const core::CellReader& cells, const c
                 else if (is_split) splitter.split(cell, parts);
                 else if (const auto what = high_degree_of(cells.type(cell), cells.corners(cell)))
                     by_degree.split(cell, *what, parts);
-                else keep_cell(cells, cell, corners, parts);
+                else parts.keep_cell(cells, cell);
             }
             blocks[b] = KeptParts(parts, narrow);
         }

@@ -45,11 +45,23 @@ void Parts::add_cell(std::uint8_t type, std::span<const std::uint64_t> corners, 
     corners_.insert(corners_.end(), corners.begin(), corners.end());
     corner_counts_.push_back(static_cast<std::uint32_t>(corners.size()));
     types_.push_back(type);
+    add_source(source);
+}
+
+void Parts::add_source(std::uint64_t source) {
     if (sources_.empty() || sources_.back() != source) {
         sources_.push_back(source);
         part_counts_.push_back(0);
     }
     ++part_counts_.back();
+}
+
+void Parts::keep_cell(const core::CellReader& cells, std::size_t cell) {
+    const std::uint64_t first = cells.first(cell), count = cells.corners(cell);
+    for (std::uint64_t i = 0; i < count; ++i) corners_.push_back(cells.corner(first + i));
+    corner_counts_.push_back(static_cast<std::uint32_t>(count));
+    types_.push_back(cells.type(cell));
+    add_source(cell);
 }
 
 std::uint64_t Parts::add_point(std::span<const std::uint64_t> points, std::span<const double> weights) {
@@ -60,6 +72,19 @@ std::uint64_t Parts::add_point(std::span<const std::uint64_t> points, std::span<
     term_weights_.insert(term_weights_.end(), weights.begin(), weights.end());
     term_counts_.push_back(static_cast<std::uint32_t>(points.size()));
     return derived_bit + term_counts_.size() - 1;
+}
+
+void Parts::clear() {
+    corners_.clear();
+    corner_counts_.clear();
+    types_.clear();
+    sources_.clear();
+    part_counts_.clear();
+    term_counts_.clear();
+    term_points_.clear();
+    alike_.clear();
+    term_weights_.clear();
+    report = {};
 }
 
 KeptParts::KeptParts(Parts& parts, bool narrow)

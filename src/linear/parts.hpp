@@ -2,6 +2,8 @@
 // Linear cells in the making: blocks of the user's cells are done side by side, then put together.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -9,6 +11,8 @@
 #include <isotet/linear_cells.hpp>
 
 #include "base/buffer.hpp"
+#include "grid/cell_survey.hpp"
+#include "grid/cells.hpp"
 
 namespace isotet::linear {
 
@@ -16,17 +20,39 @@ namespace isotet::linear {
 /// of the block.
 class Parts {
 public:
-    static constexpr std::uint64_t derived_bit = std::uint64_t{1} << 63;
+    static constexpr std::uint64_t derived_bit = core::MadeCells::made_bit;
 
     LinearizeReport report;
 
     /// `source`   the user's cell, ascending
     void add_cell(std::uint8_t type, std::span<const std::uint64_t> corners, std::uint64_t source);
+    /// A cell that stays as it is.
+    void keep_cell(const core::CellReader& cells, std::size_t cell);
     /// Returns the corner that means it.
     std::uint64_t add_point(std::span<const std::uint64_t> points, std::span<const double> weights);
 
+    std::span<const std::uint8_t> types() const { return types_; }
+    std::span<const std::uint32_t> corner_counts() const { return corner_counts_; }
+    std::span<const std::uint64_t> corners() const { return corners_; }
+    /// Of derived points, one after another: `use(points, weights)`; the weights are one number where all are alike.
+    template <class Use>
+    void for_rows(const Use& use) const {
+        std::size_t term = 0, weight = 0;
+        for (std::size_t row = 0; row < term_counts_.size(); ++row) {
+            const std::size_t count = term_counts_[row];
+            const std::size_t weights = alike_[row] ? std::min<std::size_t>(count, 1) : count;
+            use(std::span(term_points_).subspan(term, count), std::span(term_weights_).subspan(weight, weights));
+            term += count;
+            weight += weights;
+        }
+    }
+    /// Keeps the memory.
+    void clear();
+
 private:
     friend class KeptParts;
+
+    void add_source(std::uint64_t source);
 
     std::vector<std::uint64_t> corners_;
     std::vector<std::uint32_t> corner_counts_; ///< of cells
