@@ -14,18 +14,19 @@
 #include <isotet/grid.hpp>
 #include <isotet/make.hpp>
 #include <isotet/read.hpp>
-#include <isotet/read_surveyed.hpp>
 #include <isotet/write.hpp>
 
 #include "grid/cells.hpp"
 #include "jobs/listener.hpp"
 #include "pieces/partition.hpp"
+#include "support/counted_cells.hpp"
 #include "support/seeds.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace isotet::jobs {
 namespace {
 
+using test::expect_counted;
 using test::Listener;
 
 /// What the pieces of a grid are like.
@@ -297,39 +298,6 @@ TEST(ActiveCellsOfPieces, HaveTheNumbersOfAllAsSourceCells) {
     }
 }
 
-void expect_counted(const std::string& file, bool stays) {
-    const SurveyedGrid counted = read_surveyed(file).value();
-    const ReadResult all = read(file).value();
-    ASSERT_EQ(counted.report.has_value(), stays);
-    EXPECT_EQ(counted.read.notes, all.notes);
-    EXPECT_TRUE(same_bytes(counted.read.grid.points, all.grid.points));
-    ASSERT_EQ(counted.read.grid.cell_fields.size(), all.grid.cell_fields.size());
-    for (std::size_t i = 0; i < all.grid.cell_fields.size(); ++i)
-        EXPECT_TRUE(same_bytes(counted.read.grid.cell_fields[i].values, all.grid.cell_fields[i].values));
-    if (!stays) {
-        EXPECT_EQ(counted.read.grid.cells.count(), all.grid.cells.count());
-        return;
-    }
-    const GridReport expected = survey(all.grid, {.faces = false}).value();
-    EXPECT_EQ(counted.report->points, expected.points);
-    EXPECT_EQ(counted.report->cells, expected.cells);
-    EXPECT_EQ(counted.report->cells_by_type, expected.cells_by_type);
-    EXPECT_EQ(counted.report->tets, expected.tets);
-    EXPECT_EQ(counted.report->inverted_tets, expected.inverted_tets);
-    EXPECT_EQ(counted.report->unused_points, expected.unused_points);
-    EXPECT_EQ(counted.report->lower, expected.lower);
-    EXPECT_EQ(counted.report->upper, expected.upper);
-    const core::CellReader sample = core::CellReader::open({all.grid.points, counted.read.grid.cells, {}, {}}).value(),
-                           cells = core::CellReader::open(all.grid).value();
-    ASSERT_EQ(counted.sampled.size(), sample.count());
-    for (std::size_t i = 0; i < sample.count(); ++i) {
-        const std::uint64_t cell = counted.sampled[i];
-        ASSERT_EQ(sample.type(i), cells.type(cell));
-        for (std::uint64_t k = 0; k < cells.corners(cell); ++k)
-            ASSERT_EQ(sample.corner(sample.first(i) + k), cells.corner(cells.first(cell) + k)) << cell;
-    }
-}
-
 TEST(ActiveCellsOfPieces, AreNotCountedBesideFlatOnesWithValues) {
     const test::TemporaryFolder folder;
     const auto piece = [](const std::string& cells, const std::string& offsets, const std::string& types,
@@ -362,7 +330,8 @@ TEST(ActiveCellsOfPieces, AreCountedAsTheyGoBy) {
             expect_counted(write_pieces(folder, cut, number_cells), true);
             expect_counted(in_one_file(folder, cut.pieces), true);
             expect_counted(as_blocks(folder, cut.pieces), true);
-            expect_counted(write_pieces(folder, {.shape = shape, .ids = ids, .more = 9, .marked = true}), false);
+            expect_counted(write_pieces(folder, {.shape = shape, .ids = ids, .more = 9, .marked = true}, number_cells),
+                           true);
             expect_counted(write_pieces(folder, {.shape = shape, .ids = ids, .more = 9}), false);
         }
 }

@@ -243,11 +243,21 @@ void ActivePass::pass(std::uint64_t first_cell, std::uint64_t cells, const Index
 void ActivePass::send(std::uint64_t first_cell, std::span<const std::uint8_t> types,
                       std::span<const std::int32_t> corners) const {
     const Array numbers(ScalarType::int32, corners.data(), corners.size(), 1, nullptr);
-    target_.taker->take(target_.first + first_cell, target_.typed ? types : types.first(0), numbers);
+    target_.taker->take(number_of(first_cell), target_.typed ? types : types.first(0), numbers);
+}
+
+/// Of a cell that is kept, in the joined grid.
+std::uint64_t ActivePass::number_of(std::uint64_t cell) const {
+    if (target_.kept_before.empty()) return target_.first + cell;
+    const std::uint64_t block = cell / block_of_kept;
+    const auto begin = piece_.left_out.begin();
+    return target_.first + target_.kept_before[block] +
+           static_cast<std::uint64_t>(std::count(begin + static_cast<std::ptrdiff_t>(block * block_of_kept),
+                                                 begin + static_cast<std::ptrdiff_t>(cell), std::uint8_t{0}));
 }
 
 SharedCells::Cell ActivePass::shared_cell(std::uint64_t cell, std::span<const std::int32_t> corners) const {
-    SharedCells::Cell shared{{}, {}, places_.type(cell), target_.piece, cell, target_.first + cell};
+    SharedCells::Cell shared{{}, {}, places_.type(cell), target_.piece, cell, number_of(cell)};
     shared.corners.fill(-1);
     std::ranges::copy(corners, shared.corners.begin());
     shared.ascending = shared.corners;

@@ -75,7 +75,11 @@ public:
         std::uint64_t points = 0;       ///< of the piece
         SharedCells* shared = nullptr;  ///< has those instead of the taker that `repeated` marks
         std::span<const std::uint8_t> repeated{};
+        /// How many cells before each block_of_kept are kept: left-out cells have no numbers then. Empty: they have.
+        std::span<const std::uint64_t> kept_before{};
     };
+
+    static constexpr std::uint64_t block_of_kept = 4096;
 
     static constexpr std::uint64_t max_points = std::uint64_t{1} << 30; ///< of the joined grid
 
@@ -103,6 +107,7 @@ private:
     template <class Index>
     void mark(std::uint64_t cell, std::span<const Index> corners);
     void see(std::span<const std::uint64_t> points);
+    std::uint64_t number_of(std::uint64_t cell) const;
     bool is_left_out(std::uint64_t cell) const { return !piece_.left_out.empty() && piece_.left_out[cell] != 0; }
     void send(std::uint64_t first_cell, std::span<const std::uint8_t> types,
               std::span<const std::int32_t> corners) const;

@@ -126,7 +126,8 @@ private:
             if (counted_ && !may_be_counted(piece, options_)) return false;
             if (!piece.unread || !check_shape(points_as_piece(piece))) return false;
             if (!counted_ && !piece.grid.cell_fields.empty()) return false;
-            if (!piece.left_out.empty() && (numbers_cells() || piece.left_out.size() != piece.cell_count()))
+            if (!piece.left_out.empty() &&
+                ((!counted_ && numbers_cells()) || piece.left_out.size() != piece.cell_count()))
                 return false;
             const CellPlaces& places = piece.unread->places();
             typed_ = typed_ || !places.are_uniform() || (type && *type != places.type(0));
@@ -141,7 +142,7 @@ private:
 
     /// What the cells go by for; null where all are needed.
     std::unique_ptr<CellTaker> make_taker(const Grid& grid) const {
-        if (counted_) return CellCounter::make(grid.points, type_, all_cells());
+        if (counted_) return CellCounter::make(grid.points, type_, kept_cells());
         auto filter = active_filter(grid, type_, options_);
         if (!filter) return nullptr;
         auto taker = std::make_unique<ActiveTaker>(*std::move(filter));
@@ -156,20 +157,15 @@ private:
         if (!counted_) return with_cells(static_cast<ActiveTaker&>(taker).filter(), std::move(result), pass_again);
         SurveyedGrid counted;
         if (!static_cast<CellCounter&>(taker).finish(counted, progress_)) return std::optional<ReadResult>();
-        std::vector<std::uint64_t> kept = cell_counts();
-        auto fields = join_cell_fields(all_.pieces, first_cells(), kept, all_cells(), result, progress_);
+        std::vector<std::uint64_t> kept;
+        for (const Piece& piece : all_.pieces) kept.push_back(kept_cells_of(piece));
+        auto fields = join_cell_fields(all_.pieces, first_cells(), kept, kept_cells(), result, progress_);
         if (!fields) return fields.error();
         result.grid.cell_fields = *std::move(fields);
         result.grid.cells = std::move(counted.read.grid.cells);
         counted_->report = std::move(counted.report);
         counted_->sampled = std::move(counted.sampled);
         return std::optional(std::move(result));
-    }
-
-    std::uint64_t all_cells() const {
-        std::uint64_t count = 0;
-        for (const Piece& piece : all_.pieces) count += piece.cell_count();
-        return count;
     }
 
     static Piece points_as_piece(const Piece& piece) {
@@ -379,11 +375,12 @@ private:
         return {};
     }
 
-    /// By piece: the number of its first cell, such that the first cell that stays has number 0.
+    /// By piece: the number of its first cell, such that the first cell that stays has number 0. Where cells are counted,
+    /// those that are left out have none.
     std::vector<std::uint64_t> first_cells() const {
         std::vector<std::uint64_t> first(all_.size());
         std::uint64_t next = 0, origin = 0;
-        bool found = false;
+        bool found = counted_ != nullptr;
         for (const std::size_t p : all_.order_of_file()) {
             const Piece& piece = all_.pieces[p];
             first[p] = next;
@@ -392,18 +389,37 @@ private:
                 found = piece.left_out.empty() || stays != piece.left_out.end();
                 origin = next + static_cast<std::uint64_t>(stays - piece.left_out.begin());
             }
-            next += piece.cell_count();
+            next += counted_ ? kept_cells_of(piece) : piece.cell_count();
         }
         for (std::uint64_t& number : first) number -= origin; // wraps for cells that are left out
         return first;
     }
 
+    static std::uint64_t kept_cells_of(const Piece& piece) {
+        return piece.cell_count() - (piece.left_out.size() -
+                                     static_cast<std::uint64_t>(std::ranges::count(piece.left_out, std::uint8_t{0})));
+    }
     std::uint64_t kept_cells() const {
         std::uint64_t count = 0;
-        for (const Piece& piece : all_.pieces)
-            count += piece.cell_count() - static_cast<std::uint64_t>(std::ranges::count_if(
-                                              piece.left_out, [](std::uint8_t out) { return out != 0; }));
+        for (const Piece& piece : all_.pieces) count += kept_cells_of(piece);
         return count;
+    }
+
+    /// By piece with left-out cells, where cells are counted: as ActivePass::Target::kept_before.
+    void count_kept() {
+        kept_before_.resize(all_.size());
+        for (std::size_t p = 0; counted_ && p < all_.size(); ++p) {
+            const std::vector<std::uint8_t>& out = all_.pieces[p].left_out;
+            std::uint64_t sum = 0;
+            kept_before_[p].clear();
+            for (std::size_t begin = 0; begin < out.size(); begin += ActivePass::block_of_kept) {
+                kept_before_[p].push_back(sum);
+                const std::size_t end = std::min<std::size_t>(begin + ActivePass::block_of_kept, out.size());
+                sum += static_cast<std::uint64_t>(std::count(out.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                             out.begin() + static_cast<std::ptrdiff_t>(end),
+                                                             std::uint8_t{0}));
+            }
+        }
     }
 
     std::vector<std::uint64_t> cell_counts() const {
@@ -412,14 +428,16 @@ private:
         return counts;
     }
 
-    std::vector<ActivePass::Target> targets_for(CellTaker& taker) const {
+    std::vector<ActivePass::Target> targets_for(CellTaker& taker) {
         std::vector<ActivePass::Target> targets(all_.size());
+        count_kept();
         const std::vector<std::uint64_t> first = first_cells();
         std::uint64_t place = 0;
         for (std::size_t p = 0; p < all_.size(); ++p) {
             targets[p] = {&taker, typed_, first[p], static_cast<std::uint32_t>(p)};
             targets[p].place = std::exchange(place, place + all_.pieces[p].cell_count());
             targets[p].points = points_[p];
+            targets[p].kept_before = kept_before_[p];
         }
         return targets;
     }
@@ -463,6 +481,7 @@ private:
     bool typed_ = false;           ///< not all cells are of one type
     std::optional<CellType> type_; ///< of all
     std::vector<std::uint64_t> points_; ///< of each piece
+    std::vector<std::vector<std::uint64_t>> kept_before_;
     std::vector<PointUse> used_;   ///< of the joined points, where their bounds are asked for
     std::atomic<bool> needs_all_ = false;
 };

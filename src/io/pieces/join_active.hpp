@@ -25,7 +25,7 @@ namespace isotet::io {
 Result<std::optional<ReadResult>> join_active(std::vector<Piece>& pieces, const ReadResult& begun,
                                               const ReadOptions& options, const Progress& progress, bool may_free);
 
-/// The same of counts and a sample of the cells (read_surveyed()), with cell fields of all. None may be left out.
+/// The same of counts and a sample of the cells (read_surveyed()), with cell fields of all that are kept.
 /// `counted`   gets report and numbers of the sample
 Result<std::optional<ReadResult>> join_counted(std::vector<Piece>& pieces, const ReadResult& begun,
                                                const ReadOptions& options, const Progress& progress,

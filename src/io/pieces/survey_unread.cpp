@@ -143,7 +143,7 @@ bool CellCounter::finish(SurveyedGrid& result, const Progress& progress) {
 }
 
 bool may_be_counted(const Piece& piece, const ReadOptions& options) {
-    if (!piece.unread || !piece.left_out.empty()) return false;
+    if (!piece.unread) return false;
     if (!options.displace.empty() || !options.blocks.empty() || options.patches) return false;
     Piece points;
     points.grid.points = piece.grid.points;
@@ -161,7 +161,7 @@ bool may_be_counted(const Piece& piece, const ReadOptions& options) {
 Result<std::optional<SurveyedGrid>> survey_unread(const Piece& piece, const ReadOptions& options,
                                                   const Progress& progress) {
     std::optional<SurveyedGrid> nothing;
-    if (piece.cell_count() == 0 || !may_be_counted(piece, options)) return nothing;
+    if (piece.cell_count() == 0 || !piece.left_out.empty() || !may_be_counted(piece, options)) return nothing;
     const CellPlaces& places = piece.unread->places();
     std::optional<CellType> type;
     if (places.are_uniform()) type = static_cast<CellType>(places.type(0));
