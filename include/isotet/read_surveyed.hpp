@@ -23,7 +23,8 @@ struct SurveyedGrid {
 };
 
 /// read(), but cells are counted as they go by, and only a sample of them is kept, where that can be done: linear cells in
-/// VTK's XML formats, none of them left out, or a binary legacy VTK file, points that do not coincide.
+/// VTK's XML formats, VTKHDF, Exodus or a binary legacy VTK file, of which no piece repeats some of another but as ghost cells,
+/// and points that do not coincide.
 ///
 /// Cost     of such a file memory for points and fields, a byte a point, and one pass over the cells
 /// Errors   as read()

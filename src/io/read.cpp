@@ -223,26 +223,21 @@ std::optional<Result<Loaded>> load_uncounted(const std::string& format, const st
 Result<ReadResult> read_surveyed(const GridReader& reader, const std::string& path, const ReadOptions& options,
                                  const Progress& progress, SurveyedGrid& counted) {
     if (options.active_cells) return reader.read(path, options, progress);
-    const ReadOptions counting = to_be_counted(options);
-    auto loaded = load_uncounted(reader.format.name, path, counting, progress);
-    if (!loaded) return reader.read(path, options, progress);
-    if (!*loaded) return loaded->error();
-    Loaded& file = **loaded;
-    file.info.format = reader.format.name;
-    if (file.pieces.size() == 1) {
-        auto surveyed = survey_unread(file.pieces[0], counting, progress);
-        if (!surveyed) return surveyed.error();
-        if (*surveyed) {
-            counted.report = std::move((*surveyed)->report);
-            counted.sampled = std::move((*surveyed)->sampled);
-            ReadResult result = std::move((*surveyed)->read);
-            result.info = std::move(file.info);
-            result.step = file.step;
-            result.notes = std::move(file.notes);
-            return result;
-        }
+    Result<SurveyedGrid> surveyed = Error{};
+    if (reader.survey) {
+        surveyed = reader.survey(path, options, progress);
+    } else {
+        const ReadOptions counting = to_be_counted(options);
+        auto loaded = load_uncounted(reader.format.name, path, counting, progress);
+        if (!loaded) return reader.read(path, options, progress);
+        if (!*loaded) return loaded->error();
+        (*loaded)->info.format = reader.format.name;
+        surveyed = join_counted(**std::move(loaded), counting, progress);
     }
-    return join_counted(std::move(file), counting, progress, counted);
+    if (!surveyed) return surveyed.error();
+    counted.report = std::move(surveyed->report);
+    counted.sampled = std::move(surveyed->sampled);
+    return std::move(surveyed->read);
 }
 
 /// How a reader is called: as itself, or for counting.

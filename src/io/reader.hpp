@@ -9,6 +9,7 @@
 
 #include <isotet/export.hpp>
 #include <isotet/read.hpp>
+#include <isotet/read_surveyed.hpp>
 
 namespace isotet::io {
 
@@ -20,6 +21,9 @@ struct GridReader {
     Result<FileInfo> (*inspect)(const std::string& path, const ReadOptions& options, const Progress& progress);
     /// Returns arrays as the file has them; isotet::read() checks shapes and index ranges afterwards.
     Result<ReadResult> (*read)(const std::string& path, const ReadOptions& options, const Progress& progress);
+    /// read_surveyed(); null: as read(), or by its pieces.
+    Result<SurveyedGrid> (*survey)(const std::string& path, const ReadOptions& options,
+                                   const Progress& progress) = nullptr;
 };
 
 /// Readers that are always there.

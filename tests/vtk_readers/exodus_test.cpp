@@ -12,6 +12,7 @@
 #include <isotet/read.hpp>
 #include <isotet/solid.hpp>
 
+#include "support/counted_cells.hpp"
 #include "support/places.hpp"
 #include "pieces/partition.hpp"
 #include "vtk_readers/active_cells.hpp"
@@ -242,6 +243,7 @@ TEST_P(ReadExodus, GivesTheSurfacesOfActiveCells) {
     write_mixed_parts(folder_, GetParam(), 1);
     std::filesystem::rename(folder_.file("mixed.e.1.0"), folder_.file("one.e"));
     expect_same_of_active_cells(folder_.file("one.e"), "y", {0.2});
+    expect_counted(folder_.file("one.e"), true);
 }
 
 TEST_P(ReadExodus, TellsOfActiveCellsWhatIsBroken) {

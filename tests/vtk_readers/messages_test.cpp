@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Requests and replies as bytes. The parent must survive every reply.
+#include <array>
 #include <random>
 
 #include <fcntl.h>
@@ -29,6 +30,22 @@ ReadResult made_result() {
     return result;
 }
 
+SurveyedGrid made_survey() {
+    SurveyedGrid surveyed;
+    surveyed.read = made_result();
+    surveyed.read.cells_in_file = 9;
+    surveyed.read.grid.cell_fields = {{"q", Array::own(std::vector<double>{1, 2, 3, 4, 5, 6, 7, 8, 9})}};
+    GridReport& report = surveyed.report.emplace();
+    report.points = 4;
+    report.cells = 9;
+    report.cells_by_type = {{10, 9}};
+    report.tets = 8;
+    report.unused_points = 2;
+    report.upper = {1, 2, 3};
+    surveyed.sampled = {8};
+    return surveyed;
+}
+
 class MemoryFile {
 public:
     explicit MemoryFile(const std::string& content = {})
@@ -50,7 +67,8 @@ std::size_t touch(const Reply& reply) {
     const auto add = [&](const Array& array) {
         for (std::size_t i = 0; i < array.bytes(); ++i) sum += static_cast<const unsigned char*>(array.data())[i];
     };
-    if (const auto* result = std::get_if<ReadResult>(&reply)) {
+    const auto* surveyed = std::get_if<SurveyedGrid>(&reply);
+    if (const auto* result = surveyed ? &surveyed->read : std::get_if<ReadResult>(&reply)) {
         for (const Array* array : {&result->grid.points, &result->grid.cells.connectivity, &result->grid.cells.offsets,
                                    &result->grid.cells.types})
             add(*array);
@@ -82,6 +100,40 @@ TEST(Reply, ComesBackAsItWasWritten) {
     EXPECT_EQ(result->info.regions[0].number, 10);
 }
 
+TEST(Reply, OfCountsComesBackAsItWasWritten) {
+    const MemoryFile file;
+    ASSERT_TRUE(write_reply(file.number, made_survey()));
+    const auto reply = map_reply(file.number);
+    ASSERT_TRUE(reply) << reply.error().message;
+    const auto* surveyed = std::get_if<SurveyedGrid>(&*reply);
+    ASSERT_TRUE(surveyed && surveyed->report);
+    const GridReport expected = *made_survey().report;
+    EXPECT_EQ(surveyed->report->points, expected.points);
+    EXPECT_EQ(surveyed->report->cells, expected.cells);
+    EXPECT_EQ(surveyed->report->cells_by_type, expected.cells_by_type);
+    EXPECT_EQ(surveyed->report->tets, expected.tets);
+    EXPECT_EQ(surveyed->report->unused_points, expected.unused_points);
+    EXPECT_EQ(surveyed->report->upper, expected.upper);
+    EXPECT_EQ(surveyed->sampled, std::vector<std::uint64_t>{8});
+    EXPECT_EQ(surveyed->read.grid.cell_fields.at(0).values.at(8), 9);
+}
+
+TEST(Reply, OfCountsWithASampleThatDoesNotFitIsAnError) {
+    const auto is_read = [](const SurveyedGrid& surveyed) {
+        const MemoryFile file;
+        return write_reply(file.number, surveyed) && map_reply(file.number);
+    };
+    SurveyedGrid survey = made_survey();
+    EXPECT_TRUE(is_read(survey));
+    survey.sampled = {9}; // is no cell
+    EXPECT_FALSE(is_read(survey));
+    survey.sampled = {7, 8}; // one cell is there
+    EXPECT_FALSE(is_read(survey));
+    survey = made_survey();
+    survey.read.cells_in_file = 10; // and 9 values
+    EXPECT_FALSE(is_read(survey));
+}
+
 TEST(Reply, CannotBeChangedOnceItIsMapped) {
     const MemoryFile file;
     ASSERT_TRUE(write_reply(file.number, made_result()));
@@ -110,13 +162,14 @@ TEST(Reply, IsAnErrorForEveryTruncation) {
 }
 
 TEST(Reply, WithAnyBytesChangedIsAnErrorOrStaysInsideTheMapping) {
-    const MemoryFile whole;
-    ASSERT_TRUE(write_reply(whole.number, made_result()));
-    const std::string content = whole.content();
+    const MemoryFile read, counted;
+    ASSERT_TRUE(write_reply(read.number, made_result()));
+    ASSERT_TRUE(write_reply(counted.number, made_survey()));
+    const std::array contents{read.content(), counted.content()};
     std::mt19937 random(1);
     std::size_t sum = 0, refused = 0;
     for (int trial = 0; trial < 20000; ++trial) {
-        std::string broken = content;
+        std::string broken = contents[trial % 2];
         for (unsigned changes = 1 + random() % 3; changes > 0; --changes) {
             const std::size_t at = random() % broken.size();
             broken[at] = random() % 2 ? static_cast<char>(random()) : static_cast<char>(random() % 2 ? 0xFF : 0x7F);

@@ -12,6 +12,7 @@
 #include <isotet/read.hpp>
 
 #include "pieces/partition.hpp"
+#include "support/counted_cells.hpp"
 #include "support/seeds.hpp"
 #include "support/temporary_folder.hpp"
 #include "vtk_readers/active_cells.hpp"
@@ -144,6 +145,7 @@ TEST(ActiveCellsOfVtkhdf, AreThoseOfAllPartitions) {
         for (const std::size_t step : {0, 1}) {
             options.step = step;
             expect_same_of_active_cells(path, "gyroid", {draw(random), draw(random)}, options);
+            expect_counted(path, !what.doubled, options);
         }
     }
 }

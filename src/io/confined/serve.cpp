@@ -28,6 +28,7 @@
 #include "io/confined/progress.hpp"
 #include "io/files/escape.hpp"
 #include "io/pieces/join.hpp"
+#include "io/pieces/survey_unread.hpp"
 #include "io/process/channel.hpp"
 #include "io/process/messages.hpp"
 
@@ -66,11 +67,12 @@ Result<Request> receive(int file) {
     return decode_request(bytes);
 }
 
-Reply do_task(const Request& request) {
+Reply do_task(Request request) {
     const Load load = loader_of(request.format);
     if (!load)
         return Error{ErrorCode::invalid_argument,
                      fmt::format("isotet-reader does not read format \"{}\"", escaped(request.format))};
+    if (request.task == Task::survey) request.options = to_be_counted(std::move(request.options));
     const bool inspecting = request.task == Task::inspect;
     const auto load_all = [&] {
         auto loaded = load(request.path, request.options, inspecting ? Depth::description : Depth::arrays);
@@ -82,6 +84,12 @@ Reply do_task(const Request& request) {
     if (inspecting) {
         auto loaded = load_all();
         return loaded ? Reply(std::move(loaded->info)) : Reply(loaded.error());
+    }
+    if (request.task == Task::survey) {
+        auto loaded = load_all();
+        if (!loaded) return loaded.error();
+        auto surveyed = join_counted(*std::move(loaded), request.options);
+        return surveyed ? Reply(std::move(*surveyed)) : Reply(surveyed.error());
     }
     auto joined = load_and_join(load_all, request.options);
     return joined ? Reply(std::move(*joined)) : Reply(joined.error());

@@ -12,6 +12,7 @@
 #include "io/pieces/joined_cells.hpp"
 #include "io/pieces/joined_fields.hpp"
 #include "io/pieces/ordered_pieces.hpp"
+#include "io/pieces/survey_unread.hpp"
 #include "io/pieces/uniform_cells.hpp"
 
 namespace isotet::io {
@@ -135,11 +136,23 @@ Result<ReadResult> join(Loaded loaded, const ReadOptions& options, const Progres
     return **std::move(joined);
 }
 
-Result<ReadResult> join_counted(Loaded loaded, const ReadOptions& options, const Progress& progress,
-                                SurveyedGrid& counted) {
+Result<SurveyedGrid> join_counted(Loaded loaded, const ReadOptions& options, const Progress& progress) {
+    if (loaded.pieces.size() == 1) {
+        auto surveyed = survey_unread(loaded.pieces[0], options, progress);
+        if (!surveyed) return surveyed.error();
+        if (*surveyed) {
+            ReadResult& read = (*surveyed)->read;
+            read.info = std::move(loaded.info);
+            read.step = loaded.step;
+            read.notes = std::move(loaded.notes);
+            return **std::move(surveyed);
+        }
+    }
+    SurveyedGrid counted;
     auto joined = join_loaded(std::move(loaded), options, progress, false, &counted);
     if (!joined) return joined.error();
-    return **std::move(joined);
+    counted.read = **std::move(joined);
+    return counted;
 }
 
 Result<ReadResult> load_and_join(const std::function<Result<Loaded>()>& load, const ReadOptions& options,

@@ -29,8 +29,7 @@ ISOTET_API Result<ReadResult> load_and_join(const std::function<Result<Loaded>()
                                             const Progress& progress = {});
 
 /// join() for read_surveyed(): with a sample of the cells where they can be counted as they go by.
-/// `counted`   then gets report and numbers of the sample
-Result<ReadResult> join_counted(Loaded loaded, const ReadOptions& options, const Progress& progress,
-                                SurveyedGrid& counted);
+/// `options`   of to_be_counted()
+ISOTET_API Result<SurveyedGrid> join_counted(Loaded loaded, const ReadOptions& options, const Progress& progress = {});
 
 } // namespace isotet::io

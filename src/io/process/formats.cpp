@@ -96,6 +96,9 @@ GridReader reader() {
     result.read = [](const std::string& path, const ReadOptions& options, const Progress& progress) {
         return ask<ReadResult>(Task::read, std::string(table()[row].name), path, options, progress);
     };
+    result.survey = [](const std::string& path, const ReadOptions& options, const Progress& progress) {
+        return ask<SurveyedGrid>(Task::survey, std::string(table()[row].name), path, options, progress);
+    };
     return result;
 }
 

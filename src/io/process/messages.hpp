@@ -10,11 +10,12 @@
 
 #include <isotet/export.hpp>
 #include <isotet/read.hpp>
+#include <isotet/read_surveyed.hpp>
 #include <isotet/result.hpp>
 
 namespace isotet::io::confined {
 
-enum class Task : std::uint8_t { inspect, read };
+enum class Task : std::uint8_t { inspect, read, survey };
 
 struct Request {
     Task task = Task::read;
@@ -24,7 +25,7 @@ struct Request {
     std::vector<std::string> readable; ///< folders and files that reading may look at, absolute
 };
 
-using Reply = std::variant<Error, FileInfo, ReadResult>;
+using Reply = std::variant<Error, FileInfo, ReadResult, SurveyedGrid>;
 
 std::string encode(const Request& request);
 

@@ -20,7 +20,7 @@
 namespace isotet::io::confined {
 namespace {
 
-constexpr std::uint64_t magic = 0x3530795f74657469; // "itet_y05", and the byte order with it
+constexpr std::uint64_t magic = 0x3630795f74657469; // "itet_y06", and the byte order with it
 constexpr std::uint64_t alignment = 64;
 
 struct Header {
@@ -146,6 +146,25 @@ public:
         });
         array(result.cell_numbers);
     }
+    void describe(const GridReport& report) {
+        [[maybe_unused]] const auto& [points, cells, by_type, left_out, tets, collapsed, negative, inverted, flat,
+                                      unused, lower, upper, repeated, duplicates, boundary, quads] = report;
+        for (const std::size_t count : {points, cells, left_out, tets, collapsed, negative, inverted, flat, unused})
+            out_.number<std::uint64_t>(count);
+        out_.list(by_type, [&](const auto& of_type) {
+            out_.number<std::uint8_t>(of_type.first);
+            out_.number<std::uint64_t>(of_type.second);
+        });
+        for (const double bound : lower) out_.number(bound);
+        for (const double bound : upper) out_.number(bound);
+    }
+    void describe(SurveyedGrid& surveyed) {
+        describe(surveyed.read);
+        out_.number<std::uint8_t>(surveyed.report.has_value());
+        if (surveyed.report) describe(*surveyed.report);
+        Array numbers = Array::own(std::move(surveyed.sampled));
+        array(numbers);
+    }
 
 private:
     Encoder& out_;
@@ -252,8 +271,44 @@ public:
         result.cell_numbers = array();
         return result;
     }
+    SurveyedGrid surveyed() {
+        SurveyedGrid surveyed;
+        surveyed.read = result();
+        if (in_.number<std::uint8_t>() != 0) surveyed.report = report();
+        const Array numbers = array();
+        if (!numbers.empty() && numbers.type() != ScalarType::uint64) return in_.fail(), SurveyedGrid();
+        if (!numbers.empty()) {
+            const auto sampled = numbers.as<std::uint64_t>();
+            surveyed.sampled.assign(sampled.begin(), sampled.end());
+        }
+        if (surveyed.report && !is_sample(surveyed)) in_.fail();
+        return surveyed;
+    }
 
 private:
+    GridReport report() {
+        GridReport report;
+        for (std::size_t* const count :
+             {&report.points, &report.cells, &report.cells_left_out, &report.tets, &report.collapsed_tets,
+              &report.negative_tets, &report.inverted_tets, &report.flat_tets, &report.unused_points})
+            *count = in_.number<std::uint64_t>();
+        in_.list([&] {
+            const auto type = in_.number<std::uint8_t>();
+            report.cells_by_type[type] = in_.number<std::uint64_t>();
+        });
+        for (double& bound : report.lower) bound = in_.number<double>();
+        for (double& bound : report.upper) bound = in_.number<double>();
+        return report;
+    }
+    /// Whether the numbers are of cells of the file, one for each cell that is there, and cell fields of all cells.
+    static bool is_sample(const SurveyedGrid& surveyed) {
+        const std::uint64_t cells = surveyed.read.cells_in_file.value_or(0);
+        return surveyed.sampled.size() == surveyed.read.grid.cells.count() &&
+               std::ranges::all_of(surveyed.sampled, [&](std::uint64_t number) { return number < cells; }) &&
+               std::ranges::all_of(surveyed.read.grid.cell_fields,
+                                   [&](const Field& field) { return field.values.tuples() == cells; });
+    }
+
     Decoder& in_;
     const std::byte* mapping_;
     std::uint64_t arrays_end_;
@@ -296,6 +351,7 @@ Result<Reply> map_reply(int descriptor) {
     case 0: reply = undescriber.error(); break;
     case 1: reply = undescriber.info(); break;
     case 2: reply = undescriber.result(); break;
+    case 3: reply = undescriber.surveyed(); break;
     default: in.fail();
     }
     if (!in.finished()) return incomplete;

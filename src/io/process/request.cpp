@@ -11,7 +11,7 @@
 namespace isotet::io::confined {
 namespace {
 
-constexpr std::uint32_t request_version = 0x69730007;
+constexpr std::uint32_t request_version = 0x69730008;
 
 using Names = std::optional<std::vector<std::string>>;
 
@@ -119,7 +119,7 @@ Result<Request> decode_request(std::string_view bytes) {
     Decoder in(bytes);
     const bool known = in.number<std::uint32_t>() == request_version;
     Request request;
-    request.task = in.enumerator(Task::read);
+    request.task = in.enumerator(Task::survey);
     request.format = in.text();
     request.path = in.text();
     ReadOptions& options = request.options;

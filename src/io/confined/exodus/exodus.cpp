@@ -9,6 +9,7 @@
 
 #include "io/reader.hpp"
 #include "io/pieces/block_choice.hpp"
+#include "io/pieces/survey_unread.hpp"
 #include "io/files/escape.hpp"
 #include "io/confined/exodus/exodus_cells.hpp"
 #include "io/confined/exodus/exodus_file.hpp"
@@ -235,9 +236,9 @@ Result<void> leave_out_others(const ExodusFile& file, const std::vector<bool>& c
 /// Whether active cells may do.
 bool may_be_left(const ExodusFile& file, const ReadOptions& options) {
     return options.active_cells && options.blocks.empty() && !options.patches &&
-           std::ranges::none_of(file.cell_variables(), [&](const std::string& name) {
-               return !file.times().empty() && wanted(options, Association::cell, name);
-           });
+           (are_counted(options) || std::ranges::none_of(file.cell_variables(), [&](const std::string& name) {
+                return !file.times().empty() && wanted(options, Association::cell, name);
+            }));
 }
 
 struct PartRead {

@@ -17,6 +17,7 @@
 #include "io/confined/hdf5/hdf5_cells.hpp"
 #include "io/files/escape.hpp"
 #include "io/pieces/shared_faces.hpp"
+#include "io/pieces/survey_unread.hpp"
 #include "io/vtk_xml/columns.hpp"
 
 namespace isotet::io::confined {
@@ -256,7 +257,7 @@ Result<bool> HdfGrid::are_offsets_told(const HdfPartition& part, const CellPlace
 bool HdfGrid::may_be_left(const HdfPartition& part, const ReadOptions& options, const HdfCells& cells,
                           const Piece& piece) const {
     const auto shape = rows_.shape(group_ + "Connectivity");
-    return options.active_cells && piece.grid.cell_fields.empty() && cells.places &&
+    return options.active_cells && (are_counted(options) || piece.grid.cell_fields.empty()) && cells.places &&
            cells.places->corners() == part.corners && shape && shape->columns == 1 && !is_floating(shape->type) &&
            size_of(shape->type) >= 4 && part.first_corner <= shape->rows &&
            part.corners <= shape->rows - part.first_corner;
