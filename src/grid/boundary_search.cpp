@@ -35,7 +35,8 @@ std::uint64_t share_of_memory() {
 
 } // namespace
 
-BoundarySearch::BoundarySearch(const Array& points) : sums_(points, false), most_kept_(share_of_memory()) {
+BoundarySearch::BoundarySearch(const Array& points)
+    : wide_(points.tuples() > std::uint64_t{1} << 32), sums_(points, false), most_kept_(share_of_memory()) {
     block_.points = points;
     points_are_sound_ = all_points_are_sound(block_);
 }
@@ -98,53 +99,79 @@ bool BoundarySearch::is_kept(const CellReader& cells, std::size_t cell, std::spa
     return any != 0 && is_contoured(cells.type(cell));
 }
 
+template <class Index, class Number>
+void BoundarySearch::keep_cells(const CellReader& cells, const Index* corners, std::size_t begin, std::size_t end,
+                                std::vector<Number>& kept, std::vector<std::uint8_t>& types) {
+    const auto corners_of_cell = [&](std::size_t cell) {
+        return std::span(corners + cells.first(cell), cells.corners(cell));
+    };
+    std::vector<std::size_t> found;
+    std::size_t count = 0;
+    for (std::size_t cell = begin; cell < end; ++cell) {
+        const std::span<const Index> own = corners_of_cell(cell);
+        if (!is_kept(cells, cell, own)) continue;
+        found.push_back(cell);
+        count += own.size();
+    }
+    kept.reserve(count);
+    for (const std::size_t cell : found)
+        for (const Index corner : corners_of_cell(cell)) kept.push_back(static_cast<Number>(widened(corner)));
+    if (cells.bare_tets()) return;
+    types.reserve(found.size());
+    for (const std::size_t cell : found) types.push_back(cells.type(cell));
+}
+
 void BoundarySearch::keep(std::uint64_t first, const CellReader& cells, std::size_t begin, std::size_t end) {
     if (!has_kept_all()) return;
-    Run run{first, {}, {}};
-    cells.connectivity().visit([&]<class Index>(const Index* corners) {
-        for (std::size_t cell = begin; cell < end; ++cell) {
-            const std::span<const Index> own(corners + cells.first(cell), cells.corners(cell));
-            if (!is_kept(cells, cell, own)) continue;
-            for (const Index corner : own) run.corners.push_back(widened(corner));
-            run.types.push_back(cells.type(cell));
-        }
+    Run run{first, {}, {}, {}};
+    cells.connectivity().visit([&](const auto* corners) {
+        if (wide_) keep_cells(cells, corners, begin, end, run.wide, run.types);
+        else keep_cells(cells, corners, begin, end, run.narrow, run.types);
     });
-    if (run.types.empty()) return;
-    const std::uint64_t bytes = run.corners.capacity() * sizeof(std::uint64_t) + run.types.capacity();
+    if (run.corners() == 0) return;
     const std::lock_guard lock(mutex_);
-    kept_bytes_ += bytes;
+    kept_bytes_ += run.bytes();
     if (has_kept_all()) runs_.push_back(std::move(run));
     else runs_ = {};
 }
 
-/// Ordered types are among them, so that each has its own.
+/// Types are ordered ones, too, so that cells of several have one each.
 Cells BoundarySearch::join_runs() {
     std::ranges::sort(runs_, {}, &Run::first);
     std::vector<std::size_t> corners{0}, cells{0};
     for (const Run& run : runs_) {
-        corners.push_back(corners.back() + run.corners.size());
-        cells.push_back(cells.back() + run.types.size());
+        corners.push_back(corners.back() + run.corners());
+        cells.push_back(cells.back() + run.cells());
     }
     Cells joined;
+    const bool typed = std::ranges::any_of(runs_, [](const Run& run) { return !run.types.empty(); });
     const auto join = [&]<class Index>(Buffer<Index> connectivity) {
-        Buffer<std::uint8_t> types(cells.back());
-        Buffer<std::uint64_t> offsets(cells.back() + 1);
-        offsets[cells.back()] = corners.back();
+        Buffer<std::uint8_t> types(typed ? cells.back() : 0);
+        Buffer<std::uint64_t> offsets(typed ? cells.back() + 1 : 0);
+        if (typed) offsets[cells.back()] = corners.back();
         parallel_each(runs_.size(), 1, [&](std::size_t i) {
-            std::ranges::transform(runs_[i].corners, connectivity.data() + corners[i],
-                                   [](std::uint64_t point) { return static_cast<Index>(point); });
-            std::ranges::copy(runs_[i].types, types.data() + cells[i]);
+            const auto copy = [&](const auto& from) {
+                std::ranges::transform(from, connectivity.data() + corners[i],
+                                       [](auto point) { return static_cast<Index>(point); });
+            };
+            const Run run = std::exchange(runs_[i], {});
+            copy(run.narrow);
+            copy(run.wide);
             std::uint64_t next = corners[i];
-            for (std::size_t k = 0; k < runs_[i].types.size(); ++k) {
+            for (std::size_t k = 0; typed && k < run.cells(); ++k) {
+                const std::uint8_t type =
+                    run.types.empty() ? static_cast<std::uint8_t>(CellType::tetrahedron) : run.types[k];
+                types[cells[i] + k] = type;
                 offsets[cells[i] + k] = next;
-                next += static_cast<std::uint64_t>(corners_of(runs_[i].types[k]));
+                next += static_cast<std::uint64_t>(corners_of(type));
             }
-            runs_[i] = {};
         });
         joined.connectivity = std::move(connectivity).to_array();
+        if (!typed) return;
         joined.types = std::move(types).to_array();
         joined.offsets = std::move(offsets).to_array();
     };
+    joined.uniform_type = CellType::tetrahedron;
     if (block_.points.tuples() <= std::uint64_t{1} << 31) join(Buffer<std::int32_t>(corners.back()));
     else join(Buffer<std::int64_t>(corners.back()));
     runs_ = {};
@@ -167,7 +194,7 @@ Result<FoundBoundary> BoundarySearch::finish(const Progress& progress) && {
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "finding the boundary was cancelled"};
     FoundBoundary found;
     found.cells = join_runs();
-    if (found.cells.types.empty()) {
+    if (found.cells.connectivity.empty()) {
         found.surface = surface_of(block_.points, {});
         return found;
     }

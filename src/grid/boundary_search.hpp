@@ -71,17 +71,28 @@ private:
     /// Kept cells of a block.
     struct Run {
         std::uint64_t first;
-        std::vector<std::uint64_t> corners;
-        std::vector<std::uint8_t> types;
+        std::vector<std::uint32_t> narrow; ///< corners, where point numbers have 32 bits
+        std::vector<std::uint64_t> wide;   ///< else
+        std::vector<std::uint8_t> types;   ///< empty: tetrahedra
+
+        std::size_t corners() const { return narrow.size() + wide.size(); }
+        std::size_t cells() const { return types.empty() ? corners() / 4 : types.size(); }
+        std::size_t bytes() const {
+            return sizeof narrow[0] * narrow.size() + sizeof wide[0] * wide.size() + types.size();
+        }
     };
 
     template <class Index>
     bool is_kept(const CellReader& cells, std::size_t cell, std::span<const Index> corners);
+    template <class Index, class Number>
+    void keep_cells(const CellReader& cells, const Index* corners, std::size_t begin, std::size_t end,
+                    std::vector<Number>& kept, std::vector<std::uint8_t>& types);
     Cells join_runs();
     Result<Surface> find(const Grid& grid, const CellReader& cells, const Progress& progress);
 
     Grid block_; ///< points alone
     bool points_are_sound_ = false;
+    bool wide_; ///< point numbers
     std::atomic<bool> broken_{false};
     CellSums sums_;
     Buffer<std::uint8_t> doubted_; ///< by point
