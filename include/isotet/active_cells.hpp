@@ -13,6 +13,7 @@
 #include <isotet/grid.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
+#include <isotet/surface.hpp>
 
 namespace isotet {
 
@@ -115,5 +116,15 @@ private:
     explicit CellsAround(std::unique_ptr<Data> data);
     std::unique_ptr<Data> data_;
 };
+
+/// Whether points hang on cells at the boundary of a grid, or faces there lie on smaller ones that do not cover them
+/// (HangingReport): the grid that is drawn is another one then.
+///
+/// `around`     all points, and at least the cells with a point that a triangle of the boundary has as its lowest one
+/// `boundary`   boundary_of() the whole grid
+///
+/// Cost     a pass over the cells, 9 bytes a point, 150 for each face of the boundary
+/// Errors   invalid_argument: the boundary is not one of these points; invalid_data as survey(); out_of_memory; cancelled
+ISOTET_API Result<bool> has_hanging_points(const Grid& around, const Surface& boundary, const Run& run = {});
 
 } // namespace isotet

@@ -323,6 +323,55 @@ TEST(CellsAround, FindNothingInHollowGridsWithoutLevels) {
     expect_nothing(boxes({{{0, 0, 0}, 1, {12, 8, 8}}}, layers), 4);
 }
 
+/// As close_hanging_points() tells of all cells, from those at the boundary, too.
+void expect_found_at_boundary(const Grid& grid) {
+    const HangingReport report = closed(grid).report;
+    const bool hang = report.points > 0 || report.open_faces > 0;
+    const Surface boundary = boundary_of(grid).value();
+    EXPECT_EQ(has_hanging_points(grid, boundary).value(), hang);
+    std::vector<std::uint8_t> at_boundary(grid.points.tuples());
+    for (const std::int64_t point : boundary.edge_ends.as<std::int64_t>())
+        at_boundary[static_cast<std::size_t>(point)] = 1;
+    const std::size_t corners = grid.cells.connectivity.tuples() / grid.cells.count();
+    Grid around = grid;
+    std::vector<std::int64_t> kept;
+    for (std::size_t cell = 0; cell < grid.cells.count(); ++cell) {
+        std::vector<std::int64_t> own;
+        for (std::size_t k = 0; k < corners; ++k)
+            own.push_back(static_cast<std::int64_t>(grid.cells.connectivity.at(corners * cell + k)));
+        if (std::ranges::any_of(own,
+                                [&](std::int64_t point) { return at_boundary[static_cast<std::size_t>(point)] != 0; }))
+            kept.insert(kept.end(), own.begin(), own.end());
+    }
+    EXPECT_LE(kept.size(), grid.cells.connectivity.tuples());
+    around.cells.connectivity = Array::own(std::move(kept));
+    EXPECT_EQ(has_hanging_points(around, boundary).value(), hang);
+}
+
+TEST(HasHangingPoints, TellsByCellsAtTheBoundaryWhatAllCellsTell) {
+    for (const Way& way : {Way([](Place p) { return p; }), Way(turned), Way(bent)}) {
+        for (int count = 2; count <= 5; ++count) expect_found_at_boundary(boxes(coarse_beside(count), way));
+        expect_found_at_boundary(boxes({{{0, 0, 0}, 0.25, {8, 8, 8}}}, way));
+        expect_found_at_boundary(boxes({{{0, 0, 0}, 1, {4, 2, 4}}, {{0, 2, 0}, 1, {2, 2, 4}}}, way));
+        expect_found_at_boundary(boxes({{{0, 0, 0}, 1, {4, 2, 4}}, {{0, 2, 0}, 0.5, {8, 3, 7}}}, way));
+        expect_found_at_boundary(boxes({{{0, 0, 0}, 3, {1, 2, 2}}, {{3, 0, 0}, 2, {1, 3, 3}}}, way)); // stays open
+    }
+    for (const char* shape : {"kuhn", "shuffled", "perturbed"}) {
+        SCOPED_TRACE(shape);
+        Grid grid = make_grid({.shape = shape, .side = 6}).value();
+        grid.cells.types = grid.cells.offsets = Array();
+        grid.cells.uniform_type = CellType::tetrahedron;
+        expect_found_at_boundary(grid);
+    }
+}
+
+TEST(HasHangingPoints, RefusesTheBoundaryOfAnotherGrid) {
+    const Grid grid = boxes(coarse_beside(2));
+    const Surface other = boundary_of(boxes({{{0, 0, 0}, 0.25, {8, 8, 8}}})).value();
+    EXPECT_EQ(has_hanging_points(grid, other).error().code, ErrorCode::invalid_argument);
+    EXPECT_EQ(has_hanging_points(grid, {}).error().code, ErrorCode::invalid_argument);
+}
+
 TEST(CloseHangingPoints, GivesAnEdgeThePointsOfAllFacesAroundIt) {
     const Grid grid = boxes({{{0, 0, 0}, 6, {1, 1, 1}},
                              {{6, 0, 0}, 3, {2, 2, 2}},
