@@ -1,6 +1,8 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -60,6 +62,16 @@ struct DrawnGrid {
     bool joined = false; ///< whether points were joined
 };
 ISOTET_API Result<DrawnGrid> grid_with_joined_points(const Grid& grid, const Run& run = {});
+
+/// The boundary of a grid of which only active cells are kept (ReadActiveCells::boundary).
+///
+/// Guarantees   the surface is that of boundary_of() the whole grid
+struct StreamedBoundary {
+    bool of_steps = false; ///< set before reading: the next step takes it over if it has the same cells and points
+    bool is_there = false; ///< set by reading; false: all cells were read
+    Surface surface = {};
+    std::array<std::uint64_t, 2> print = {}; ///< fingerprint of those cells and points, with `of_steps`
+};
 
 /// Finds boundaries, and gives the last one again for a grid with the same cells and points, as time steps mostly have.
 ///

@@ -157,10 +157,11 @@ struct IsosurfaceOptions {
     bool split_cells = false;                 ///< as PackOptions::split_cells
     std::optional<RefineOptions> refine = {}; ///< as ContourOptions::refine; a device takes cells split at their nodes
     /// Set where the grid has only the cells that an ActiveCellFilter kept for the first isovalues that are shown:
-    /// gives it with all. Neither boundary nor slices are drawn then, and all is as large as the bounds say.
+    /// gives it with all. Then no slices are drawn, of boundaries only `boundary`, and all is as large as it or the bounds.
     std::function<Result<Grid>(const Run& run)> all_cells = {};
     std::vector<double> expected_isovalues = {}; ///< these
     Box bounds = {};                             ///< of the points that any cell has; with `packed`, too
+    std::optional<Surface> boundary = {};        ///< of all cells, where it is known
     /// In place of `grid` and `field`. The CPU extracts; there are no solids, and cells colour isosurfaces and slices
     /// only, of a grid that was packed with source cells.
     std::optional<PackedScene> packed = {};

@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,6 +19,8 @@
 #include <isotet/surface.hpp>
 
 namespace isotet {
+
+struct StreamedBoundary; // boundary.hpp
 
 /// A file format that isotet reads or writes.
 struct Format {
@@ -83,6 +86,10 @@ struct ReadActiveCells {
     DirectOptions options; ///< of the extraction; the point fields that are read count as carried ones
     std::optional<SliceShape> shape = {}; ///< slice_field() in place of `field`
     bool bounds = false;                  ///< ReadResult::bounds are wanted
+    /// Gets the boundary, if it is wanted. Of formats but VTK's XML ones and binary legacy VTK all cells are read then.
+    std::shared_ptr<StreamedBoundary> boundary = {};
+    /// Where there are no isovalues: gives them once the values of all points are known. As `boundary`.
+    std::function<Result<std::vector<double>>(const PointField& field)> choose = {};
 };
 
 /// Where inspect() leaves a file that it had to read whole, so that read() need not read it again. Nothing of it is left

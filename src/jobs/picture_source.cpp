@@ -74,6 +74,7 @@ struct PictureSource::Contents {
     std::uint64_t cells = 0; ///< of the grid in the file
     Box bounds = {};         ///< where `all_cells` is set: the grid has only the active cells; or of `packed`
     std::function<Result<Grid>(const Run& run)> all_cells = {};
+    std::optional<Surface> boundary = {};   ///< then, where it is drawn
     std::optional<PackedScene> packed = {}; ///< in place of the grid; `field` has values where they were needed
 };
 
@@ -348,20 +349,27 @@ Result<void> PictureSource::take_first_view(bool& contours, std::string& field, 
 /// The cells that do where nothing but a few isosurfaces is drawn; nothing where all are needed.
 std::optional<ReadActiveCells> PictureSource::active_cells(const Contents& contents, const FoundField& field,
                                                            const FieldsToRead& read) const {
-    const bool draws_more = contents.model || job_.boundary != 0.0 || !job_.slices.empty() || draws_volume(job_) ||
-                            job_.solid || job_.method.draw;
-    const bool decided_later = job_.isovalues.empty() || !job_.shares.empty() || !job_.sweep.empty();
+    const bool draws_more =
+        contents.model || !job_.slices.empty() || draws_volume(job_) || job_.solid || job_.method.draw;
+    const bool chosen = job_.isovalues.empty(); // by the values
+    const bool decided_later = !job_.shares.empty() || !job_.sweep.empty() || (chosen && steps_.size() > 1);
     ContourOptions options;
     options.method = job_.method.extract;
-    options.surfaces = job_.isovalues.size();
     options.expected_isovalues = job_.isovalues;
+    if (chosen) options.expected_isovalues.resize(job_.levels > 0 ? job_.levels : default_levels);
+    options.surfaces = options.expected_isovalues.size();
     options.normals = job_.shade_by == ShadeBy::gradient ? Normals::gradient : Normals::none;
-    if (draws_more || decided_later || job_.isovalues.size() > ActiveCellFilter::max_isovalues ||
+    if (needs_all_cells_ || draws_more || decided_later || options.surfaces > ActiveCellFilter::max_isovalues ||
         !job_.stretch.empty() || may_stretch() || field.neighbours || !read.cell->empty() ||
         !Contour::can_do_with_active_cells(options))
         return std::nullopt;
     ReadActiveCells active{field.name, job_.isovalues, {}};
-    active.bounds = true;
+    active.bounds = job_.boundary == 0.0;
+    if (!active.bounds) active.boundary = streamed_boundary_;
+    if (chosen)
+        active.choose = [this](const PointField& values) {
+            return choose_levels(job_, values, typical_range(values.values));
+        };
     return active;
 }
 
@@ -374,13 +382,19 @@ Result<void> PictureSource::read_cells(const FieldsToRead& fields, std::size_t s
         if (!some) return some.error();
         contents.grid = std::move(some->grid);
         contents.cells = some->cells_in_file.value_or(contents.grid.cells.count());
-        if (!some->cells_in_file) return {};
+        needs_all_cells_ = !some->cells_in_file; // of the next steps, too, most likely
+        if (needs_all_cells_) return {};
         const auto all = [source = *source_, fields, step](const Run& run) {
             return source.read_the_rest(fields, step, run);
         };
-        if (some->bounds) {
-            const auto& [x, y, z, far_x, far_y, far_z] = *some->bounds;
-            contents.bounds = {{x, y, z}, {far_x, far_y, far_z}};
+        const bool has_boundary = active->boundary && active->boundary->is_there;
+        if (some->bounds || has_boundary) {
+            if (has_boundary) {
+                contents.boundary = active->boundary->surface;
+            } else {
+                const auto& [x, y, z, far_x, far_y, far_z] = *some->bounds;
+                contents.bounds = {{x, y, z}, {far_x, far_y, far_z}};
+            }
             contents.all_cells = all;
             caller.detail(fmt::format("{} of {} cells were kept: the isovalues meet no others",
                                       contents.grid.cells.count(), contents.cells));
@@ -510,6 +524,8 @@ Result<PictureSource::Contents> PictureSource::read_contents(std::size_t step, b
     if (fraction_ > 0)
         return refusal("`interpolate` is {}, but what is drawn needs all of the packed file, or is not packed",
                        job_.interpolate);
+    if (!streamed_boundary_) streamed_boundary_ = std::make_shared<StreamedBoundary>();
+    streamed_boundary_->of_steps = steps_.size() > 1;
     const bool some_may_do = contours && on_cpu && !colored.neighbours; // else colours follow from all cells around
     const auto active = some_may_do ? active_cells(contents, contoured, read) : std::nullopt;
     if (auto done = read_cells(read, step, active, contents, caller); !done) return done.error();
@@ -659,6 +675,7 @@ Result<DrawInput> PictureSource::read(std::size_t which, const std::optional<Dev
     input.stretch = job_.stretch;
     options.all_cells = contents->all_cells;
     options.bounds = contents->bounds;
+    options.boundary = std::move(contents->boundary);
     options.packed = std::move(contents->packed);
     if (options.all_cells) options.expected_isovalues = input.isovalues;
     if (!job_.stretch.empty()) options.grid.points = stretched(options.grid.points, factors_of(job_.stretch));

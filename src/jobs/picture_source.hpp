@@ -90,6 +90,8 @@ private:
     std::optional<OpacityCurve> volume_opacity_; ///< of the first step
 
     std::shared_ptr<KnownBoundary> boundary_; ///< of the last of several steps
+    std::shared_ptr<StreamedBoundary> streamed_boundary_; ///< where not all cells are read
+    bool needs_all_cells_ = false;                        ///< a step that was to do with some needed all
     FieldsToRead last_read_;                  ///< of the last step
     std::future<Result<Grid>> ahead_; ///< the next step, with the same fields
     std::size_t ahead_step_ = 0;

@@ -29,7 +29,10 @@ Result<IsosurfaceScene> IsosurfaceScene::create(const std::optional<Device>& dev
                                                                  : "a volume, and surfaces that stay on a device");
         options.grid.point_fields = options.grid.cell_fields = {};
         data->bounds = options.bounds;
-        if (!options.all_cells)
+        if (options.boundary && data->look.boundary_opacity > 0) {
+            data->take_boundary(*std::move(options.boundary));
+            if (auto added = data->add_boundary(); !added) return added.error();
+        } else if (!options.all_cells)
             if (auto looked = data->look_around(options.grid, options.known_boundary.get(), run); !looked)
                 return looked.error();
         const IsosurfaceOptions tets{{}, {}, 1, {}, ExtractOn::cpu, options.draw, options.index, options.picture};

@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Of grids in pieces active cells only are read: the files are those of all cells.
+#include <isotet/jobs/draw_files.hpp>
 #include <isotet/jobs/extract_files.hpp>
 
 #include <algorithm>
@@ -333,6 +334,34 @@ TEST(ActiveCellsOfPieces, AreCountedAsTheyGoBy) {
             expect_counted(write_pieces(folder, {.shape = shape, .ids = ids, .more = 9, .marked = true}, number_cells),
                            true);
             expect_counted(write_pieces(folder, {.shape = shape, .ids = ids, .more = 9}), false);
+        }
+}
+
+TEST(ActiveCellsOfPieces, AreEnoughForPicturesWithTheBoundary) {
+    const test::TemporaryFolder folder;
+    for (const char* shape : {"shuffled", "mixed"})
+        for (const bool marked : {false, true}) {
+            SCOPED_TRACE(testing::Message() << shape << (marked ? ", marked" : ""));
+            DrawJob job;
+            job.grid.file = write_pieces(folder, {.shape = shape, .more = marked ? 7U : 0U, .marked = marked});
+            job.out = folder.file("a.png");
+            job.picture.width = 120;
+            job.picture.height = 90;
+            job.plain = true;
+            job.field.name = "gyroid";
+            job.isovalues = {0.1};
+            Listener listener, other;
+            ASSERT_TRUE(draw_files(job, listener));
+            const std::string drawn = test::content_of(job.out);
+            job.stretch = {1, 1, 1}; // needs all cells
+            ASSERT_TRUE(draw_files(job, other));
+            EXPECT_TRUE(drawn == test::content_of(job.out));
+            EXPECT_EQ(listener.noted, other.noted);
+            EXPECT_EQ(std::ranges::any_of(listener.details,
+                                          [](const std::string& detail) {
+                                              return detail.find("cells were kept") != std::string::npos;
+                                          }),
+                      !marked);
         }
 }
 

@@ -95,6 +95,75 @@ TEST(DrawFiles, DrawsThePictureOfAllCellsFromActiveOnes) {
     }
 }
 
+bool some_cells_were_kept(const Listener& listener) {
+    return std::ranges::any_of(listener.details, [](const std::string& detail) {
+        return detail.find("cells were kept") != std::string::npos;
+    });
+}
+
+/// Axes that are stretched by 1 need all cells.
+DrawJob job_of_all_cells(DrawJob job, const std::string& out) {
+    job.stretch = {1, 1, 1};
+    job.out = out;
+    return job;
+}
+
+TEST(DrawFiles, FindsTheBoundaryOfCellsThatAreNotRead) {
+    const test::TemporaryFolder folder;
+    for (const char* shape : {"kuhn", "shuffled", "layer", "hex", "mixed", "wedge", "octree", "octree-tets"})
+        for (const char* ending : {".vtu", ".vtk"}) {
+            SCOPED_TRACE(testing::Message() << shape << ending);
+            const std::string file = folder.file("grid") + ending;
+            ASSERT_TRUE(
+                write_grid(make_grid({.shape = shape, .side = 9, .fields = {"gyroid", "plane"}}).value(), file));
+            DrawJob job = small_picture(file, folder.file("a.png"));
+            job.field.name = "gyroid";
+            if (std::string_view(ending) == ".vtu") job.isovalues = {0.1, -0.3}; // else by the values
+            job.color_by = "plane";
+            Listener active, all;
+            const DrawReport report = draw_files(job, active).value();
+            const DrawReport expected = draw_files(job_of_all_cells(job, folder.file("b.png")), all).value();
+            const bool hangs = std::string_view(shape).starts_with("octree");
+            const bool several_types = std::string_view(shape) == "mixed" && std::string_view(ending) == ".vtk";
+            EXPECT_EQ(some_cells_were_kept(active), !hangs && !several_types);
+            EXPECT_FALSE(some_cells_were_kept(all));
+            EXPECT_EQ(report.input.cells, expected.input.cells);
+            EXPECT_EQ(report.input.scene->report().boundary_faces, expected.input.scene->report().boundary_faces);
+            EXPECT_EQ(report.pictures.camera, expected.pictures.camera);
+            EXPECT_EQ(active.noted, all.noted);
+            EXPECT_TRUE(test::content_of(folder.file("a.png")) == test::content_of(folder.file("b.png")));
+        }
+}
+
+TEST(DrawFiles, KnowsTheBoundaryOfTheStepBefore) {
+    const test::TemporaryFolder folder;
+    const auto made = [](const char* shape, std::uint64_t side) {
+        return make_grid({.shape = shape, .side = side, .fields = {"gyroid"}}).value();
+    };
+    const std::vector<Grid> grids{made("kuhn", 8),   made("kuhn", 8),      made("kuhn", 9), made("octree", 6),
+                                  made("octree", 6), made("perturbed", 8), made("kuhn", 8)};
+    std::string entries;
+    for (std::size_t step = 0; step < grids.size(); ++step) {
+        const std::string name = "step" + std::to_string(step) + ".vtu";
+        ASSERT_TRUE(write_grid(grids[step], folder.file(name)));
+        entries += "<DataSet timestep=\"" + std::to_string(step) + "\" file=\"" + name + "\"/>";
+    }
+    const std::string file =
+        folder.write("series.pvd", "<VTKFile type=\"Collection\"><Collection>" + entries + "</Collection></VTKFile>");
+    DrawJob job = small_picture(file, folder.file("a{frame}.png"));
+    job.field.name = "gyroid";
+    job.isovalues = {0.1};
+    job.all_steps = true;
+    Listener active, all;
+    ASSERT_TRUE(draw_files(job, active));
+    ASSERT_TRUE(draw_files(job_of_all_cells(job, folder.file("b{frame}.png")), all));
+    EXPECT_TRUE(some_cells_were_kept(active));
+    for (std::size_t step = 0; step < grids.size(); ++step) {
+        const std::string number = std::to_string(step + 1) + ".png";
+        EXPECT_TRUE(test::content_of(folder.file("a" + number)) == test::content_of(folder.file("b" + number))) << step;
+    }
+}
+
 std::string packed_file(const test::TemporaryFolder& folder) {
     PackJob pack;
     pack.grid.file = "make:mixed:6:gyroid,plane";

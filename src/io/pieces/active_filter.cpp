@@ -1,6 +1,8 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "io/pieces/active_filter.hpp"
 
+#include <utility>
+
 #include <isotet/grid.hpp>
 
 namespace isotet::io {
@@ -10,14 +12,21 @@ Result<PointField> active_field(const Grid& grid, const ReadActiveCells& active)
 }
 
 std::optional<ActiveCellFilter> active_filter(const Grid& grid, std::optional<CellType> type,
-                                              const ReadOptions& options) {
+                                              const ReadOptions& options, std::vector<double>& isovalues) {
     if (!options.active_cells || !grid.cell_fields.empty() || !options.displace.empty()) return std::nullopt;
     if (may_have_coincident_points(grid.points)) return std::nullopt;
-    const auto field = active_field(grid, *options.active_cells);
+    const ReadActiveCells& active = *options.active_cells;
+    const auto field = active_field(grid, active);
     if (!field) return std::nullopt;
-    DirectOptions direct = options.active_cells->options;
+    DirectOptions direct = active.options;
     direct.extract.point_fields = grid.point_fields;
-    auto filter = ActiveCellFilter::create(grid.points, *field, options.active_cells->isovalues, type, direct);
+    isovalues = active.isovalues;
+    if (isovalues.empty() && active.choose) {
+        auto chosen = active.choose(*field);
+        if (!chosen) return std::nullopt;
+        isovalues = *std::move(chosen);
+    }
+    auto filter = ActiveCellFilter::create(grid.points, *field, isovalues, type, direct);
     if (!filter) return std::nullopt; // reading all cells tells what is wrong
     return *std::move(filter);
 }

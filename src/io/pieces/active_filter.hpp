@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include <isotet/active_cells.hpp>
 #include <isotet/read.hpp>
@@ -17,7 +18,8 @@ Result<PointField> active_field(const Grid& grid, const ReadActiveCells& active)
 ///
 /// `grid`   points and fields, without cells
 /// `type`   of all cells; nothing where they have types of their own
+/// `isovalues`   get those for which cells are kept
 std::optional<ActiveCellFilter> active_filter(const Grid& grid, std::optional<CellType> type,
-                                              const ReadOptions& options);
+                                              const ReadOptions& options, std::vector<double>& isovalues);
 
 } // namespace isotet::io

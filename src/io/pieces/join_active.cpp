@@ -18,6 +18,7 @@
 #include "io/files/first_error.hpp"
 #include "io/pieces/active_filter.hpp"
 #include "io/pieces/active_pass.hpp"
+#include "io/pieces/boundary_pass.hpp"
 #include "io/pieces/joined_fields.hpp"
 #include "io/pieces/ordered_pieces.hpp"
 #include "io/pieces/survey_unread.hpp"
@@ -60,16 +61,19 @@ public:
     explicit ActiveTaker(ActiveCellFilter filter) : filter_(std::move(filter)) {}
 
     void take(std::uint64_t first, std::span<const std::uint8_t> types, const Array& corners) override {
+        if (also_) also_->take(first, types, corners);
         if (!types.empty()) return filter_.add_cells(first, types, corners);
         filter_.add(first * corners_of_type_, corners);
     }
     void set_type(CellType type) { corners_of_type_ = core::fixed_corners_of(static_cast<std::uint8_t>(type)); }
+    void set_also(CellTaker& other) { also_ = &other; }
 
     ActiveCellFilter& filter() { return filter_; }
 
 private:
     ActiveCellFilter filter_;
     std::uint64_t corners_of_type_ = 0;
+    CellTaker* also_ = nullptr; ///< gets all cells, too
 };
 
 /// Hands on all cells.
@@ -123,6 +127,7 @@ private:
         std::optional<std::uint8_t> type;
         for (const Piece& piece : all_.pieces) {
             if (piece.cell_count() == 0) continue;
+            if (options_.active_cells->boundary && !piece.left_out.empty()) return false;
             if (counted_ && !may_be_counted(piece, options_)) return false;
             if (!piece.unread || !check_shape(points_as_piece(piece))) return false;
             if (!counted_ && !piece.grid.cell_fields.empty()) return false;
@@ -141,9 +146,9 @@ private:
     bool numbers_cells() const { return counted_ || options_.active_cells->options.extract.source_cells; }
 
     /// What the cells go by for; null where all are needed.
-    std::unique_ptr<CellTaker> make_taker(const Grid& grid) const {
+    std::unique_ptr<CellTaker> make_taker(const Grid& grid) {
         if (counted_) return CellCounter::make(grid.points, type_, kept_cells());
-        auto filter = active_filter(grid, type_, options_);
+        auto filter = active_filter(grid, type_, options_, isovalues_);
         if (!filter) return nullptr;
         auto taker = std::make_unique<ActiveTaker>(*std::move(filter));
         if (type_) taker->set_type(*type_);
@@ -183,20 +188,31 @@ private:
         ReadResult result = begun_;
         result.grid.points = piece.grid.points;
         result.grid.point_fields = piece.grid.point_fields;
-        auto filter = active_filter(result.grid, type_, options_);
+        auto filter = active_filter(result.grid, type_, options_, isovalues_);
         if (!filter) return std::optional<ReadResult>();
         WholeCells whole(places, [&](std::uint64_t first, std::uint64_t count, const Array& corners) {
             filter->add_cells(first, places.types(first, count), corners);
         });
         if (options_.active_cells->bounds) used_.assign(piece.grid.points.tuples(), PointUse::none);
+        std::optional<BoundaryPass> boundary;
+        if (options_.active_cells->boundary) {
+            if (auto enough = BoundaryPass::check_memory(piece.grid.points); !enough) return enough.error();
+            boundary.emplace(*options_.active_cells->boundary, piece.grid.points, *piece.unread);
+        }
         const auto done = piece.unread->each_block([&](std::uint64_t first, const Array& corners) {
             if (progress_.cancelled()) return;
             type_ ? filter->add(first, corners) : whole.add(first, corners);
             if (!used_.empty()) mark_corners(corners);
+            if (boundary) boundary->add(first, corners);
         });
         if (!done) return done.error();
         if (progress_.cancelled()) return Error{ErrorCode::cancelled, "looking for active cells was cancelled"};
         whole.finish();
+        if (boundary) {
+            const auto found = boundary->finish(progress_);
+            if (!found) return found.error();
+            if (!*found) return std::optional<ReadResult>();
+        }
         result.cells_in_file = places.cells();
         return with_cells(*filter, std::move(result), [&](CellsAround& around) -> Result<void> {
             WholeCells cells(places, [&](std::uint64_t first, std::uint64_t count, const Array& corners) {
@@ -236,7 +252,7 @@ private:
         const ReadActiveCells& asked = *options_.active_cells;
         const Result<PointField> field = active_field(active, asked);
         if (!field) return field.error();
-        Result<CellsAround> around = CellsAround::of(active, *field, asked.isovalues, run);
+        Result<CellsAround> around = CellsAround::of(active, *field, isovalues_, run);
         if (!around) return around.error();
         if (around->are_needed())
             if (Result<void> done = pass_again(*around); !done) return done.error();
@@ -301,6 +317,14 @@ private:
         if (!taker) needs_all_ = true;
         if (needs_all_) return std::optional<ReadResult>();
         if (options_.active_cells->bounds) used_.assign(joined->numbers.count, PointUse::none);
+        std::optional<core::BoundarySearch> search;
+        std::optional<BoundaryTaker> for_boundary;
+        if (options_.active_cells->boundary) {
+            if (auto enough = BoundaryPass::check_memory(result.grid.points); !enough) return enough.error();
+            search.emplace(result.grid.points);
+            for_boundary.emplace(*search, type_, BoundaryTaker::Round::add);
+            static_cast<ActiveTaker&>(*taker).set_also(*for_boundary);
+        }
         std::vector<ActivePass::Target> targets = targets_for(*taker);
         SharedHashes hashes;
         for (ActivePass::Target& target : targets) target.hashes = &hashes;
@@ -310,7 +334,7 @@ private:
         if (!marks) return marks.error();
         RepeatedCells repeated;
         if (!marks->empty()) { // cells were kept that may be those of other pieces
-            if (counted_) needs_all_ = true;
+            if (counted_ || search) needs_all_ = true;
             if (needs_all_) return std::optional<ReadResult>();
             taker.reset(); // its memory is needed again
             taker = make_taker(result.grid);
@@ -324,6 +348,11 @@ private:
             if (repeated.left_out > 0 && numbers_cells()) needs_all_ = true;
             if (needs_all_) return std::optional<ReadResult>();
         }
+        if (search) {
+            const auto found = find_boundary(joined->numbers, result.grid.points, *search);
+            if (!found) return found.error();
+            if (!*found) return std::optional<ReadResult>();
+        }
         note_repeated(repeated, all_.pieces, result.notes);
         result.cells_in_file = kept_cells() - repeated.left_out;
         auto found = finished(*taker, std::move(result), [&](CellsAround& around) {
@@ -333,6 +362,19 @@ private:
         });
         if (found && *found) std::ranges::move(of_fields, std::back_inserter((*found)->notes));
         return found;
+    }
+
+    /// False where all cells are needed.
+    Result<bool> find_boundary(const PointNumbers& numbers, const Array& points, core::BoundarySearch& search) {
+        BoundaryTaker keeper(search, type_, BoundaryTaker::Round::keep);
+        needs_all_ = !search.look();
+        bool again = false;
+        if (!needs_all_)
+            if (auto done = pass_all(numbers, targets_for(keeper), again); !done) return done.error();
+        if (needs_all_) return false;
+        StreamedBoundary& boundary = *options_.active_cells->boundary;
+        boundary.print = {};
+        return take_boundary(std::move(search), points, boundary, progress_);
     }
 
     /// Whether pieces have the same points, so that only their cells could tell which comes first.
@@ -346,7 +388,7 @@ private:
 
     /// Of the joined points, their fields and what is noted of each.
     std::uint64_t bytes_of_points() const {
-        const std::uint64_t of_filter = options_.active_cells->isovalues.size() > 1 ? 3 : 1;
+        const std::uint64_t of_filter = options_.active_cells->isovalues.size() == 1 ? 1 : 3;
         std::uint64_t bytes = 0;
         for (const Piece& piece : all_.pieces) {
             bytes += piece.grid.points.bytes() + piece.grid.points.tuples() * of_filter;
@@ -482,6 +524,7 @@ private:
     std::optional<CellType> type_; ///< of all
     std::vector<std::uint64_t> points_; ///< of each piece
     std::vector<std::vector<std::uint64_t>> kept_before_;
+    std::vector<double> isovalues_; ///< for which cells are kept
     std::vector<PointUse> used_;   ///< of the joined points, where their bounds are asked for
     std::atomic<bool> needs_all_ = false;
 };
@@ -501,6 +544,8 @@ Result<std::optional<ReadResult>> join_active(std::vector<Piece>& pieces, const 
                                               const ReadOptions& options, const Progress& progress, bool may_free) {
     ActiveJoin joining(pieces, begun, options, progress, may_free);
     auto result = joining.join();
+    const auto& boundary = options.active_cells->boundary;
+    if (boundary && !(result && *result)) boundary->is_there = false;
     pieces = std::move(joining).pieces();
     return result;
 }

@@ -22,7 +22,7 @@ inline ReadOptions to_be_counted(ReadOptions options) {
     return options;
 }
 inline bool are_counted(const ReadOptions& options) {
-    return options.active_cells && options.active_cells->isovalues.empty();
+    return options.active_cells && options.active_cells->isovalues.empty() && !options.active_cells->choose;
 }
 
 /// Counts cells that go by, and keeps a sample of them.

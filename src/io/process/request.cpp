@@ -66,7 +66,7 @@ std::optional<SliceShape> decode_shape(Decoder& in) {
 
 /// Of the options of extraction those that tell which cells are active.
 void encode_active(Encoder& out, const std::optional<ReadActiveCells>& active) {
-    const bool can_be_told = active && !active->options.extract.source_cells &&
+    const bool can_be_told = active && !active->boundary && !active->choose && !active->options.extract.source_cells &&
                              active->options.extract.cell_fields.empty() &&
                              active->options.extract.normals != Normals::gradient && !active->options.frame;
     out.number<std::uint8_t>(can_be_told);
