@@ -9,7 +9,7 @@
 #include "api/vertex_normals.hpp"
 #include "base/buffer.hpp"
 #include "base/errors.hpp"
-#include "base/parallel.hpp"
+#include "base/workers.hpp"
 #include "numbers/storage.hpp"
 #include "packed/packed.hpp"
 
@@ -32,7 +32,7 @@ template <class To, class Real, class F>
 Array restored(std::span<const Real> stored, std::size_t components, const F& f) {
     constexpr std::size_t values_per_task = 1 << 14;
     core::Buffer<To> out(stored.size());
-    core::parallel_each(stored.size(), values_per_task, [&](std::size_t i) {
+    core::worker_each(stored.size(), values_per_task, [&](std::size_t i) {
         out[i] = static_cast<To>(f(static_cast<double>(stored[i]), i % components));
     });
     return std::move(out).to_array(components);

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/parallel.hpp"
+#include "base/workers.hpp"
 #include "base/prefetch.hpp"
 #include "numbers/storage.hpp"
 #include "packed/residency.hpp"
@@ -40,7 +40,7 @@ std::vector<std::uint32_t> clusters_around(const core::Packed& packed, Real stor
     constexpr std::size_t at_once = 1 << 14;
     std::vector<std::vector<std::uint32_t>> parts((packed.clusters() + at_once - 1) / at_once);
     // Which clusters may hold it is as good as random: they are listed without a branch each.
-    core::parallel_each(parts.size(), 1, [&](std::size_t part) {
+    core::worker_each(parts.size(), 1, [&](std::size_t part) {
         std::vector<std::uint32_t> hits(at_once + 1);
         std::size_t count = 0;
         for (std::size_t c = at_once * part, end = std::min(packed.clusters(), c + at_once); c < end; ++c) {
@@ -62,7 +62,7 @@ Result<void> for_points_with(const core::Packed& packed, Real stored, const Prog
     const Real* const all_values = packed.as<Real>().values.data();
     const auto values_of = [&](std::size_t i) { return all_values + packed.headers[hits[i]].first_point; };
     const auto look = [&](std::size_t first, std::size_t last) -> Result<void> {
-        core::parallel_ranges(last - first, 128, [&](std::size_t from, std::size_t to) {
+        core::worker_ranges(last - first, 128, [&](std::size_t from, std::size_t to) {
             constexpr std::size_t ahead = 8;
             for (std::size_t i = first + from; i < first + to; ++i) {
                 if (i + ahead < first + to)

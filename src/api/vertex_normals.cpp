@@ -12,7 +12,7 @@
 
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
-#include "base/parallel.hpp"
+#include "base/workers.hpp"
 #include "numbers/storage.hpp"
 
 namespace isotet {
@@ -52,7 +52,7 @@ template <class Positions, class Corners>
 Array normals_of(const Positions& positions, const Corners& corners, const TrianglesAround& around,
                  std::size_t vertices) {
     std::vector<float> normals(3 * vertices);
-    core::parallel_each(vertices, std::size_t{1} << 12, [&](std::size_t vertex) {
+    core::worker_each(vertices, std::size_t{1} << 12, [&](std::size_t vertex) {
         double sum[3] = {0, 0, 0};
         for (std::uint64_t k = around.begins[vertex]; k < around.begins[vertex + 1]; ++k) {
             const std::size_t first = std::size_t{3} * around.triangles[k];

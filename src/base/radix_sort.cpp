@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/parallel.hpp"
+#include "base/workers.hpp"
 
 namespace isotet::core {
 
@@ -83,7 +83,7 @@ void sort_serial(const Part& part) {
 
 std::uint64_t differing_bits(const Part& part) {
     std::atomic<std::uint64_t> differing{0};
-    parallel_ranges(part.size, 1 << 16, [&](std::size_t begin, std::size_t end) {
+    worker_ranges(part.size, 1 << 16, [&](std::size_t begin, std::size_t end) {
         std::uint64_t bits = 0;
         for (std::size_t i = begin; i < end; ++i) bits |= part.here[i].key ^ part.here[0].key;
         differing.fetch_or(bits, std::memory_order_relaxed);
@@ -100,7 +100,7 @@ std::vector<std::size_t> split_parallel(const Part& part, Digit digit) {
         return part.size / chunks * chunk + std::min(chunk, part.size % chunks);
     };
     std::vector<std::size_t> next(chunks * digits, 0);
-    parallel_each(chunks, 1, [&](std::size_t chunk) {
+    worker_each(chunks, 1, [&](std::size_t chunk) {
         std::size_t* const count = next.data() + chunk * digits;
         for (std::size_t i = chunk_begin(chunk); i < chunk_begin(chunk + 1); ++i) ++count[digit.of(part.here[i])];
     });
@@ -111,7 +111,7 @@ std::vector<std::size_t> split_parallel(const Part& part, Digit digit) {
         for (std::size_t chunk = 0; chunk < chunks; ++chunk) sum += std::exchange(next[chunk * digits + d], sum);
     }
     begin[digits] = sum;
-    parallel_each(chunks, 1, [&](std::size_t chunk) {
+    worker_each(chunks, 1, [&](std::size_t chunk) {
         std::size_t* const to = next.data() + chunk * digits;
         for (std::size_t i = chunk_begin(chunk); i < chunk_begin(chunk + 1); ++i)
             part.there[to[digit.of(part.here[i])]++] = part.here[i];
@@ -128,7 +128,7 @@ void sort_parallel(const Part& part) {
     }
     const std::vector<std::size_t> begin = split_parallel(part, digit_for(differing, max_digit_bits));
     const auto part_of = [&](std::size_t d) { return part.moved(begin[d], begin[d + 1] - begin[d]); };
-    parallel_each(begin.size() - 1, 1, [&](std::size_t d) {
+    worker_each(begin.size() - 1, 1, [&](std::size_t d) {
         if (part_of(d).size <= parallel_limit) sort_serial(part_of(d));
     });
     for (std::size_t d = 0; d + 1 < begin.size(); ++d)

@@ -5,7 +5,7 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
-#include "base/parallel.hpp"
+#include "base/workers.hpp"
 #include "cpu/at_level.hpp"
 #include "cpu/batches.hpp"
 #include "cpu/cutting.hpp"
@@ -121,7 +121,7 @@ Result<Counted<Real>> count(const Packed& packed, const Wanted<Real>& wanted, co
     tbb::enumerable_thread_specific<std::shared_ptr<Memory>> scratch(
         [] { return std::shared_ptr<Memory>(new Memory); });
     const auto count_batch = [&](std::size_t first, std::size_t last) {
-        core::parallel_ranges(last - first, 16, [&](std::size_t begin, std::size_t end) {
+        core::worker_ranges(last - first, 16, [&](std::size_t begin, std::size_t end) {
             if (progress.cancelled()) return;
             Memory& memory = *scratch.local();
             for (std::size_t place = first + begin; place < first + end; ++place) counter.count_place(place, memory);
@@ -152,7 +152,7 @@ template Result<Counted<double>> count<double>(const Packed&, const Wanted<doubl
 
 std::vector<Total> scan(const Selection& selection, const Masks& masks, std::size_t isovalues,
                         core::Buffer<Start>& starts) {
-    core::parallel_ranges(selection.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
+    core::worker_ranges(selection.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
         at_level([&] { // which has an instruction that counts bits
             for (std::size_t place = begin; place < end; ++place) starts[place].vertex += masks.vertices(place);
         });

@@ -6,7 +6,7 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
-#include "base/parallel.hpp"
+#include "base/workers.hpp"
 #include "cpu/batches.hpp"
 #include "cpu/field_writer.hpp"
 #include "cpu/level.hpp"
@@ -303,7 +303,7 @@ Result<void> emit(const Packed& packed, const Wanted<Real>& wanted, const Select
     tbb::enumerable_thread_specific<std::unique_ptr<Scratch<Real>>> scratch(
         [] { return std::unique_ptr<Scratch<Real>>(new Scratch<Real>); });
     const auto emit_batch = [&](std::size_t first, std::size_t last) {
-        core::parallel_ranges(last - first, 64, [&](std::size_t begin, std::size_t end) {
+        core::worker_ranges(last - first, 64, [&](std::size_t begin, std::size_t end) {
             if (progress.cancelled()) return;
             emit_places(emitter, first + begin, first + end, *scratch.local());
         });

@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 
-#include "base/parallel.hpp"
+#include "base/workers.hpp"
 #include "base/prefetch.hpp"
 #include "cpu/steps.hpp"
 
@@ -70,7 +70,7 @@ Result<Selection> select(const Packed& packed, std::span<const core::StoredIsova
     const std::size_t tasks = (packed.clusters() + clusters_per_task - 1) / clusters_per_task;
     std::vector<Sums> before(tasks + 1);
     std::vector<std::vector<Hit>> hits(tasks);
-    core::parallel_each(tasks, 1, [&](std::size_t task) {
+    core::worker_each(tasks, 1, [&](std::size_t task) {
         Sums sums; // not in place: those of other tasks stand in the same line of the cache
         hits[task] = find_hits(packed, isovalues, task, sums);
         before[task + 1] = sums;
@@ -96,7 +96,7 @@ Result<Selection> select(const Packed& packed, std::span<const core::StoredIsova
     selection.first_word[all.places] = all.words;
     selection.tets = all.tets;
     selection.ahead_end = all.places;
-    core::parallel_each(tasks, 1, [&](std::size_t task) {
+    core::worker_each(tasks, 1, [&](std::size_t task) {
         Sums next = before[task];
         for (const Hit& hit : hits[task]) {
             selection.base[hit.cluster] = static_cast<std::uint32_t>(next.places - hit.first);
@@ -114,7 +114,7 @@ template Result<Selection> select<float>(const Packed&, std::span<const core::St
 template Result<Selection> select<double>(const Packed&, std::span<const core::StoredIsovalue<double>>);
 
 Masks::Masks(const Selection& selection) : selection_(&selection), words_(selection.first_word[selection.size()]) {
-    core::parallel_ranges(words_.size(), 1 << 15, [&](std::size_t begin, std::size_t end) {
+    core::worker_ranges(words_.size(), 1 << 15, [&](std::size_t begin, std::size_t end) {
         std::fill(words_.begin() + begin, words_.begin() + end, 0);
     });
 }

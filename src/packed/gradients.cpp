@@ -7,7 +7,7 @@
 #include "numbers/normal_code.hpp"
 #include "grid/orientation.hpp"
 #include "packed/set_field.hpp"
-#include "base/parallel.hpp"
+#include "base/workers.hpp"
 #include "numbers/storage.hpp"
 #include "packed/stored_cells.hpp"
 #include "numbers/sum_of_terms.hpp"
@@ -50,7 +50,7 @@ public:
 
     void run() {
         packed_.gradients = SharedBuffer<std::uint32_t>(packed_.points());
-        parallel_each(packed_.clusters(), 16, [&](std::size_t c) { one_cluster(c); });
+        worker_each(packed_.clusters(), 16, [&](std::size_t c) { one_cluster(c); });
     }
 
 private:

@@ -6,7 +6,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
-#include "base/parallel.hpp"
+#include "base/workers.hpp"
 #include "grid/grid_size.hpp"
 #include "grid/orientation.hpp"
 #include "numbers/bounds.hpp"
@@ -85,7 +85,7 @@ Result<void> store_positions(const Array& array, Packed& packed) {
     SharedBuffer<Real>& positions = packed.as<Real>().positions;
     positions = SharedBuffer<Real>(3 * packed.points());
     std::atomic<std::uint64_t> flushed{0}, coarse{0};
-    parallel_ranges(packed.points(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+    worker_ranges(packed.points(), 1 << 14, [&](std::size_t begin, std::size_t end) {
         constexpr std::size_t ahead = 16;
         std::uint64_t count = 0;
         for (std::size_t i = begin; i < end; ++i) {
@@ -100,7 +100,7 @@ Result<void> store_positions(const Array& array, Packed& packed) {
         flushed += count;
     });
     if (!unchanged)
-        parallel_each(packed.clusters(), 64, [&](std::size_t c) { coarse += is_coarse<Real>(points, packed, c); });
+        worker_each(packed.clusters(), 64, [&](std::size_t c) { coarse += is_coarse<Real>(points, packed, c); });
     packed.report.flushed_coordinates = flushed;
     packed.report.coarse_clusters = coarse;
     return {};

@@ -5,7 +5,7 @@
 #include <array>
 #include <limits>
 
-#include "base/parallel.hpp"
+#include "base/workers.hpp"
 #include "base/prefetch.hpp"
 #include "numbers/storage.hpp"
 #include "packed/group_ranges.hpp"
@@ -103,7 +103,7 @@ void store_ranges(Packed& packed, std::size_t cluster, const LocalPoints& points
 template <class Real>
 void store_ranges(Packed& packed, std::size_t first, std::size_t last, const Progress& progress) {
     const Real* const values = packed.as<Real>().values.data();
-    parallel_ranges(last - first, clusters_per_task, [&](std::size_t from, std::size_t to) {
+    worker_ranges(last - first, clusters_per_task, [&](std::size_t from, std::size_t to) {
         if (progress.cancelled()) return;
         const std::size_t begin = first + from, end = first + to;
         std::array<LocalPoints, 2> points; // of the cluster at hand and the next, in turn

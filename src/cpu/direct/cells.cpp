@@ -8,7 +8,7 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
-#include "base/parallel.hpp"
+#include "base/workers.hpp"
 #include "cpu/direct/side_sums.hpp"
 
 namespace isotet::cpu::direct {
@@ -261,7 +261,7 @@ CutCells<Point> cut_cells(CutContext& context, const Progress& progress) {
         if (!context.broken.load(std::memory_order_relaxed)) cutter.end();
     };
     for (std::size_t first = 0; first < chunks; first += chunks_per_report) {
-        core::parallel_each(std::min(chunks_per_report, chunks - first), 1,
+        core::worker_each(std::min(chunks_per_report, chunks - first), 1,
                             [&](std::size_t chunk) { pass_chunk(first + chunk); });
         if (progress.cancelled() || context.broken) break;
         progress("extract", static_cast<double>(first) / static_cast<double>(chunks));
@@ -275,7 +275,7 @@ template CutCells<std::uint32_t> cut_cells<std::uint32_t>(CutContext&, const Pro
 template CutCells<std::uint64_t> cut_cells<std::uint64_t>(CutContext&, const Progress&);
 
 void see_used_points(const CellReader& cells, bool split_cells, Sides& sides) {
-    core::parallel_each(cells.count(), cells_per_chunk, [&](std::size_t cell) {
+    core::worker_each(cells.count(), cells_per_chunk, [&](std::size_t cell) {
         if (split_cells || cells.only_tets()) {
             for (const core::Tet& tet : cells.tets(cell))
                 for (const std::uint64_t point : tet) sides.saw(point);
@@ -288,7 +288,7 @@ void see_used_points(const CellReader& cells, bool split_cells, Sides& sides) {
 
 std::uint64_t count_cut_tets(const CellReader& cells, const Sides& sides) {
     std::atomic<std::uint64_t> total{0};
-    core::parallel_ranges(cells.count(), cells_per_chunk, [&](std::size_t begin, std::size_t end) {
+    core::worker_ranges(cells.count(), cells_per_chunk, [&](std::size_t begin, std::size_t end) {
         std::uint64_t count = 0;
         for (std::size_t cell = begin; cell < end; ++cell)
             for (const core::Tet& tet : cells.tets(cell)) {

@@ -8,7 +8,7 @@
 #include <fmt/core.h>
 
 #include "base/memory.hpp"
-#include "base/parallel.hpp"
+#include "base/workers.hpp"
 #include "cpu/direct/emit.hpp"
 #include "cpu/direct/normals.hpp"
 #include "cpu/extract.hpp"
@@ -43,7 +43,7 @@ Progress part_of(const Progress& progress, double begin, double end) {
 
 bool any_unseen(Sides& sides) {
     std::atomic<bool> any{false};
-    core::parallel_ranges(sides.points(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+    core::worker_ranges(sides.points(), 1 << 16, [&](std::size_t begin, std::size_t end) {
         unsigned flags = 0;
         for (std::size_t point = begin; point < end; ++point) flags |= sides.flags()[point];
         if (flags & side::watched) any.store(true, std::memory_order_relaxed);

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "base/parallel.hpp"
+#include "base/workers.hpp"
 
 namespace isotet::cpu::direct {
 
@@ -42,7 +42,7 @@ void number_edges(const VertexSource<Real>& source, const Welded<Point>& welded,
                   Index* numbers, const Progress& progress) {
     constexpr std::uint64_t ahead =
         24; // edges: what is read while a higher end is waited for; lower ends follow each other
-    core::parallel_ranges(welded.first_edge.size() - 1, ranges_per_task, [&](std::size_t begin, std::size_t end) {
+    core::worker_ranges(welded.first_edge.size() - 1, ranges_per_task, [&](std::size_t begin, std::size_t end) {
         if (progress.cancelled()) return;
         std::uint64_t vertex = welded.first_vertex[begin];
         const FoundEdge<Point>* const edges = welded.edges.data();
@@ -60,7 +60,7 @@ void number_edges(const VertexSource<Real>& source, const Welded<Point>& welded,
 template <class Point, class Index>
 void emit_triangles(const CutCells<Point>& cut, const Index* numbers, Index* triangles, std::int64_t* source_cells,
                     const Progress& progress) {
-    core::parallel_each(cut.chunks.size() - 1, 1, [&](std::size_t c) {
+    core::worker_each(cut.chunks.size() - 1, 1, [&](std::size_t c) {
         if (progress.cancelled()) return;
         const Chunk<Point>& chunk = cut.chunks[c];
         const Index* const of_chunk = numbers + chunk.edges;

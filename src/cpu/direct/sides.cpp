@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "base/parallel.hpp"
+#include "base/workers.hpp"
 #include "cpu/at_level.hpp"
 #include "cpu/direct/points.hpp"
 
@@ -85,7 +85,7 @@ void watch_field(const Array& values, const StoredField& field, Sides& sides) {
     if (field.storage.unchanged && field.storage.scale == 1) return; // whatever the used points are
     const std::size_t components = values.components();
     values.visit([&](auto typed) {
-        core::parallel_each(values.tuples(), side_grain, [&](std::size_t point) {
+        core::worker_each(values.tuples(), side_grain, [&](std::size_t point) {
             bool deciding = false;
             for (std::size_t k = 0; k < components; ++k) {
                 const auto value = static_cast<double>(typed[point * components + k]);
@@ -102,7 +102,7 @@ void watch_field(const Array& values, const StoredField& field, Sides& sides) {
 template <class F>
 void add_flags(const Array& points, Sides& sides, const F& f) {
     points.visit([&](auto coordinates) {
-        core::parallel_each(points.tuples(), side_grain, [&](std::size_t point) {
+        core::worker_each(points.tuples(), side_grain, [&](std::size_t point) {
             const auto at = [&](std::size_t axis) { return static_cast<double>(coordinates[3 * point + axis]); };
             sides.flags()[point] |= f(core::Point{at(0), at(1), at(2)});
         });
@@ -120,7 +120,7 @@ SidesFound find_sides(const ops::DirectInput& input, const PointSurvey& survey, 
     std::atomic<bool> tied{false}, near{false};
     values.visit([&]<class T>(std::span<const T> typed) {
         const SideFinder<Real, T> finder(survey.field, stored, nearest_value(values, isovalue), ties, watch);
-        core::parallel_each(all.stretches.size(), 1, [&](std::size_t stretch) {
+        core::worker_each(all.stretches.size(), 1, [&](std::size_t stretch) {
             const std::size_t begin = stretch * side_grain, end = std::min(typed.size(), begin + side_grain);
             SidesFound found;
             at_level([&] { found = finder.find(typed.data() + begin, end - begin, sides.flags().data() + begin); });
@@ -173,7 +173,7 @@ void report_ties(const ops::DirectInput& input, const PointSurvey& survey, doubl
             }
             if (nearest && core::equals_exactly(typed[point], *nearest)) near.store(true, std::memory_order_relaxed);
         };
-        core::parallel_each(found.stretches.size(), 1, [&](std::size_t stretch) {
+        core::worker_each(found.stretches.size(), 1, [&](std::size_t stretch) {
             const std::size_t begin = stretch * side_grain, end = std::min(typed.size(), begin + side_grain);
             for (std::size_t point = begin; point < end && found.stretches[stretch]; ++point) look_at(point);
         });

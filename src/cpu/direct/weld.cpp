@@ -6,7 +6,7 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
-#include "base/parallel.hpp"
+#include "base/workers.hpp"
 
 namespace isotet::cpu::direct {
 
@@ -94,12 +94,12 @@ Welded<Point> weld(CutCells<Point>& cut, const Ranges& ranges) {
     Welded<Point> out;
     out.first_edge = place_ranges(cut, ranges.count);
     out.edges = core::Buffer<FoundEdge<Point>>(out.first_edge.back());
-    core::parallel_each(cut.cutters.size(), 1,
+    core::worker_each(cut.cutters.size(), 1,
                         [&](std::size_t cutter) { scatter(cut, cutter, ranges, out.edges.data()); });
 
     out.first_vertex.assign(ranges.count + 1, 0);
     tbb::enumerable_thread_specific<Scratch<Point>> scratch;
-    core::parallel_each(ranges.count, 1, [&](std::size_t range) {
+    core::worker_each(ranges.count, 1, [&](std::size_t range) {
         FoundEdge<Point>* const edges = out.edges.data() + out.first_edge[range];
         const auto count = static_cast<std::size_t>(out.first_edge[range + 1] - out.first_edge[range]);
         if (count == 0) return;

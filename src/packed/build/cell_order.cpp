@@ -12,6 +12,7 @@
 #include <fmt/core.h>
 
 #include "base/parallel.hpp"
+#include "base/workers.hpp"
 #include "base/prefetch.hpp"
 #include "grid/cell/native_cells.hpp"
 #include "packed/build/bucket_sorter.hpp"
@@ -34,7 +35,7 @@ Result<Ranks> rank_points(const PointReader& points, const Buffer<std::uint8_t>&
         return Error{ErrorCode::invalid_data,
                      fmt::format("the cells use {} points, but there can be {}", sorted.size(), limit - 1)};
     Ranks ranks{Buffer<std::uint64_t>(sorted.size()), Buffer<std::uint32_t>(used.size())};
-    parallel_ranges(sorted.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+    worker_ranges(sorted.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
         for (std::size_t rank = begin; rank < end; ++rank) {
             ranks.point_of[rank] = sorted[rank].number;
             ranks.rank_of[sorted[rank].number] = static_cast<std::uint32_t>(rank);
@@ -48,7 +49,7 @@ template <class Real>
 Array coordinates_by_rank(std::span<const Real> user, const Buffer<std::uint64_t>& point_of) {
     constexpr std::size_t ahead = 16;
     Buffer<Real> out(3 * point_of.size());
-    parallel_ranges(point_of.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+    worker_ranges(point_of.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
         for (std::size_t rank = begin; rank < end; ++rank) {
             prefetch(user.data() + 3 * point_of[std::min(rank + ahead, end - 1)]);
             std::copy_n(user.data() + 3 * point_of[rank], 3, out.data() + 3 * rank);
@@ -172,7 +173,7 @@ Result<CellOrder<Item>> sort_cells(const Grid& grid, const CellReader& cells, Ce
     const std::size_t writers = writers_for(cells.count());
     order.cells =
         RankedBuckets<Item>(order.point_of.size(), counts.stored, writers, keep_origins || !cells.only_tets());
-    parallel_each(writers, 1, [&](std::size_t w) {
+    worker_each(writers, 1, [&](std::size_t w) {
         typename RankedBuckets<Item>::Writer writer(order.cells, w);
         constexpr std::size_t cells_at_once = 1 << 14;
         const std::size_t last = cells.count() / writers * (w + 1) + std::min(w + 1, cells.count() % writers);
@@ -190,7 +191,7 @@ Result<CellOrder<Item>> sort_cells(const Grid& grid, const CellReader& cells, Ce
     {
         const Array coordinates = coordinates_by_rank(grid.points, order.point_of);
         const RankedPoints ranked{order.point_of.data(), PointReader(coordinates)};
-        parallel_each(sorted.size(), 1, [&](std::size_t bucket) {
+        worker_each(sorted.size(), 1, [&](std::size_t bucket) {
             if (!progress.cancelled()) sorted[bucket] = sort_bucket(ranked, cells, bucket, order.cells);
         });
     }

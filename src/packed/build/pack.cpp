@@ -11,6 +11,7 @@
 #include "base/carry_out.hpp"
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
+#include "base/workers.hpp"
 #include "grid/cell/native_cells.hpp"
 #include "grid/orientation.hpp"
 #include "grid/renumber.hpp"
@@ -84,7 +85,7 @@ void restore_point_ids(const Buffer<std::uint64_t>& original, bool keep_ranks, P
     if (keep_ranks) packed.point_ranks = SharedBuffer<std::uint64_t>(packed.points());
     const auto restore = [&](auto& ids) {
         using Id = std::remove_reference_t<decltype(ids[0])>;
-        parallel_each(ids.size(), 1 << 16, [&](std::size_t i) {
+        worker_each(ids.size(), 1 << 16, [&](std::size_t i) {
             if (keep_ranks) packed.point_ranks[i] = ids[i];
             ids[i] = static_cast<Id>(original[ids[i]]);
         });
@@ -165,7 +166,7 @@ Result<std::shared_ptr<const Packed>> pack(const Grid& grid, const PointField& f
 Result<void> check_moved_points(const Packed& packed, const Array& points) {
     const PointReader reader(points);
     std::atomic<std::uint64_t> outside{0}, turned{0};
-    parallel_each(packed.clusters(), 64, [&](std::size_t c) {
+    worker_each(packed.clusters(), 64, [&](std::size_t c) {
         std::uint64_t locals[max_cluster_points];
         Point positions[max_cluster_points];
         const std::size_t count = local_points(packed, c, locals);

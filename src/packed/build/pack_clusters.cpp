@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "base/parallel.hpp"
+#include "base/workers.hpp"
 #include "packed/build/growth.hpp"
 #include "packed/build/pack_draft.hpp"
 
@@ -101,7 +102,7 @@ Result<void> form_clusters(CellOrder<Item> order, std::uint64_t user_cells, Draf
     const std::size_t block_count = blocks_for(count);
     std::vector<BlockClusters> blocks(block_count);
     std::atomic<std::size_t> next_block{0}, finished{0};
-    parallel_each(blocks_at_once(count), 1, [&](std::size_t) {
+    worker_each(blocks_at_once(count), 1, [&](std::size_t) {
         for (std::size_t b = next_block++; b < block_count; b = next_block++) {
             if (progress.cancelled()) return;
             try {
@@ -111,7 +112,8 @@ Result<void> form_clusters(CellOrder<Item> order, std::uint64_t user_cells, Draf
                 next_block = block_count; // no thread begins another one
                 throw;
             }
-            progress("pack", 0.3 + 0.3 * static_cast<double>(++finished) / static_cast<double>(block_count));
+            const auto done = static_cast<double>(++finished);
+            if (!is_worker()) progress("pack", 0.3 + 0.3 * done / static_cast<double>(block_count));
         }
     });
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "packing was cancelled"};
@@ -144,7 +146,7 @@ Result<void> form_clusters(CellOrder<Item> order, std::uint64_t user_cells, Draf
     const bool wide_cells = user_cells > std::uint64_t{1} << 32;
     if (source_cells && wide_cells) packed.wide_cell_ids = SharedBuffer<std::uint64_t>(total.word);
     else if (source_cells) packed.cell_ids = SharedBuffer<std::uint32_t>(total.word);
-    parallel_each(block_count, 1, [&](std::size_t b) {
+    worker_each(block_count, 1, [&](std::size_t b) {
         const BlockClusters block = std::move(blocks[b]);
         std::vector<CellOrigin> origins;
         if (source_cells) {

@@ -3,7 +3,7 @@
 #include <atomic>
 #include <limits>
 
-#include "base/parallel.hpp"
+#include "base/workers.hpp"
 #include "packed/build/pack_draft.hpp"
 
 namespace isotet::core {
@@ -13,10 +13,10 @@ namespace {
 /// The lowest-numbered cluster that holds each point, by rank.
 Buffer<std::uint32_t> find_owners(const Draft& draft) {
     Buffer<std::uint32_t> owners(draft.point_of.size());
-    parallel_ranges(owners.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+    worker_ranges(owners.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
         std::fill(owners.begin() + begin, owners.begin() + end, std::numeric_limits<std::uint32_t>::max());
     });
-    parallel_each(draft.clusters(), clusters_per_task, [&](std::size_t c) {
+    worker_each(draft.clusters(), clusters_per_task, [&](std::size_t c) {
         for (std::size_t i = draft.first_local[c]; i < draft.first_local[c + 1]; ++i) {
             std::atomic_ref<std::uint32_t> owner(owners[draft.locals[i]]);
             std::uint32_t seen = owner.load(std::memory_order_relaxed);
@@ -35,7 +35,7 @@ void number_points(std::uint64_t user_points, Draft& draft) {
 
     // Own points of a cluster ascend by rank.
     Buffer<std::uint8_t> place(owners.size());
-    parallel_each(draft.clusters(), clusters_per_task, [&](std::size_t c) {
+    worker_each(draft.clusters(), clusters_per_task, [&](std::size_t c) {
         std::uint64_t own[max_cluster_points];
         std::size_t count = 0;
         for (std::size_t i = draft.first_local[c]; i < draft.first_local[c + 1]; ++i)
@@ -55,7 +55,7 @@ void number_points(std::uint64_t user_points, Draft& draft) {
     else packed.point_ids = SharedBuffer<std::uint32_t>(points);
 
     // Local points in packed order, and the cells' corners with them.
-    parallel_each(draft.clusters(), clusters_per_task, [&](std::size_t c) {
+    worker_each(draft.clusters(), clusters_per_task, [&](std::size_t c) {
         std::uint64_t ghost[max_cluster_points]; // by PointRef; the lowest byte is the place so far
         std::uint8_t after[max_cluster_points];
         std::size_t ghost_count = 0;

@@ -7,7 +7,7 @@
 #include <atomic>
 #include <bit>
 
-#include "base/parallel.hpp"
+#include "base/workers.hpp"
 #include "packed/build/pack_draft.hpp"
 
 namespace isotet::core {
@@ -185,7 +185,7 @@ public:
         number_own_seams();
         const std::size_t n = draft_.clusters(), tasks = (n + clusters_per_task - 1) / clusters_per_task;
         std::vector<std::vector<std::uint32_t>> lists(tasks);
-        parallel_ranges(tasks, 1, [&](std::size_t from, std::size_t to) {
+        worker_ranges(tasks, 1, [&](std::size_t from, std::size_t to) {
             Neighbourhood neighbourhood;
             std::vector<std::uint32_t> list;
             for (std::size_t task = from; task < to; ++task) {
@@ -202,7 +202,7 @@ public:
         }
         packed_.links = SharedBuffer<std::uint32_t>(words + slack_words);
         std::fill(packed_.links.begin() + words, packed_.links.end(), 0);
-        parallel_each(tasks, 1, [&](std::size_t task) {
+        worker_each(tasks, 1, [&](std::size_t task) {
             std::copy(lists[task].begin(), lists[task].end(),
                       packed_.links.begin() + packed_.headers[task * clusters_per_task].first_link);
             lists[task] = {};
@@ -215,10 +215,10 @@ private:
     void mark_shared_points() {
         const std::size_t points = packed_.points();
         shared_ = Buffer<std::uint8_t>(points);
-        parallel_ranges(points, 1 << 16, [&](std::size_t begin, std::size_t end) {
+        worker_ranges(points, 1 << 16, [&](std::size_t begin, std::size_t end) {
             std::fill(shared_.begin() + begin, shared_.begin() + end, 0);
         });
-        parallel_each(draft_.clusters(), clusters_per_task, [&](std::size_t c) {
+        worker_each(draft_.clusters(), clusters_per_task, [&](std::size_t c) {
             for (std::size_t k = 0; k < packed_.headers[c].ghost_points; ++k) {
                 const PointRef point = ref(c, k);
                 std::atomic_ref<std::uint8_t>(shared_[packed_.headers[point.owner()].first_point + point.index()])
@@ -254,7 +254,7 @@ private:
         first_candidate_ = Buffer<std::uint64_t>(n + 1);
         const std::size_t tasks = (n + clusters_per_task - 1) / clusters_per_task;
         std::vector<std::vector<SeamEdge>> lists(tasks);
-        parallel_ranges(tasks, 1, [&](std::size_t from, std::size_t to) {
+        worker_ranges(tasks, 1, [&](std::size_t from, std::size_t to) {
             std::vector<SeamEdge> list;
             for (std::size_t task = from; task < to; ++task) {
                 list.clear();
@@ -269,7 +269,7 @@ private:
         first_candidate_[0] = 0;
         for (std::size_t c = 0; c < n; ++c) first_candidate_[c + 1] += first_candidate_[c];
         candidates_ = Buffer<SeamEdge>(first_candidate_[n]);
-        parallel_each(tasks, 1, [&](std::size_t task) {
+        worker_each(tasks, 1, [&](std::size_t task) {
             std::copy(lists[task].begin(), lists[task].end(),
                       candidates_.begin() + first_candidate_[task * clusters_per_task]);
             lists[task] = {};
@@ -302,7 +302,7 @@ private:
     void exchange() {
         const std::size_t n = draft_.clusters();
         std::vector<std::uint64_t> next(n + 1, 0); // requests to each cluster; then where its next request goes
-        parallel_each(n, clusters_per_task, [&](std::size_t c) {
+        worker_each(n, clusters_per_task, [&](std::size_t c) {
             for_runs(c, 0, n, [&](std::uint32_t owner, std::size_t begin, std::size_t end) {
                 std::atomic_ref<std::uint64_t>(next[owner + 1]).fetch_add(end - begin, std::memory_order_relaxed);
             });
@@ -326,7 +326,7 @@ private:
     void deliver(std::size_t from, std::size_t to, const std::vector<std::uint64_t>& first,
                  std::vector<std::uint64_t>& next, Buffer<SeamRequest>& requests) {
         SeamRequest* const to_first = requests.data();
-        parallel_each(draft_.clusters() - from, clusters_per_task, [&](std::size_t behind) {
+        worker_each(draft_.clusters() - from, clusters_per_task, [&](std::size_t behind) {
             const std::size_t c = from + behind;
             const SeamEdge* const all = candidates(c).data();
             for_runs(c, from, to, [&](std::uint32_t owner, std::size_t begin, std::size_t end) {
@@ -339,7 +339,7 @@ private:
             });
         });
         // Requests arrive in any order; sorting makes it one.
-        parallel_ranges(to - from, clusters_per_task, [&](std::size_t begin, std::size_t end) {
+        worker_ranges(to - from, clusters_per_task, [&](std::size_t begin, std::size_t end) {
             std::vector<SeamRequest> scratch;
             for (std::size_t c = from + begin; c < from + end; ++c) {
                 const std::span<SeamRequest> received(to_first + (first[c] - first[from]), first[c + 1] - first[c]);
@@ -363,7 +363,7 @@ private:
 
     /// Afterwards the answers to the clusters' own seams hold their numbers among these.
     void number_own_seams() {
-        parallel_each(draft_.clusters(), clusters_per_task, [&](std::size_t c) {
+        worker_each(draft_.clusters(), clusters_per_task, [&](std::size_t c) {
             const auto self = static_cast<std::uint32_t>(c);
             std::uint16_t own = 0;
             for (std::size_t k = first_candidate_[c]; k < first_candidate_[c + 1]; ++k)

@@ -9,7 +9,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
-#include "base/parallel.hpp"
+#include "base/workers.hpp"
 #include "numbers/bounds.hpp"
 #include "numbers/hilbert.hpp"
 
@@ -62,14 +62,14 @@ Buffer<Keyed> sort_points(const PointReader& points, const Buffer<std::uint8_t>&
             .subspan(chunk * points_per_chunk, std::min(points_per_chunk, used.size() - chunk * points_per_chunk));
     };
     std::vector<std::size_t> first(chunks + 1, 0);
-    parallel_each(chunks, 1, [&](std::size_t chunk) {
+    worker_each(chunks, 1, [&](std::size_t chunk) {
         for (const std::uint8_t flag : chunk_of(chunk)) first[chunk + 1] += flag;
     });
     for (std::size_t chunk = 0; chunk < chunks; ++chunk) first[chunk + 1] += first[chunk];
 
     const Curve curve(bounds_of_used(points, used));
     Buffer<Keyed> sorted(first[chunks]), scratch(first[chunks]);
-    parallel_each(chunks, 1, [&](std::size_t chunk) {
+    worker_each(chunks, 1, [&](std::size_t chunk) {
         Keyed* out = sorted.data() + first[chunk];
         const std::size_t begin = chunk * points_per_chunk;
         for (std::size_t i = begin; i < begin + chunk_of(chunk).size(); ++i)

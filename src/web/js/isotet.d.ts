@@ -46,6 +46,8 @@ interface Described {
   readonly times: number[];
   /** What was found while reading. */
   readonly notes: string[];
+  /** How many threads pack and extract. */
+  readonly threads: number;
 }
 
 /** A grid in the memory of an instance of isotet: at most 4 GB. Methods throw an Error whose message says what is wrong. */
@@ -55,12 +57,12 @@ export interface Grid extends Described {
    * later ones take time in proportion to the surface.
    *
    * Its arrays are views of the instance's memory, without a copy: they are valid until the next call of any method. `slice()` keeps
-   * one.
+   * one. Where there are several threads, the memory is a SharedArrayBuffer: what takes none of it (Blob, TextDecoder) takes a slice().
    */
   contour(isovalue: number, options?: ContourOptions): Surface;
   /** The smallest and the largest finite value of the field. */
   range(options?: ContourOptions): [number, number];
-  /** Gives its memory back, once no surface of it is used any more. */
+  /** Gives its memory back, once no surface of it is used any more, and ends its threads. */
   close(): void;
 }
 
@@ -73,7 +75,16 @@ export interface RemoteGrid extends Described {
 
 export type Content = ArrayBuffer | ArrayBufferView | Blob;
 
-export interface OpenOptions {
+export interface ThreadOptions {
+  /**
+   * How many threads pack and extract arrays and packed files, up to 16; surfaces are the same bytes. Default: as many as the machine
+   * has in a page that is isolated (crossOriginIsolated), one in Node. Elsewhere, where memory for them is missing, after
+   * useModule(), and after a thread has failed, there is one.
+   */
+  threads?: number;
+}
+
+export interface OpenOptions extends ThreadOptions {
   /** Of the file. TetGen's files are known by it alone, others by what they hold. */
   name?: string;
   /** Other files by their paths: pieces of a PVTU, the .ele beside a .node. */
@@ -100,8 +111,8 @@ export interface GridArrays {
 }
 
 /** A grid out of arrays, which are copied. */
-export function fromArrays(grid: GridArrays): Promise<Grid>;
-export function fromArraysInWorker(grid: GridArrays, options?: {worker?: Worker}): Promise<RemoteGrid>;
+export function fromArrays(grid: GridArrays, options?: ThreadOptions): Promise<Grid>;
+export function fromArraysInWorker(grid: GridArrays, options?: ThreadOptions & {worker?: Worker}): Promise<RemoteGrid>;
 
 /**
  * A module in place of those beside isotet.js, for all grids: its bytes, or compiled. isotet_engine.wasm takes arrays and packed files,

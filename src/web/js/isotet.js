@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Isosurfaces of unstructured grids in browsers and Node: isotet as WebAssembly, one thread. isotet.d.ts has the contracts.
+// Isosurfaces of unstructured grids in browsers and Node: isotet as WebAssembly. isotet.d.ts has the contracts.
 import {blobAsFile, bytesAsFile, Files} from './engine_files.js';
+import {beginThreads, grown, mostThreads, sharedMemory, threadsHere} from './isotet_threads.js';
 
 const arrays = {
   int8: Int8Array, uint8: Uint8Array, int16: Int16Array, uint16: Uint16Array, int32: Int32Array, uint32: Uint32Array,
@@ -17,6 +18,7 @@ async function bytesOfModule(address) {
 
 const modules = { // that lie beside this file
   packed: new URL('isotet_engine.wasm', import.meta.url), // arrays and packed files
+  threads: new URL('isotet_engine_threads.wasm', import.meta.url), // the same by several threads
   files: new URL('isotet_engine_readers.wasm', import.meta.url),
 };
 const compiled = {}; // promises of modules, for all grids
@@ -32,50 +34,114 @@ async function compile(kind) {
   return given ?? (compiled[kind] ??= bytesOfModule(modules[kind]).then((bytes) => WebAssembly.compile(bytes)));
 }
 
+/** Modules that the page has compiled, in a worker of it (isotet_worker.js). */
+export function takeModules({given, ...others}) {
+  if (given) useModule(given);
+  for (const [kind, module] of Object.entries(others)) compiled[kind] = Promise.resolve(module);
+}
+
+/** What takeModules() takes. */
+async function modulesFor(kind, threads) {
+  if (given) return {given: await given};
+  const module = threads > 1 && await compile('threads').catch(() => null);
+  return module ? {threads: module} : {[kind]: await compile(kind)};
+}
+
+let threadsFailed = false; // one has: grids that are opened from then on have one thread
+export const haveThreadsFailed = () => threadsFailed;
+
+/** How many threads a grid of this kind may have. */
+function threadsFor(kind, wanted = threadsHere()) {
+  if (kind !== 'packed' || given || threadsFailed) return 1;
+  return Math.max(1, Math.min(mostThreads, Math.floor(wanted) || 1));
+}
+
+/** Of grids that were never closed. */
+const forgotten = new FinalizationRegistry((ends) => { for (const end of ends) end(); });
+
 /** A grid, and the instance of the module that has it in its memory. */
 export class Grid {
-  static async create(kind, files, onProgress) {
-    const grid = new Grid(), given = new Files(files);
-    const page = {text: (at, count) => {
-      const said = JSON.parse(new TextDecoder().decode(new Uint8Array(grid.exports.memory.buffer, at, count)));
-      if (said.progress) onProgress?.(...said.progress);
-      else grid.answer = said;
-    }};
-    const {exports} = await WebAssembly.instantiate(await compile(kind), {page, wasi_snapshot_preview1: given.imports()});
-    grid.exports = exports;
-    given.memory = exports.memory;
-    exports._initialize();
+  /** @param threads  how many, where there can be so many */
+  static async create(kind, files, onProgress, threads = 1) {
+    const grid = new Grid(), memory = threads > 1 ? sharedMemory() : null;
+    const module = memory && await compile('threads').catch(() => null); // it may be missing where the other is
+    await grid.begin(module ?? await compile(kind), files, onProgress, module && memory);
+    if (module) grid.ends = await beginThreads(threads - 1, module, memory, grid.exports);
+    forgotten.register(grid, grid.ends, grid);
     return grid;
+  }
+
+  ends = []; // of the other threads
+
+  /** That pack and extract. */
+  get threads() { return 1 + this.ends.length; }
+
+  /** @param shared  memory for the module; null: its own */
+  async begin(module, files, onProgress, shared) {
+    const given = new Files(files), imports = {page: {text: (at, count) => this.take(at, count, onProgress)}, wasi_snapshot_preview1: given.imports()};
+    const {exports} = await WebAssembly.instantiate(module, shared ? {...imports, env: {memory: shared}} : imports);
+    this.exports = exports;
+    this.memory = given.memory = shared ? grown(shared) : exports.memory;
+    exports._initialize();
+  }
+
+  /** A message of the module. */
+  take(at, count, onProgress) {
+    const said = JSON.parse(new TextDecoder().decode(new Uint8Array(this.memory.buffer, at, count).slice())); // of shared memory it decodes none
+    if (said.progress) onProgress?.(...said.progress);
+    else this.answer = said;
   }
 
   call(message) {
     if (!this.exports) throw new Error('the grid was closed');
     const text = new TextEncoder().encode(JSON.stringify(message)), at = this.exports.room(text.length);
-    new Uint8Array(this.exports.memory.buffer).set(text, at);
+    new Uint8Array(this.memory.buffer).set(text, at);
     try {
       this.exports.call();
-    } catch (error) {
-      this.exports = null; // its memory is in no known state
-      throw new Error(`isotet stopped, for lack of memory perhaps (${error.message})`);
+    } catch (error) { // its memory is in no known state
+      const inThread = Boolean(this.exports.has_failed?.());
+      threadsFailed ||= inThread;
+      this.close();
+      throw new Error(`${inThread ? 'a thread of isotet' : 'isotet'} stopped, for lack of memory perhaps (${error.message})`);
     }
     if (this.answer.error) throw new Error(this.answer.error);
     return this.answer;
   }
 
-  describe({points, cells, fields, times, notes}) {
-    Object.assign(this, {points, cells, fields, times, notes});
-    return this;
+  /** Opens it; threads of one that cannot be opened end. */
+  open(message) {
+    try {
+      return Object.assign(this, this.call(message));
+    } catch (error) {
+      this.close();
+      throw error;
+    }
   }
 
   /** Copies arrays into the module's memory. */
   give(values) {
     const array = this.given = (this.given ?? -1) + 1, at = this.exports.array(values.byteLength);
     if (at === 0 && values.byteLength > 0) throw new Error(`there is no memory for ${values.byteLength} bytes`);
-    new Uint8Array(this.exports.memory.buffer).set(new Uint8Array(values.buffer, values.byteOffset, values.byteLength), at);
+    new Uint8Array(this.memory.buffer).set(new Uint8Array(values.buffer, values.byteOffset, values.byteLength), at);
     return {array, type: typeOf(values)};
   }
 
-  view({type, at, count}) { return new arrays[type](this.exports.memory.buffer, at, count); }
+  /** What gives it arrays, which are copied. */
+  messageOf(points, cells, values) {
+    const message = {do: 'take', fields: {}}, {connectivity, offsets, types} = ArrayBuffer.isView(cells) ? {connectivity: cells} : cells;
+    for (const [key, array] of Object.entries({points, connectivity, offsets, types})) {
+      if (array === undefined) continue;
+      if (!typeOf(array)) throw new TypeError(`${key} is no typed array`);
+      message[key] = this.give(array);
+    }
+    for (const [name, array] of Object.entries(ArrayBuffer.isView(values) ? {values} : values)) {
+      if (!typeOf(array)) throw new TypeError(`the values of ${name} are no typed array`);
+      message.fields[name] = this.give(array);
+    }
+    return message;
+  }
+
+  view({type, at, count}) { return new arrays[type](this.memory.buffer, at, count); }
 
   wish({field, fields = [], normals = 'none', step = 0, once = false}) {
     const wish = {field: field ?? this.fields[0]?.name ?? '', carry: fields, normals, step};
@@ -94,7 +160,11 @@ export class Grid {
     return [lower, upper];
   }
 
-  close() { this.exports = null; }
+  close() {
+    this.exports = this.memory = null;
+    forgotten.unregister(this);
+    for (const end of this.ends.splice(0)) end();
+  }
 }
 
 const isBlob = (data) => typeof Blob !== 'undefined' && data instanceof Blob;
@@ -113,26 +183,21 @@ async function kindOf(data) {
 }
 
 /** @see isotet.d.ts */
-export async function open(data, {name = 'grid', files = {}, onProgress} = {}) {
+export async function open(data, {name = 'grid', files = {}, onProgress, threads} = {}) {
   const all = Object.fromEntries(Object.entries(files).map(([path, content]) => [path, fileOf(content)]));
-  const grid = await Grid.create(await kindOf(data), {...all, [name]: fileOf(data)}, onProgress);
-  return grid.describe(grid.call({do: 'open', path: name}));
+  const kind = await kindOf(data), grid = await Grid.create(kind, {...all, [name]: fileOf(data)}, onProgress, threadsFor(kind, threads));
+  return grid.open({do: 'open', path: name});
 }
 
 /** @see isotet.d.ts */
-export async function fromArrays({points, cells, values}) {
-  const grid = await Grid.create('packed', {}), message = {do: 'take', fields: {}};
-  const {connectivity, offsets, types} = ArrayBuffer.isView(cells) ? {connectivity: cells} : cells;
-  for (const [key, array] of Object.entries({points, connectivity, offsets, types})) {
-    if (array === undefined) continue;
-    if (!typeOf(array)) throw new TypeError(`${key} is no typed array`);
-    message[key] = grid.give(array);
+export async function fromArrays({points, cells, values}, {threads} = {}) {
+  const grid = await Grid.create('packed', {}, null, threadsFor('packed', threads));
+  try {
+    return grid.open(grid.messageOf(points, cells, values));
+  } catch (error) {
+    grid.close();
+    throw error;
   }
-  for (const [name, array] of Object.entries(ArrayBuffer.isView(values) ? {values} : values)) {
-    if (!typeOf(array)) throw new TypeError(`the values of ${name} are no typed array`);
-    message.fields[name] = grid.give(array);
-  }
-  return grid.describe(grid.call(message));
 }
 
 /** The same grid in a thread: methods return promises, and arrays are the caller's own. */
@@ -145,6 +210,7 @@ export class RemoteGrid {
       if (data.progress) return this.onProgress?.(...data.progress);
       const {take, fail} = this.waiting.get(data.number);
       this.waiting.delete(data.number);
+      threadsFailed ||= Boolean(data.threadsFailed);
       if (data.error) fail(new Error(data.error));
       else take(data.result);
     };
@@ -168,14 +234,15 @@ export class RemoteGrid {
   close() { this.worker.terminate(); }
 }
 
-async function remote(kind, worker, onProgress, method, ...words) {
+async function remote(kind, threads, worker, onProgress, method, ...words) {
   const grid = new RemoteGrid(worker ?? new Worker(new URL('isotet_worker.js', import.meta.url), {type: 'module'}));
   grid.onProgress = onProgress;
-  return Object.assign(grid, await grid.ask(method, ...words, await compile(kind)));
+  return Object.assign(grid, await grid.ask(method, ...words, {threads}, await modulesFor(kind, threads)));
 }
 
-export async function openInWorker(data, {worker, onProgress, ...options} = {}) {
-  return remote(await kindOf(data), worker, onProgress, 'open', data, options);
+export async function openInWorker(data, {worker, onProgress, threads, ...options} = {}) {
+  const kind = await kindOf(data);
+  return remote(kind, threadsFor(kind, threads), worker, onProgress, 'open', data, options);
 }
 
-export const fromArraysInWorker = (grid, {worker} = {}) => remote('packed', worker, null, 'fromArrays', grid, {});
+export const fromArraysInWorker = (grid, {worker, threads} = {}) => remote('packed', threadsFor('packed', threads), worker, null, 'fromArrays', grid, {});

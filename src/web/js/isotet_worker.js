@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // A grid in a thread of its own: what RemoteGrid (isotet.js) asks for.
-import {fromArrays, open, useModule} from './isotet.js';
+import {fromArrays, haveThreadsFailed, open, takeModules} from './isotet.js';
 
 let grid = null;
 
@@ -12,14 +12,14 @@ function keep(surface) {
 }
 
 const methods = {
-  async open(data, options, module) {
-    await useModule(module);
-    grid = await open(data, {...options, onProgress: (...progress) => postMessage({progress})});
+  async open(data, options, {threads}, modules) {
+    takeModules(modules);
+    grid = await open(data, {...options, threads, onProgress: (...progress) => postMessage({progress})});
     return describe();
   },
-  async fromArrays(arrays, _options, module) {
-    await useModule(module);
-    grid = await fromArrays(arrays);
+  async fromArrays(arrays, _options, {threads}, modules) {
+    takeModules(modules);
+    grid = await fromArrays(arrays, {threads});
     return describe();
   },
   contour: (...words) => keep(grid.contour(...words)),
@@ -27,8 +27,8 @@ const methods = {
 };
 
 function describe() {
-  const {points, cells, fields, times, notes} = grid;
-  return {points, cells, fields, times, notes};
+  const {points, cells, fields, times, notes, threads} = grid;
+  return {points, cells, fields, times, notes, threads};
 }
 
 const buffersOf = (result) => [result?.positions, result?.triangles, result?.normals, ...Object.values(result?.fields ?? {})].filter(ArrayBuffer.isView).map(({buffer}) => buffer);
@@ -38,6 +38,6 @@ onmessage = async ({data: {number, method, words}}) => {
     const result = await methods[method](...words);
     postMessage({number, result}, buffersOf(result));
   } catch (error) {
-    postMessage({number, error: error.message});
+    postMessage({number, error: error.message, threadsFailed: haveThreadsFailed()});
   }
 };
