@@ -229,6 +229,7 @@ Result<void> Engine::set(const Wish& wish) {
     ContourOptions options;
     options.surfaces = wish.once ? 1 : 1000;
     options.normals = wish.normals;
+    if (file_) options.precision = file_->info().precision;
     if (contour_) {
         if (const auto set = contour_->set(*std::move(input), options, telling_run()); !set) return set.error();
     } else {

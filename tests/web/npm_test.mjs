@@ -72,6 +72,10 @@ for (let i = 0; i < 21; ++i) {
   times.push(performance.now() - start);
 }
 check(packed.fields.map(({name}) => name).join() === 'gyroid,sphere', 'fields of a packed file');
+run(program, 'pack', 'make:kuhn:12:gyroid', join(folder, 'double.isotet'), '--precision', 'double');
+const wide = (await open(readFileSync(join(folder, 'double.isotet')))).contour(0.25, {normals: 'vertex'});
+run(program, 'extract', 'make:kuhn:12:gyroid', join(folder, 'double.ply'), '-f', 'gyroid', '-i', '0.25', '--with', '', '--method', 'clusters', '--precision', 'double');
+check(wide.triangles.length > 0 && bytesOf(wide.triangles).equals(readPly(join(folder, 'double.ply')).corners), 'a packed file in double precision');
 console.log(`ok arrays, errors, packed: ${median(times).toFixed(1)} ms a surface`);
 
 // The module that pages load for arrays and packed files; it alone says so of other files.
