@@ -120,6 +120,20 @@ def test_colors(browser, folder):
     check(browser.value('[...document.querySelectorAll("[data-needs=isotet]")].every((one) => one.hidden)'), 'nothing needs isotet')
 
 
+def test_says_what_can_be_typed(browser, folder):
+    """The page has surfaces alone: shares of volume or points cannot be found there, so none are proposed."""
+    path, _ = export(folder, 'typed.html', GRID, '-f', 'sphere', '--surfaces', '3')
+    start(browser, path)
+    for text in ('half', '90%v'):
+        browser.value('document.getElementById("value").select()')
+        browser.type(text)
+        browser.key('Enter')
+        browser.wait('!document.getElementById("message").hidden')
+        told = browser.value('document.getElementById("message").textContent')
+        check('50 %' in told and '90%v' not in told, f'{text}: "{told}"')
+        browser.key('Escape')
+
+
 def test_begins_with_the_boundary(browser, folder):
     """Where only regions are known, the boundary shows them, each with a colour; isosurfaces can be chosen."""
     model = os.path.join(os.path.dirname(__file__), '../../data/gocad/geomodel3d_tsolid.so')

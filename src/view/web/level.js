@@ -247,11 +247,11 @@ export function takeShare({field, step, of, percent, isovalue}) {
 
 function typed() {
   valuePlayer.stop();
-  const {value: text} = id('value'), share = app.grid?.saved === 'surfaces' ? null : format.parseShare(text);
+  const {value: text} = id('value'), hasShares = app.grid?.saved !== 'surfaces', share = hasShares ? format.parseShare(text) : null;
   const value = share ? 0 : text === format.ofBox(app.state.value) ? app.state.value : format.parseNumber(text, app.slider.span);
   id('value').setAttribute('aria-invalid', value === null);
   level.typing = value === null;
-  if (value === null) return say('An isovalue is a number, such as 0.25 or 1e-3, a part of the range, such as 50 %, or 90%v for 90 % of the volume below it, or p95 for a percentile of the points.');
+  if (value === null) return say(`An isovalue is a number, such as 0.25 or 1e-3, or a part of the range, such as 50 %${hasShares ? '; or 90%v for 90 % of the volume below it, or p95 for a percentile of the points' : ''}.`);
   level.share = '';
   showIsosurfaces(true);
   if (share) { say(''); level.typing = true; return askShare(share); }
