@@ -116,13 +116,18 @@ const surroundings = {
   },
 };
 
-/** A copy of the package whose threads are another file. */
-function changed(name, from, to) {
+surroundings.lost = surroundings.trap; // and the worker cannot even say so: the call fails after half a minute
+
+/** A copy of the package whose threads are another file: [[from, to], ...]. */
+function changed(name, ...changes) {
   const copy = join(folder, name), path = join(copy, 'isotet_thread.js');
   cpSync(npm, copy, {recursive: true});
-  const text = readFileSync(path, 'utf8');
-  check(text.includes(from), `isotet_thread.js has "${from}"`);
-  writeFileSync(path, text.replace(from, to));
+  let text = readFileSync(path, 'utf8');
+  for (const [from, to] of changes) {
+    check(text.includes(from), `isotet_thread.js has "${from}"`);
+    text = text.replace(from, to);
+  }
+  writeFileSync(path, text);
   return copy;
 }
 
@@ -135,11 +140,13 @@ const isotet = await load(npm), times = await testFiles(isotet);
 await testArrays(isotet);
 await testGrowth(isotet);
 console.log(`ok same bytes; ${Object.entries(times).map(([threads, all]) => `${median(all).toFixed(1)} ms by ${threads}`).join(', ')}`);
+const small = ['__stack_pointer.value = stack', '__stack_pointer.value = number === 1 ? 2048 : stack'];
 const copies = {
-  trap: changed('trap', '__stack_pointer.value = stack', '__stack_pointer.value = number === 1 ? 2048 : stack'),
+  trap: changed('trap', small),
+  lost: changed('lost', small, ['exports.worker_failed();', '']),
   memory: npm,
-  missing: changed('missing', '  exports.__wasm_init_tls', "  if (number === 2) throw new Error('not this one');\n  exports.__wasm_init_tls"),
-  module: changed('module', 'say();', 'say();'),
+  missing: changed('missing', ['  exports.__wasm_init_tls', "  if (number === 2) throw new Error('not this one');\n  exports.__wasm_init_tls"]),
+  module: changed('module'),
 };
 rmSync(join(copies.module, 'isotet_engine_threads.wasm'));
 for (const [name, copy] of Object.entries(copies)) {
