@@ -20,7 +20,9 @@ namespace isotet {
 /// Keeps the cells that some isovalues cut, of cells that come by in pieces: all that extract_direct() needs of them.
 ///
 ///     auto filter = ActiveCellFilter::create(points, field, isovalues, CellType::tetrahedron, options);
-///     for (each piece of the connectivity) filter->add(place of its first corner, corners);
+///     do {
+///         for (each piece of the connectivity) filter->add(place of its first corner, corners);
+///     } while (filter->next_round());
 ///     grid.cells = *filter->finish();
 ///     options.active_cells_only = true;
 ///     extract_direct(grid, field, isovalues, options);
@@ -36,7 +38,8 @@ public:
     /// `field`       one scalar a point
     /// `isovalues`   at least one, at most max_isovalues; those that will be extracted
     /// `type`        of all cells, for add(); nothing where cells have types of their own, for add_cells()
-    /// `options`     those of the extraction. Cell fields and gradient normals need all cells
+    /// `options`     those of the extraction. For gradient normals cells that share a point with one that is cut are kept,
+    ///               too. Cell fields and frames need all cells
     ///
     /// Cost     two passes over points and values for each isovalue
     /// Errors   invalid_argument: no isovalue, one that is not finite, options that need all cells, arrays that do not fit
@@ -55,9 +58,12 @@ public:
     /// finish(). Else as add().
     void add_cells(std::uint64_t first_cell, std::span<const std::uint8_t> types, const Array& corners);
 
+    /// When all cells were added. True where all must be added once more: for gradient normals, once.
+    bool next_round();
+
     /// The cells that were kept, in their order, and the first cell of all, so that there is one.
     /// Errors   invalid_data: a cell has a type that is not taken, a point that is not there, or one whose coordinates
-    ///          are not finite or 2^91 or more; survey() tells which
+    ///          are not finite or 2^91 or more; survey() tells which; invalid_argument before the last round
     Result<Cells> finish();
 
     /// After finish(), where `options` ask for source cells: of the cells that were kept the numbers in the whole grid,

@@ -160,6 +160,7 @@ struct IsosurfaceOptions {
     /// gives it with all. Then no slices are drawn, of boundaries only `boundary`, and all is as large as it or the bounds.
     std::function<Result<Grid>(const Run& run)> all_cells = {};
     std::vector<double> expected_isovalues = {}; ///< these
+    bool has_cells_around = false;               ///< then, as ContourInput::has_cells_around
     Box bounds = {};                             ///< of the points that any cell has; with `packed`, too
     std::optional<Surface> boundary = {};        ///< of all cells, where it is known
     /// In place of `grid` and `field`. The CPU extracts; there are no solids, and cells colour isosurfaces and slices

@@ -18,14 +18,15 @@ namespace isotet {
 
 Result<void> api::check_active_cells_do(const DirectOptions& options) {
     const ExtractOptions& extract = options.extract;
-    if (!extract.cell_fields.empty() || extract.normals == Normals::gradient || options.frame)
-        return invalid_argument("cell fields, gradient normals and frames need all cells of a grid");
+    if (!extract.cell_fields.empty() || options.frame)
+        return invalid_argument("cell fields and frames need all cells of a grid");
     return {};
 }
 
 struct ActiveCellFilter::Data {
     std::unique_ptr<cpu::ActiveFilter> filter;
     std::atomic<bool> out_of_memory{false};
+    bool next_round = false; ///< all cells must be added once more
 };
 
 ActiveCellFilter::ActiveCellFilter(std::unique_ptr<Data> data) : data_(std::move(data)) {}
@@ -56,10 +57,12 @@ Result<ActiveCellFilter> ActiveCellFilter::create(const Array& points, const Poi
         request.isovalues = isovalues;
         request.ties = extract.ties;
         request.source_cells = extract.source_cells;
+        request.normals = extract.normals == Normals::gradient;
         auto filter = options.precision == Precision::float32 ? cpu::make_active_filter<float>(input, request, type)
                                                               : cpu::make_active_filter<double>(input, request, type);
         auto data = std::make_unique<Data>();
         data->filter = std::move(filter);
+        data->next_round = request.normals;
         return ActiveCellFilter(std::move(data));
     });
 }
@@ -82,9 +85,21 @@ void ActiveCellFilter::add_cells(std::uint64_t first_cell, std::span<const std::
     }
 }
 
+bool ActiveCellFilter::next_round() {
+    if (!data_ || !std::exchange(data_->next_round, false)) return false;
+    try {
+        data_->filter->start_second_round();
+    } catch (const std::bad_alloc&) {
+        data_->out_of_memory = true;
+    }
+    return true;
+}
+
 Result<Cells> ActiveCellFilter::finish() {
     return core::guarded("looking for active cells", [&]() -> Result<Cells> {
         if (!data_) return moved_from("the filter of active cells");
+        if (data_->next_round)
+            return invalid_argument("gradient normals need cells around those that are cut: all must be added twice");
         if (data_->out_of_memory) return Error{ErrorCode::out_of_memory, "looking for active cells ran out of memory"};
         auto cells = data_->filter->finish();
         if (!cells)

@@ -74,6 +74,7 @@ std::optional<ReadActiveCells> active_cells(const FieldArrays& arrays, const std
     active.options.precision = options.precision;
     active.options.extract.ties = options.ties;
     active.options.extract.source_cells = options.source_cells;
+    active.options.extract.normals = options.normals;
     return active;
 }
 
@@ -205,6 +206,7 @@ Result<FileSession> GridFile::session(const std::string& field, const FileContou
     if (read->cells_in_file) {
         wanted.active_cells.reset();
         input->cell_numbers = std::move(read->cell_numbers);
+        input->has_cells_around = options.contour.normals == Normals::gradient;
         input->all_cells = [data = data_, wanted, field, options](const Run& later) -> Result<ContourInput> {
             Result<ReadResult> all = data->read_closed(wanted, options.close_hanging_points, later);
             if (!all) return all.error();

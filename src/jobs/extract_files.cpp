@@ -324,6 +324,7 @@ Result<bool> ExtractRun::load(std::size_t step) {
             return all;
         };
         input.cell_numbers = active_numbers_;
+        input.has_cells_around = plan_.contour.normals == Normals::gradient;
     }
     if (job_.piece && has_curved_cells(input.grid.cells))
         return refusal("`piece` takes grids without quadratic cells only");

@@ -97,6 +97,7 @@ std::optional<ReadActiveCells> plan_active_cells(const ExtractJob& job, const Ex
     active.options.precision = plan.contour.precision;
     active.options.extract.ties = plan.contour.ties;
     active.options.extract.source_cells = plan.contour.source_cells;
+    active.options.extract.normals = plan.contour.normals;
     return active;
 }
 

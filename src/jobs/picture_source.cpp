@@ -364,6 +364,7 @@ std::optional<ReadActiveCells> PictureSource::active_cells(const Contents& conte
         !Contour::can_do_with_active_cells(options))
         return std::nullopt;
     ReadActiveCells active{field.name, job_.isovalues, {}};
+    active.options.extract.normals = options.normals;
     active.bounds = job_.boundary == 0.0;
     if (!active.bounds) active.boundary = streamed_boundary_;
     if (chosen)
@@ -675,6 +676,7 @@ Result<DrawInput> PictureSource::read(std::size_t which, const std::optional<Dev
     input.stretch = job_.stretch;
     options.all_cells = contents->all_cells;
     options.bounds = contents->bounds;
+    options.has_cells_around = options.all_cells && job_.shade_by == ShadeBy::gradient;
     options.boundary = std::move(contents->boundary);
     options.packed = std::move(contents->packed);
     if (options.all_cells) options.expected_isovalues = input.isovalues;

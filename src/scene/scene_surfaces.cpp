@@ -45,6 +45,7 @@ Result<void> IsosurfaceScene::Data::start(IsosurfaceOptions wanted, const Run& r
             input.grid = *std::move(grid);
             return input;
         };
+    carrying.has_cells_around = wanted.has_cells_around;
     options.expected_isovalues = wanted.expected_isovalues;
     required = wanted.where == ExtractOn::device;
     if (!device && (required || wanted.draw))

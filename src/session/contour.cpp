@@ -54,7 +54,8 @@ void number_in_whole(const Array& numbers, std::vector<Extraction>& surfaces) {
 Result<ContourInput> input_for(ContourInput input, const ContourOptions& options, const Run& run) {
     if (input.packed) return input;
     const bool some_do = Contour::can_do_with_active_cells(options) && input.cell_fields.empty() &&
-                         (!options.source_cells || !input.cell_numbers.empty());
+                         (!options.source_cells || !input.cell_numbers.empty()) &&
+                         (options.normals != Normals::gradient || input.has_cells_around);
     if (input.all_cells && !some_do) {
         Result<ContourInput> all = input.all_cells(run);
         if (!all) return all;
@@ -89,7 +90,7 @@ bool Contour::can_do_with_active_cells(const ContourOptions& options) {
     const bool gradients = options.normals == Normals::gradient;
     const Method method = options.method.value_or(method_for(options.surfaces, gradients));
     return !options.expected_isovalues.empty() && options.surfaces > 0 && method == Method::direct && options.engine &&
-           options.engine->name() == cpu_engine()->name() && !gradients && !options.exact_vertices && !options.frame;
+           options.engine->name() == cpu_engine()->name() && !options.exact_vertices && !options.frame;
 }
 
 Result<Contour> Contour::create(ContourInput given, const ContourOptions& options, const Run& run) {

@@ -17,10 +17,15 @@ namespace {
 class ActiveInput : public testing::Test {
 protected:
     /// The grid's cells that the isovalues cut.
-    ContourInput some(const std::vector<double>& isovalues) {
-        auto filter = ActiveCellFilter::create(grid.points, field, isovalues, CellType::tetrahedron);
-        filter->add(0, grid.cells.connectivity);
+    /// `around`   and those around them
+    ContourInput some(const std::vector<double>& isovalues, bool around = false) {
+        DirectOptions direct;
+        if (around) direct.extract.normals = Normals::gradient;
+        auto filter = ActiveCellFilter::create(grid.points, field, isovalues, CellType::tetrahedron, direct);
+        do filter->add(0, grid.cells.connectivity);
+        while (filter->next_round());
         ContourInput input{grid, field, {}, {}};
+        input.has_cells_around = around;
         input.grid.cells = filter->finish().value();
         input.all_cells = [this](const isotet::Run&) -> Result<ContourInput> {
             ++asked;
@@ -58,6 +63,15 @@ TEST_F(ActiveInput, IsEnoughForTheExpectedIsovalues) {
     EXPECT_EQ(asked, 0);
 }
 
+TEST_F(ActiveInput, IsEnoughForGradientNormalsWithTheCellsAround) {
+    ContourOptions chosen = options({0.1, -0.5});
+    chosen.normals = Normals::gradient;
+    Contour contour = Contour::create(some({0.1, -0.5}, true), chosen).value();
+    for (const double isovalue : {-0.5, 0.1})
+        EXPECT_TRUE(bytes_of(contour.extract(isovalue).value().surfaces[0].surface) == bytes_of_all(isovalue, chosen));
+    EXPECT_EQ(asked, 0);
+}
+
 TEST_F(ActiveInput, IsCompletedForAnotherIsovalue) {
     const ContourOptions chosen = options({0.1});
     Contour contour = Contour::create(some({0.1}), chosen).value();
@@ -76,7 +90,7 @@ TEST_F(ActiveInput, IsCompletedForTheRangeOfTheField) {
 
 TEST_F(ActiveInput, IsCompletedForOptionsThatNeedAllCells) {
     std::vector<ContourOptions> each(6, options({0.1}));
-    each[0].normals = Normals::gradient;
+    each[0].normals = Normals::gradient; // of which the input has not the cells around
     each[1].source_cells = true; // of which the input has no numbers
     each[2].method = Method::clusters;
     each[3].expected_isovalues.clear();

@@ -26,16 +26,18 @@ Result<Cells> filtered(const Grid& grid, const PointField& field, const std::vec
         pieces.emplace_back(begin, size);
         begin += size;
     }
-    std::ranges::shuffle(pieces, draw);
-    for (const auto& [begin, size] : pieces) {
-        if (seed % 3 == 0) {
-            filter->add(begin, Array::borrow(std::span<const std::int64_t>(corners.data() + begin, size)));
-            continue;
+    do {
+        std::ranges::shuffle(pieces, draw);
+        for (const auto& [begin, size] : pieces) {
+            if (seed % 3 == 0) {
+                filter->add(begin, Array::borrow(std::span<const std::int64_t>(corners.data() + begin, size)));
+                continue;
+            }
+            const std::vector<std::int32_t> narrow(corners.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                   corners.begin() + static_cast<std::ptrdiff_t>(begin + size));
+            filter->add(begin, Array::borrow(narrow));
         }
-        const std::vector<std::int32_t> narrow(corners.begin() + static_cast<std::ptrdiff_t>(begin),
-                                               corners.begin() + static_cast<std::ptrdiff_t>(begin + size));
-        filter->add(begin, Array::borrow(narrow));
-    }
+    } while (filter->next_round());
     return filter->finish();
 }
 
@@ -49,14 +51,16 @@ Result<Cells> filtered_by_cells(const Grid& grid, const PointField& field, const
     std::vector<std::pair<std::size_t, std::size_t>> pieces;
     for (std::size_t begin = 0; begin < types.size(); begin += pieces.back().second)
         pieces.emplace_back(begin, std::min<std::size_t>(types.size() - begin, 1 + draw() % (seed % 2 ? 3000 : 5)));
-    std::ranges::shuffle(pieces, draw);
-    for (const auto& [begin, size] : pieces) {
-        std::vector<std::int64_t> corners;
-        const auto end = static_cast<std::size_t>(grid.cells.offsets.at(begin + size));
-        for (auto i = static_cast<std::size_t>(grid.cells.offsets.at(begin)); i < end; ++i)
-            corners.push_back(static_cast<std::int64_t>(grid.cells.connectivity.at(i)));
-        filter->add_cells(begin, types.subspan(begin, size), Array::borrow(corners));
-    }
+    do {
+        std::ranges::shuffle(pieces, draw);
+        for (const auto& [begin, size] : pieces) {
+            std::vector<std::int64_t> corners;
+            const auto end = static_cast<std::size_t>(grid.cells.offsets.at(begin + size));
+            for (auto i = static_cast<std::size_t>(grid.cells.offsets.at(begin)); i < end; ++i)
+                corners.push_back(static_cast<std::int64_t>(grid.cells.connectivity.at(i)));
+            filter->add_cells(begin, types.subspan(begin, size), Array::borrow(corners));
+        }
+    } while (filter->next_round());
     return filter->finish();
 }
 
@@ -142,6 +146,67 @@ TEST(ActiveCells, MayHaveTypesOfTheirOwn) {
             EXPECT_LT(*kept, grid.cells.count() / 2);
             EXPECT_TRUE(expect_same_surfaces(grid, point_field(grid, 1), {2}, with_edge_ends(ties), seed));
         }
+}
+
+DirectOptions with_gradients(DirectOptions options) {
+    options.extract.normals = Normals::gradient;
+    return options;
+}
+
+TEST(ActiveCells, HaveThoseAroundThemForGradientNormals) {
+    std::uint32_t seed = 0;
+    for (const char* shape : {"kuhn", "shuffled", "hex", "wedge", "pyramid", "mixed"})
+        for (const Ties ties : {Ties::merge, Ties::keep}) {
+            SCOPED_TRACE(testing::Message() << shape << ", ties " << int(ties));
+            Grid grid = made_grid(shape, 24, {"gyroid", "integer"}, 7);
+            if (shape != std::string_view("mixed")) grid = one_kind(grid);
+            const DirectOptions options = with_edge_ends(ties, ++seed % 2 ? Precision::float32 : Precision::float64);
+            const auto bare = expect_same_surfaces(grid, point_field(grid, 0), {0.1}, options, seed);
+            const auto kept = expect_same_surfaces(grid, point_field(grid, 0), {0.1}, with_gradients(options), seed);
+            ASSERT_TRUE(bare && kept);
+            EXPECT_GT(*kept, *bare);
+            EXPECT_LT(*kept, grid.cells.count() * 99 / 100);
+            EXPECT_TRUE(
+                expect_same_surfaces(grid, point_field(grid, 0), {-0.5, 0.1, 9}, with_gradients(options), seed));
+            EXPECT_TRUE(expect_same_surfaces(grid, point_field(grid, 1), {2}, with_gradients(options), seed));
+        }
+}
+
+TEST(ActiveCells, HaveThoseAroundThemInRandomGrids) {
+    int compared = 0, needed_all = 0;
+    for (const std::uint32_t seed : Seeds(1, 60)) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const NastyGrid g = nasty_grid(seed, {.side = 4 + int(seed) % 6,
+                                              .values = 2 + int(seed) % 5,
+                                              .no_data = seed % 2 ? 0.05 : 0,
+                                              .missing = 0.1 * (seed % 4),
+                                              .repeated = 0.1});
+        const DirectOptions options = with_edge_ends(seed % 3 ? Ties::merge : Ties::keep);
+        const auto kept = expect_same_surfaces(one_kind(g.grid), g.field, {0.5, 1}, with_gradients(options), seed);
+        (kept ? compared : needed_all) += 1;
+    }
+    if (compared + needed_all >= 10) { // not one seed alone
+        EXPECT_GT(compared, 0);
+    }
+}
+
+TEST(ActiveCells, AreAddedTwiceForGradientNormals) {
+    const Grid grid = one_kind(made_grid("kuhn", 4, {"gyroid"}));
+    const std::vector<double> isovalues{0.1};
+    for (const bool gradients : {false, true}) {
+        const DirectOptions options = gradients ? with_gradients({}) : DirectOptions{};
+        auto filter =
+            ActiveCellFilter::create(grid.points, point_field(grid, 0), isovalues, CellType::tetrahedron, options)
+                .value();
+        filter.add(0, grid.cells.connectivity);
+        if (gradients) {
+            EXPECT_EQ(filter.finish().error().code, ErrorCode::invalid_argument);
+        }
+        EXPECT_EQ(filter.next_round(), gradients);
+        if (gradients) filter.add(0, grid.cells.connectivity);
+        EXPECT_FALSE(filter.next_round());
+        EXPECT_TRUE(filter.finish());
+    }
 }
 
 TEST(ActiveCells, RefuseTypesThatAreNotTakenAndCornersThatDoNotFit) {
@@ -237,7 +302,7 @@ TEST(ActiveCells, RefuseWhatNeedsAllCells) {
     const std::vector<double> too_many(ActiveCellFilter::max_isovalues + 1, isovalue);
     for (int which = 0; which < 5; ++which) {
         DirectOptions options;
-        if (which == 1) options.extract.normals = Normals::gradient;
+        if (which == 1) options.frame.emplace();
         if (which == 2) options.extract.cell_fields = {{"c", Array()}};
         const std::span<const double> isovalues =
             which == 0 ? std::span(too_many) : std::span(&isovalue, which == 3 ? 0 : 1);

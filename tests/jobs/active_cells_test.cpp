@@ -88,6 +88,29 @@ TEST(ActiveCellsOfFiles, GiveTheFileOfAllCells) {
         }
 }
 
+TEST(ActiveCellsOfFiles, HaveThoseAroundThemForGradientNormals) {
+    const test::TemporaryFolder folder;
+    for (const char* shape : {"kuhn", "shuffled", "hex", "layer", "mixed"})
+        for (const char* ending : {".vtu", ".vtk"}) {
+            SCOPED_TRACE(testing::Message() << shape << ending);
+            const std::string file = folder.file("grid") + ending;
+            ASSERT_TRUE(write_grid(made(shape, 16), file));
+            ReadOptions options = active_options({0.1});
+            options.active_cells->options.extract.normals = Normals::gradient;
+            const ReadResult some = read(file, options).value();
+            if (some.cells_in_file) {
+                EXPECT_LT(some.grid.cells.count(), *some.cells_in_file);
+            }
+            ExtractJob job = active_job(file, folder.file("active.vtp"));
+            job.normals = Normals::gradient;
+            job.source_cells = true;
+            Listener listener;
+            EXPECT_EQ(extract_files(job, listener).value().method, Method::direct);
+            EXPECT_FALSE(was_read_twice(listener));
+            EXPECT_TRUE(test::content_of(job.out) == reference_file(job, folder));
+        }
+}
+
 TEST(ActiveCellsOfFiles, AreOfAnyNumberOfIsovaluesWithTheirNumbers) {
     const test::TemporaryFolder folder;
     const std::string file = folder.file("grid.vtu");

@@ -149,6 +149,7 @@ struct Asked {
     std::vector<double> isovalues = {0.1, -0.7, 0};
     bool edge_ends = false, source_cells = false, degenerate = false;
     int threads = 0;
+    Normals normals = Normals::none;
 };
 
 /// The job's file: the bytes are those of the engine that always reads all cells.
@@ -163,6 +164,7 @@ void expect_same_surface(const test::TemporaryFolder& folder, const std::string&
     job.edge_ends = asked.edge_ends;
     job.source_cells = asked.source_cells;
     job.keep_degenerate = asked.degenerate;
+    job.normals = asked.normals;
     Listener listener(asked.threads), other;
     const auto numbers = extract_files(job, listener);
     ASSERT_TRUE(numbers) << numbers.error().message;
@@ -287,6 +289,20 @@ TEST(ActiveCellsOfPieces, AreOfAnyNumberOfIsovalues) {
         expect_same_surface(folder, file, {.isovalues = many_isovalues(), .edge_ends = true});
         expect_same_surface(folder, file, {.field = "integer", .isovalues = {0, 1, 2, 3, 4, 5, 6, 7, 8}});
     }
+}
+
+TEST(ActiveCellsOfPieces, HaveThoseAroundThemForGradientNormals) {
+    const test::TemporaryFolder folder;
+    for (const char* shape : {"shuffled", "hex", "mixed"})
+        for (const std::uint64_t more : {0, 7})
+            for (const bool marked : {false, true}) {
+                SCOPED_TRACE(testing::Message() << shape << ", more " << more << (marked ? ", marked" : ""));
+                const std::string file = write_pieces(folder, {.shape = shape, .more = more, .marked = marked});
+                const Asked asked{.edge_ends = marked, .normals = Normals::gradient};
+                expect_same_surface(folder, file, asked);
+                expect_same_surface(folder, as_blocks(folder, 5), asked);
+                expect_same_surface(folder, file, {.field = "integer", .isovalues = {2}, .normals = Normals::gradient});
+            }
 }
 
 TEST(ActiveCellsOfPieces, HaveTheNumbersOfAllAsSourceCells) {

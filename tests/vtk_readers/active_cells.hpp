@@ -41,16 +41,26 @@ inline void expect_same_of_active_cells(const std::string& file, const std::stri
     ASSERT_EQ(some->grid.point_fields.size(), all->grid.point_fields.size());
     for (std::size_t i = 0; i < all->grid.point_fields.size(); ++i)
         EXPECT_TRUE(are_same(some->grid.point_fields[i].values, all->grid.point_fields[i].values));
+    options.active_cells->options.extract.normals = Normals::gradient;
+    const auto around = read(file, options);
+    ASSERT_TRUE(around) << around.error().message;
+    EXPECT_EQ(around->cells_in_file, all->grid.cells.count());
+    EXPECT_GE(around->grid.cells.count(), some->grid.cells.count());
     const auto field = find_field(all->grid, field_name).value();
     DirectOptions direct;
+    direct.extract.normals = Normals::gradient;
     const auto expected = extract_direct(all->grid, field, isovalues, direct).value();
     direct.active_cells_only = true;
+    const auto with_normals = extract_direct(around->grid, field, isovalues, direct).value();
+    ASSERT_FALSE(with_normals.needs_all_cells);
+    direct.extract.normals = Normals::none;
     const auto found = extract_direct(some->grid, field, isovalues, direct).value();
     ASSERT_FALSE(found.needs_all_cells);
     for (std::size_t i = 0; i < isovalues.size(); ++i) {
         EXPECT_GT(expected.surfaces[i].surface.triangle_count(), 0u);
         EXPECT_TRUE(are_same(found.surfaces[i].surface.positions, expected.surfaces[i].surface.positions));
         EXPECT_TRUE(are_same(found.surfaces[i].surface.triangles, expected.surfaces[i].surface.triangles));
+        EXPECT_TRUE(are_same(with_normals.surfaces[i].surface.normals, expected.surfaces[i].surface.normals));
     }
 }
 

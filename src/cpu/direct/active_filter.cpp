@@ -12,6 +12,7 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
+#include "base/bits.hpp"
 #include "base/buffer.hpp"
 #include "base/parallel.hpp"
 #include "cpu/direct/arena.hpp"
@@ -27,13 +28,17 @@ namespace {
 template <class Point, class Table>
 class Filter final : public ActiveFilter {
 public:
-    Filter(Table table, std::optional<CellType> type, bool keeps_numbers)
+    Filter(Table table, std::optional<CellType> type, const ops::DirectRequest& request)
         : table_(std::move(table)),
-          keeps_numbers_(keeps_numbers),
+          keeps_numbers_(request.source_cells),
+          round_(request.normals ? Round::mark : Round::only),
+          marks_(request.normals ? core::words_of_bits(static_cast<std::size_t>(table_.mask()) + 1) : 0),
           mixed_(!type),
           type_(static_cast<std::uint8_t>(type.value_or(CellType::tetrahedron))),
           corners_(core::fixed_corners_of(type_)),
-          broken_(!mixed_ && !core::is_contoured(type_)) {}
+          broken_(!mixed_ && !core::is_contoured(type_)) {
+        std::ranges::fill(marks_, std::uint64_t{0});
+    }
 
     void add(std::uint64_t first, const Array& corners) override {
         corners.visit([&](auto values) {
@@ -53,6 +58,14 @@ public:
             }
             broken_ = true;
         });
+    }
+
+    void start_second_round() override {
+        join_fragments();
+        round_ = Round::keep_around;
+        for (const Kept& kept : kept_) asked_.insert(asked_.end(), kept.asked.begin(), kept.asked.end());
+        std::ranges::sort(asked_);
+        kept_.clear();
     }
 
     std::optional<Cells> finish() override {
@@ -81,6 +94,12 @@ public:
     Array numbers() const override { return numbers_; }
 
 private:
+    enum class Round : std::uint8_t {
+        only,
+        mark,        ///< points of cells that are cut
+        keep_around, ///< cells that have such points
+    };
+
     struct Kept;
     /// Kept cells of up to `cells_at_once`.
     struct Run {
@@ -120,6 +139,7 @@ private:
         std::vector<Run> runs;
         std::vector<std::uint8_t> types;    ///< of the cells, where each has its own
         std::vector<std::uint64_t> numbers; ///< of the cells, where they are kept
+        std::vector<std::uint64_t> asked;   ///< in the first of two rounds: cells that are kept, but not for being cut
 
         Point* room(std::size_t count) {
             constexpr std::size_t block = arena_block / sizeof(Point);
@@ -202,18 +222,22 @@ private:
         for (std::size_t begin = 0; begin < cells && !broken_.load(std::memory_order_relaxed); begin += cells_at_once) {
             const std::size_t size = std::min(cells_at_once, cells - begin), looked_at = (size + 15) / 16 * 16;
             const Index* const part = corners + n * begin;
+            const auto cell_at = [&](std::size_t place) { return std::span(part + n * place, n); };
             Places keep{};
             if (first_cell + begin == 0 && size) mark(keep, 0); // so that there is a cell to contour
+            if (round_ == Round::keep_around) {
+                keep_around(first_cell + begin, size, keep, {}, cell_at);
+                continue;
+            }
             if (!table_.template look_at<n>(part, size, sums.data())) broken_ = true;
             std::fill(sums.data() + size, sums.data() + looked_at, std::uint16_t{0});
             const std::size_t found =
                 Table::template find_worth_looking<n>(sums, places.data(), static_cast<std::uint32_t>(looked_at));
             for (std::size_t i = 0; i < found; ++i) {
                 const std::uint32_t place = places[i];
-                const bool asked_for = Table::asks(sums[place]) && uses_watched(std::span(part + n * place, n));
-                if (asked_for || Table::is_cut(sums[place], n)) mark(keep, place);
+                look_at(first_cell + begin, place, sums[place], cell_at(place), keep);
             }
-            keep_cells(first_cell + begin, keep, {}, [&](std::size_t place) { return std::span(part + n * place, n); });
+            if (round_ == Round::only) keep_cells(first_cell + begin, keep, {}, cell_at);
         }
     }
 
@@ -250,13 +274,59 @@ private:
         Places keep{};
         if (first_cell == 0) mark(keep, 0); // so that there is a cell to contour
         keep_flat(cells, keep);
+        const auto cell_at = [&](std::size_t place) { return cells.cell(place); };
+        if (round_ == Round::keep_around)
+            return keep_around(first_cell, cells.types.size(), keep, cells.types, cell_at);
         if (!add_up_mixed(cells, sums.data())) broken_ = true;
         for (std::size_t place = 0; place < cells.types.size(); ++place) {
-            if (sums[place] == 0) continue;
-            const bool asked_for = Table::asks(sums[place]) && uses_watched(cells.cell(place));
-            if (asked_for || Table::is_cut(sums[place], cells.cell(place).size())) mark(keep, place);
+            if (sums[place] != 0) look_at(first_cell, place, sums[place], cells.cell(place), keep);
         }
-        keep_cells(first_cell, keep, cells.types, [&](std::size_t place) { return cells.cell(place); });
+        if (round_ == Round::only) keep_cells(first_cell, keep, cells.types, cell_at);
+    }
+
+    /// A cell whose corners are not all alike, or need attention: keeps it, or marks its points.
+    template <class Index>
+    void look_at(std::uint64_t first_cell, std::size_t place, unsigned sum, std::span<const Index> cell, Places& keep) {
+        const bool asked_for = Table::asks(sum) && uses_watched(cell);
+        const bool cut = Table::is_cut(sum, cell.size());
+        if (round_ == Round::only) {
+            if (asked_for || cut) mark(keep, place);
+            return;
+        }
+        if (cut) {
+            for (const Index corner : cell) mark_point(static_cast<std::make_unsigned_t<Index>>(corner));
+        } else if (asked_for) {
+            kept_.local().asked.push_back(first_cell + place);
+        }
+    }
+
+    void mark_point(std::uint64_t point) {
+        point &= table_.mask();
+        const std::atomic_ref word(marks_[point / 64]);
+        const std::uint64_t bit = std::uint64_t{1} << point % 64;
+        if ((word.load(std::memory_order_relaxed) & bit) == 0) word.fetch_or(bit, std::memory_order_relaxed);
+    }
+
+    /// Keeps cells that have marked points, and those that the first round asked for.
+    template <class CellAt>
+    void keep_around(std::uint64_t first_cell, std::size_t cells, Places& keep, std::span<const std::uint8_t> types,
+                     const CellAt& cell_at) {
+        const std::uint64_t mask = table_.mask();
+        std::uint64_t all = 0; // of the corners: a file may change between the rounds
+        for (std::size_t place = 0; place < cells; ++place) {
+            std::uint64_t marked = 0;
+            for (const auto corner : cell_at(place)) {
+                const auto point = static_cast<std::make_unsigned_t<decltype(corner + 0)>>(corner);
+                all |= point;
+                marked |= marks_[(point & mask) / 64] >> point % 64;
+            }
+            if ((marked & 1) != 0) mark(keep, place);
+        }
+        if ((all & ~mask) != 0) broken_ = true;
+        for (auto asked = std::ranges::lower_bound(asked_, first_cell);
+             asked != asked_.end() && *asked < first_cell + cells; ++asked)
+            mark(keep, *asked - first_cell);
+        keep_cells(first_cell, keep, types, cell_at);
     }
 
     /// Cells that are not contoured are counted later.
@@ -339,6 +409,9 @@ private:
     Table table_;
     bool keeps_numbers_;
     Array numbers_; ///< when it is finished
+    Round round_;
+    core::Buffer<std::uint64_t> marks_; ///< a bit for each point of cells that are cut, where there are two rounds
+    std::vector<std::uint64_t> asked_;  ///< ascending, in the second of two rounds
     bool mixed_;    ///< each cell has its own type
     std::uint8_t type_;
     std::size_t corners_; ///< of a cell of the type
@@ -357,10 +430,11 @@ namespace direct {
 namespace {
 
 template <class Table>
-std::unique_ptr<ActiveFilter> filter_with(Table table, std::optional<CellType> type, bool keeps_numbers) {
+std::unique_ptr<ActiveFilter> filter_with(Table table, std::optional<CellType> type,
+                                          const ops::DirectRequest& request) {
     if (table.points() > std::uint64_t{1} << 31)
-        return std::make_unique<Filter<std::uint64_t, Table>>(std::move(table), type, keeps_numbers);
-    return std::make_unique<Filter<std::uint32_t, Table>>(std::move(table), type, keeps_numbers);
+        return std::make_unique<Filter<std::uint64_t, Table>>(std::move(table), type, request);
+    return std::make_unique<Filter<std::uint32_t, Table>>(std::move(table), type, request);
 }
 
 } // namespace
@@ -381,9 +455,9 @@ std::unique_ptr<ActiveFilter> make_active_filter(const ops::DirectInput& input, 
         find_sides(input, survey, isovalue, stored, request.ties, std::exchange(watch, Watch::nothing), sides);
         if (levels) levels->add(sides);
     }
-    if (!levels) return filter_with(OneLevel(std::move(sides)), type, request.source_cells);
+    if (!levels) return filter_with(OneLevel(std::move(sides)), type, request);
     sides = {};
-    return filter_with(*std::move(levels), type, request.source_cells);
+    return filter_with(*std::move(levels), type, request);
 }
 
 template std::unique_ptr<ActiveFilter> make_active_filter<float>(const ops::DirectInput&, const ops::DirectRequest&,

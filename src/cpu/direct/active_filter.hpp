@@ -2,7 +2,8 @@
 // The cells that direct extraction of some isovalues needs, kept of cells that come by in pieces.
 //
 // These are the cells with corners on both sides of an isovalue, and one for each point that must be known to be used
-// (points.hpp): with them extraction sees all that it would see with all cells.
+// (points.hpp): with them extraction sees all that it would see with all cells. Gradient normals need all cells at the
+// points of these, which a second round keeps.
 #pragma once
 
 #include <cstdint>
@@ -24,6 +25,9 @@ public:
 
     /// Whole cells with their types, of filters without a type: each cell once, in any order, from any thread.
     virtual void add_cells(std::uint64_t first_cell, std::span<const std::uint8_t> types, const Array& corners) = 0;
+
+    /// For gradient normals, when all corners were added: they are added once more.
+    virtual void start_second_round() = 0;
 
     /// The cells in their order; nothing where one has a point that is not there, or that no cell may use.
     virtual std::optional<Cells> finish() = 0;

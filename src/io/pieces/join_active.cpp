@@ -66,7 +66,7 @@ public:
         filter_.add(first * corners_of_type_, corners);
     }
     void set_type(CellType type) { corners_of_type_ = core::fixed_corners_of(static_cast<std::uint8_t>(type)); }
-    void set_also(CellTaker& other) { also_ = &other; }
+    void set_also(CellTaker* other) { also_ = other; }
 
     ActiveCellFilter& filter() { return filter_; }
 
@@ -199,15 +199,19 @@ private:
             if (auto enough = BoundaryPass::check_memory(piece.grid.points); !enough) return enough.error();
             boundary.emplace(*options_.active_cells->boundary, piece.grid.points, *piece.unread);
         }
-        const auto done = piece.unread->each_block([&](std::uint64_t first, const Array& corners) {
-            if (progress_.cancelled()) return;
-            type_ ? filter->add(first, corners) : whole.add(first, corners);
-            if (!used_.empty()) mark_corners(corners);
-            if (boundary) boundary->add(first, corners);
-        });
-        if (!done) return done.error();
-        if (progress_.cancelled()) return Error{ErrorCode::cancelled, "looking for active cells was cancelled"};
-        whole.finish();
+        bool is_first = true;
+        do {
+            const auto done = piece.unread->each_block([&](std::uint64_t first, const Array& corners) {
+                if (progress_.cancelled()) return;
+                type_ ? filter->add(first, corners) : whole.add(first, corners);
+                if (is_first && !used_.empty()) mark_corners(corners);
+                if (is_first && boundary) boundary->add(first, corners);
+            });
+            if (!done) return done.error();
+            if (progress_.cancelled()) return Error{ErrorCode::cancelled, "looking for active cells was cancelled"};
+            whole.finish();
+            is_first = false;
+        } while (filter->next_round());
         if (boundary) {
             const auto found = boundary->finish(progress_);
             if (!found) return found.error();
@@ -323,7 +327,7 @@ private:
             if (auto enough = BoundaryPass::check_memory(result.grid.points); !enough) return enough.error();
             search.emplace(result.grid.points);
             for_boundary.emplace(*search, type_, BoundaryTaker::Round::add);
-            static_cast<ActiveTaker&>(*taker).set_also(*for_boundary);
+            static_cast<ActiveTaker&>(*taker).set_also(&*for_boundary);
         }
         std::vector<ActivePass::Target> targets = targets_for(*taker);
         SharedHashes hashes;
@@ -342,11 +346,18 @@ private:
             SharedCells shared;
             for (std::size_t p = 0; p < all_.size(); ++p)
                 targets[p].shared = &shared, targets[p].repeated = (*marks)[p];
-            if (auto done = pass_all(joined->numbers, targets, again); !done) return done.error();
-            if (needs_all_ || again) return std::optional<ReadResult>();
-            repeated = shared.settle(*taker, typed_);
+            do {
+                if (auto done = pass_all(joined->numbers, targets, again); !done) return done.error();
+                if (needs_all_ || again) return std::optional<ReadResult>();
+                repeated = shared.settle(*taker, typed_);
+            } while (goes_another_round(*taker));
             if (repeated.left_out > 0 && numbers_cells()) needs_all_ = true;
             if (needs_all_) return std::optional<ReadResult>();
+        }
+        if (goes_another_round(*taker)) {
+            for (ActivePass::Target& target : targets) target.hashes = nullptr;
+            if (auto done = pass_all(joined->numbers, targets, again); !done) return done.error();
+            if (needs_all_ || again) return std::optional<ReadResult>();
         }
         if (search) {
             const auto found = find_boundary(joined->numbers, result.grid.points, *search);
@@ -362,6 +373,14 @@ private:
         });
         if (found && *found) std::ranges::move(of_fields, std::back_inserter((*found)->notes));
         return found;
+    }
+
+    /// Whether the taker needs all cells once more.
+    bool goes_another_round(CellTaker& taker) const {
+        if (counted_) return false;
+        auto& active = static_cast<ActiveTaker&>(taker);
+        active.set_also(nullptr);
+        return active.filter().next_round();
     }
 
     /// False where all cells are needed.

@@ -11,7 +11,7 @@
 namespace isotet::io::confined {
 namespace {
 
-constexpr std::uint32_t request_version = 0x69730008;
+constexpr std::uint32_t request_version = 0x69730009;
 
 using Names = std::optional<std::vector<std::string>>;
 
@@ -67,14 +67,14 @@ std::optional<SliceShape> decode_shape(Decoder& in) {
 /// Of the options of extraction those that tell which cells are active.
 void encode_active(Encoder& out, const std::optional<ReadActiveCells>& active) {
     const bool can_be_told = active && !active->boundary && !active->choose && !active->options.extract.source_cells &&
-                             active->options.extract.cell_fields.empty() &&
-                             active->options.extract.normals != Normals::gradient && !active->options.frame;
+                             active->options.extract.cell_fields.empty() && !active->options.frame;
     out.number<std::uint8_t>(can_be_told);
     if (!can_be_told) return;
     out.text(active->field);
     out.list(active->isovalues, [&](double isovalue) { out.number(isovalue); });
     out.number<std::uint8_t>(active->options.extract.ties == Ties::keep);
     out.number<std::uint8_t>(active->options.precision == Precision::float64);
+    out.number<std::uint8_t>(active->options.extract.normals == Normals::gradient);
     out.number<std::uint8_t>(active->bounds);
     encode_shape(out, active->shape);
 }
@@ -86,6 +86,7 @@ std::optional<ReadActiveCells> decode_active(Decoder& in) {
     in.list([&] { active.isovalues.push_back(in.number<double>()); });
     if (in.number<std::uint8_t>() != 0) active.options.extract.ties = Ties::keep;
     if (in.number<std::uint8_t>() != 0) active.options.precision = Precision::float64;
+    if (in.number<std::uint8_t>() != 0) active.options.extract.normals = Normals::gradient;
     active.bounds = in.number<std::uint8_t>() != 0;
     active.shape = decode_shape(in);
     return active;
