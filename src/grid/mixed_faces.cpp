@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <vector>
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_sort.h>
 
 #include "base/parallel.hpp"
 #include "grid/cell/native_cells.hpp"
@@ -23,14 +23,18 @@ struct Faces {
     std::vector<Triangle> triangles;
 };
 
+constexpr std::size_t bucket_count = 128;
+using Buckets = std::array<Faces, bucket_count>; ///< by a hash of the lowest point
+using BucketsOfThreads = tbb::enumerable_thread_specific<Buckets>;
+
 template <class Face>
-std::vector<Face> sorted(tbb::enumerable_thread_specific<Faces>& parts, std::vector<Face> Faces::* member) {
+std::vector<Face> sorted(BucketsOfThreads& parts, std::size_t bucket, std::vector<Face> Faces::* member) {
     std::vector<Face> all;
-    for (Faces& part : parts) {
-        all.insert(all.end(), (part.*member).begin(), (part.*member).end());
-        part.*member = {};
+    for (Buckets& part : parts) {
+        all.insert(all.end(), (part[bucket].*member).begin(), (part[bucket].*member).end());
+        part[bucket].*member = {};
     }
-    tbb::parallel_sort(all.begin(), all.end());
+    std::ranges::sort(all);
     return all;
 }
 
@@ -60,21 +64,22 @@ void for_faces(const CellReader& cells, std::size_t cell, const F& f) {
 }
 
 /// The faces whose lowest point is of one share of all points, by a hash.
-Faces faces_of_share(const CellReader& cells, std::uint64_t share, std::uint64_t shares, const Progress& progress) {
-    tbb::enumerable_thread_specific<Faces> parts;
+void deal_share(const CellReader& cells, std::uint64_t share, std::uint64_t shares, const Progress& progress,
+                BucketsOfThreads& parts) {
     parallel_pieces(cells.count(), 1 << 14, progress, [&](std::size_t begin, std::size_t end) {
-        Faces& out = parts.local();
+        Buckets& out = parts.local();
         for (std::size_t cell = begin; cell < end; ++cell) {
             if (!is_contoured(cells.type(cell))) continue;
             for_faces(cells, cell, [&](const FacePoints& face) {
                 const auto& p = face.points;
-                if ((p[0] * 0x9e3779b97f4a7c15u >> 32) % shares != share) return;
-                if (face.count == 4) out.quads.push_back(p);
-                else if (face.count == 3) out.triangles.push_back({p[0], p[1], p[2]});
+                const std::uint64_t hash = p[0] * 0x9e3779b97f4a7c15u >> 32;
+                if (hash % shares != share) return;
+                Faces& bucket = out[hash / shares % bucket_count];
+                if (face.count == 4) bucket.quads.push_back(p);
+                else if (face.count == 3) bucket.triangles.push_back({p[0], p[1], p[2]});
             });
         }
     });
-    return {sorted(parts, &Faces::quads), sorted(parts, &Faces::triangles)};
 }
 
 /// A face that has three corners of a quadrilateral, its lowest among them; where two triangles meet it, one has.
@@ -99,17 +104,24 @@ std::uint64_t count_quads_on_triangles(const CellReader& cells, std::uint64_t me
 
     const std::uint64_t bytes = 6 * cells.count() * sizeof(Quad) * 2;
     const std::uint64_t shares = 1 + bytes / std::max<std::uint64_t>(memory, 1 << 20);
-    std::uint64_t count = 0;
+    std::atomic<std::uint64_t> count = 0;
     for (std::uint64_t share = 0; share < shares && !progress.cancelled(); ++share) {
-        const Faces faces = faces_of_share(cells, share, shares, progress);
-        for (std::size_t i = 0; i < faces.quads.size();) {
-            std::size_t next = i + 1;
-            while (next < faces.quads.size() && faces.quads[next] == faces.quads[i]) ++next;
-            if (next == i + 1) count += meets_triangle(faces.quads[i], faces.triangles);
-            i = next;
-        }
+        BucketsOfThreads parts;
+        deal_share(cells, share, shares, progress, parts);
+        parallel_pieces(bucket_count, 1, progress, [&](std::size_t bucket, std::size_t) {
+            const auto all = sorted(parts, bucket, &Faces::quads);
+            const auto of_three = sorted(parts, bucket, &Faces::triangles);
+            std::uint64_t found = 0;
+            for (std::size_t i = 0; i < all.size();) {
+                std::size_t next = i + 1;
+                while (next < all.size() && all[next] == all[i]) ++next;
+                if (next == i + 1) found += meets_triangle(all[i], of_three);
+                i = next;
+            }
+            count += found;
+        });
     }
-    return progress.cancelled() ? 0 : count;
+    return progress.cancelled() ? 0 : count.load();
 }
 
 } // namespace isotet::core

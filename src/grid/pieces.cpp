@@ -22,6 +22,13 @@ namespace {
 
 constexpr std::size_t pieces_grain = 1 << 16;
 
+/// Asks for every so many cells.
+bool is_cancelled_at(std::uint64_t cell, const Progress& progress) {
+    return cell % pieces_grain == 0 && progress.cancelled();
+}
+
+Error taking_cancelled() { return {ErrorCode::cancelled, "taking cells was cancelled"}; }
+
 core::Buffer<std::uint64_t> run_of(std::uint64_t first, std::uint64_t last) {
     core::Buffer<std::uint64_t> out(last - first);
     for (std::uint64_t i = first; i < last; ++i) out[i - first] = i;
@@ -35,11 +42,12 @@ std::vector<Field> in_order(const std::vector<Field>& fields, const core::Buffer
 }
 
 /// The points that some cells use, ascending.
-Result<core::Buffer<std::uint64_t>> used_points(const core::CellReader& cells, std::uint64_t first,
-                                                std::uint64_t last) {
+Result<core::Buffer<std::uint64_t>> used_points(const core::CellReader& cells, std::uint64_t first, std::uint64_t last,
+                                                const Progress& progress) {
     std::vector<std::uint8_t> used(cells.points(), 0);
     std::uint64_t count = 0;
     for (std::uint64_t cell = first; cell < last; ++cell) {
+        if (is_cancelled_at(cell - first, progress)) return taking_cancelled();
         const std::uint64_t begin = cells.first(cell), corners = cells.corners(cell);
         if (corners > cells.connectivity_size() || begin > cells.connectivity_size() - corners)
             return invalid_data(fmt::format("cells[{}] ends beyond the connectivity, which has {} entries", cell,
@@ -62,12 +70,14 @@ Result<core::Buffer<std::uint64_t>> used_points(const core::CellReader& cells, s
 
 /// The faces of some cells, where `renumber` has their points.
 template <class Renumber>
-Result<void> take_faces(const Grid& grid, std::uint64_t first, std::uint64_t last, Renumber&& renumber, Cells& out) {
+Result<void> take_faces(const Grid& grid, std::uint64_t first, std::uint64_t last, Renumber&& renumber, Cells& out,
+                        const Progress& progress) {
     const auto faces = core::FaceReader::open(grid.cells);
     if (!faces) return faces.error();
     if (!faces->has_faces()) return {};
     std::vector<std::int64_t> stream, offsets{0};
     for (std::uint64_t cell = first; cell < last; ++cell) {
+        if (is_cancelled_at(cell - first, progress)) return taking_cancelled();
         if (const std::string fault = core::fault_of_faces(*faces, cell, grid.points.tuples()); !fault.empty())
             return invalid_data(fmt::format("cells[{}] {}", cell, fault));
         std::uint64_t at = faces->begin(cell);
@@ -92,7 +102,7 @@ Result<void> take_faces(const Grid& grid, std::uint64_t first, std::uint64_t las
 }
 
 Result<Cells> cells_of(const Grid& grid, const core::CellReader& cells, std::uint64_t first, std::uint64_t last,
-                       const core::Buffer<std::uint64_t>& points) {
+                       const core::Buffer<std::uint64_t>& points, const Progress& progress) {
     std::vector<std::int64_t> place(cells.points(), -1);
     for (std::size_t i = 0; i < points.size(); ++i) place[points[i]] = static_cast<std::int64_t>(i);
     std::uint64_t corners = 0;
@@ -100,6 +110,7 @@ Result<Cells> cells_of(const Grid& grid, const core::CellReader& cells, std::uin
     core::Buffer<std::int64_t> connectivity(corners), offsets(last - first + 1);
     std::uint64_t next = 0;
     for (std::uint64_t cell = first; cell < last; ++cell) {
+        if (is_cancelled_at(cell - first, progress)) return taking_cancelled();
         offsets[cell - first] = static_cast<std::int64_t>(next);
         const std::uint64_t begin = cells.first(cell);
         for (std::uint64_t i = 0; i < cells.corners(cell); ++i) connectivity[next++] = place[cells.corner(begin + i)];
@@ -111,7 +122,7 @@ Result<Cells> cells_of(const Grid& grid, const core::CellReader& cells, std::uin
     if (!grid.cells.offsets.empty()) out.offsets = std::move(offsets).to_array();
     if (!grid.cells.types.empty()) out.types = core::in_order(grid.cells.types, run_of(first, last));
     const auto renumber = [&](std::uint64_t point) { return place[point]; };
-    if (auto taken = take_faces(grid, first, last, renumber, out); !taken) return taken.error();
+    if (auto taken = take_faces(grid, first, last, renumber, out, progress); !taken) return taken.error();
     return out;
 }
 
@@ -122,7 +133,7 @@ Array numbers_of(const Grid& grid, const core::Buffer<std::uint64_t>& points) {
     return std::move(numbers).to_array();
 }
 
-Result<Grid> take(const Grid& grid, std::uint64_t first, std::uint64_t last) {
+Result<Grid> take(const Grid& grid, std::uint64_t first, std::uint64_t last, const Progress& progress) {
     const auto cells = core::CellReader::open(grid);
     if (!cells) return cells.error();
     if (first > last || last > cells->count())
@@ -131,10 +142,10 @@ Result<Grid> take(const Grid& grid, std::uint64_t first, std::uint64_t last) {
     if (!grid.point_numbers.empty() && grid.point_numbers.tuples() != grid.points.tuples())
         return invalid_data(fmt::format("there are {} point numbers, but {} points", grid.point_numbers.tuples(),
                                         grid.points.tuples()));
-    const auto points = used_points(*cells, first, last);
+    const auto points = used_points(*cells, first, last, progress);
     if (!points) return points.error();
     Grid out;
-    auto taken = cells_of(grid, *cells, first, last, *points);
+    auto taken = cells_of(grid, *cells, first, last, *points, progress);
     if (!taken) return taken.error();
     out.points = core::in_order(grid.points, *points);
     out.cells = *std::move(taken);
@@ -223,7 +234,8 @@ Result<Surface> leave_out(const Surface& surface, const Array& marks, std::uint6
 } // namespace
 
 Result<Grid> take_cells(const Grid& grid, std::uint64_t first, std::uint64_t last, const Run& run) {
-    return core::carry_out("taking cells", run, [&](const Progress&) { return take(grid, first, last); });
+    return core::carry_out("taking cells", run,
+                           [&](const Progress& progress) { return take(grid, first, last, progress); });
 }
 
 std::uint64_t first_cell_of(const Grid& grid, const PieceOf& which) noexcept {

@@ -43,11 +43,13 @@ Result<TetList> split_by_index(const Grid& grid, const Progress& progress) {
     if (!cells) return cells.error();
     if (auto ok = check_cells(grid, *cells, progress); !ok) return ok.error();
     TetList list;
-    for (std::size_t cell = 0; cell < cells->count(); ++cell)
+    for (std::size_t cell = 0; cell < cells->count(); ++cell) {
+        if (cell % (1 << 16) == 0 && progress.cancelled()) return cancelled();
         for (const Tet& tet : cells->tets(cell)) {
             list.tets.push_back(tet);
             list.cells.push_back(cell);
         }
+    }
     if (list.tets.empty()) return nothing_to_contour(grid, *cells);
     return list;
 }

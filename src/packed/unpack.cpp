@@ -25,6 +25,8 @@ namespace {
 /// VTK's numbers, by CellKind.
 constexpr std::array<std::uint8_t, cell_kind_count> vtk_types{10, 14, 13, 12};
 
+Error unpacking_cancelled() { return {ErrorCode::cancelled, "unpacking was cancelled"}; }
+
 /// An array by the user's point numbers: f(packed point, out) writes `components` of a used point; points that no cell uses
 /// have what unused() gives, once the first cluster is in memory.
 /// Errors   as Residency::bring()
@@ -33,7 +35,7 @@ Result<Array> by_user_point(const Packed& packed, std::size_t components, const 
                             const Unused& unused, const F& f) {
     Buffer<To> out(components * packed.user_points);
     const auto fill = [&](const std::array<To, 3>& with) {
-        parallel_ranges(packed.user_points, 1 << 16, [&](std::size_t begin, std::size_t end) {
+        parallel_pieces(packed.user_points, 1 << 16, progress, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
                 std::copy_n(with.begin(), components, out.data() + components * i);
         });
@@ -42,11 +44,14 @@ Result<Array> by_user_point(const Packed& packed, std::size_t components, const 
     if (clusters.empty()) fill({});
     const auto write = [&](std::size_t first, std::size_t last) -> Result<void> {
         if (first == 0 && last > 0) fill(unused());
-        parallel_each(last - first, 128, [&](std::size_t i) {
-            const ClusterHeader& h = packed.headers[first + i];
-            for (std::uint64_t p = h.first_point; p < h.first_point + h.own_points; ++p)
-                f(p, out.data() + components * packed.user_point(p));
+        parallel_pieces(last - first, 128, progress, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const ClusterHeader& h = packed.headers[first + i];
+                for (std::uint64_t p = h.first_point; p < h.first_point + h.own_points; ++p)
+                    f(p, out.data() + components * packed.user_point(p));
+            }
         });
+        if (progress.cancelled()) return unpacking_cancelled();
         return {};
     };
     if (auto done = in_memory(packed, clusters, Parts::values, progress, write); !done) return done.error();
@@ -125,14 +130,14 @@ UnpackedCounts count_stored(const Packed& packed) {
     return counts;
 }
 
-/// Cells cluster after cluster, as they are stored.
+/// Cells cluster after cluster, as they are stored. Cancelled, they are of no use.
 template <class Index>
-Cells unpacked_cells(const Packed& packed, const UnpackedCounts& counts) {
+Cells unpacked_cells(const Packed& packed, const UnpackedCounts& counts, const Progress& progress) {
     const std::size_t cells = counts.first_cell.back();
     Buffer<Index> connectivity(counts.first_corner.back());
     Buffer<std::int64_t> offsets(counts.only_tets ? 0 : cells + 1);
     Buffer<std::uint8_t> types(counts.only_tets ? 0 : cells);
-    parallel_each(packed.clusters(), 64, [&](std::size_t c) {
+    const auto unpack_cluster = [&](std::size_t c) {
         std::array<std::uint64_t, max_cluster_points> locals;
         local_points(packed, c, locals.data());
         std::uint64_t cell = counts.first_cell[c], corner = counts.first_corner[c];
@@ -146,6 +151,9 @@ Cells unpacked_cells(const Packed& packed, const UnpackedCounts& counts) {
                 connectivity[corner++] = static_cast<Index>(packed.user_point(locals[local]));
         };
         for_cells(packed, c, add);
+    };
+    parallel_pieces(packed.clusters(), 64, progress, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t c = begin; c < end; ++c) unpack_cluster(c);
     });
     Cells out;
     out.connectivity = std::move(connectivity).to_array();
@@ -248,8 +256,9 @@ Result<Grid> unpacked(const Packed& packed, const Progress& progress) {
     if (!grid) return grid;
     const UnpackedCounts counts = count_stored(packed);
     constexpr std::uint64_t narrow = std::uint64_t{1} << 31;
-    grid->cells = packed.user_points < narrow ? unpacked_cells<std::int32_t>(packed, counts)
-                                              : unpacked_cells<std::int64_t>(packed, counts);
+    grid->cells = packed.user_points < narrow ? unpacked_cells<std::int32_t>(packed, counts, progress)
+                                              : unpacked_cells<std::int64_t>(packed, counts, progress);
+    if (progress.cancelled()) return unpacking_cancelled();
     return grid;
 }
 

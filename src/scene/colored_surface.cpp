@@ -14,6 +14,7 @@
 #include <isotet/contour.hpp>
 #include <isotet/scene.hpp>
 
+#include "base/carry_out.hpp"
 #include "base/errors.hpp"
 
 namespace isotet::scene {
@@ -55,6 +56,42 @@ Array gathered_of_cells(const Array& values, const std::vector<std::uint64_t>& c
     return Array::own(std::move(out));
 }
 
+Result<std::vector<std::uint64_t>> cells_at(const Surface& boundary, const Grid& grid, const Run& run) {
+    const auto ends = boundary.edge_ends.as<std::int64_t>();
+    std::unordered_map<Face, std::size_t, FaceHash> faces(boundary.triangle_count());
+    boundary.triangles.visit([&](auto corners) {
+        for (std::size_t i = 0; i < boundary.triangle_count() && !run.progress.cancelled(); ++i) {
+            Face face{};
+            for (std::size_t k = 0; k < 3; ++k)
+                face[k] = static_cast<std::uint64_t>(ends[2 * static_cast<std::size_t>(corners[3 * i + k])]);
+            std::ranges::sort(face);
+            faces.emplace(face, i);
+        }
+    });
+    const Result<LinearGrid> linear = linearize({grid.points, grid.cells, {}, {}}, {}, run);
+    if (!linear) return linear.error();
+    const Result<TetList> tets = split(linear->grid, run);
+    if (!tets) return tets.error();
+    const auto user_cell = [&](std::uint64_t cell) {
+        return linear->source_cells.empty() ? cell : linear->source_cells.as<std::uint64_t>()[cell];
+    };
+    std::vector<std::uint64_t> cells(boundary.triangle_count(), UINT64_MAX);
+    for (std::size_t tet = 0; tet < tets->tets.size(); ++tet) {
+        if (tet % (1 << 14) == 0 && run.progress.cancelled())
+            return Error{ErrorCode::cancelled, "finding cells at the boundary was cancelled"};
+        for (std::size_t left_out = 0; left_out < 4; ++left_out) {
+            Face face{};
+            for (std::size_t k = 0, to = 0; k < 4; ++k)
+                if (k != left_out) face[to++] = tets->tets[tet][k];
+            std::ranges::sort(face);
+            const auto found = faces.find(face);
+            if (found != faces.end())
+                cells[found->second] = std::min(cells[found->second], user_cell(tets->cells[tet]));
+        }
+    }
+    return cells;
+}
+
 } // namespace
 
 SurfaceColors carried_colors(const Surface& surface, const ColorField& field) {
@@ -71,37 +108,9 @@ Result<std::vector<std::uint64_t>> boundary_cells(const Surface& boundary, const
         const auto known = boundary.source_cells.as<std::int64_t>();
         return std::vector<std::uint64_t>(known.begin(), known.end());
     }
-    const auto ends = boundary.edge_ends.as<std::int64_t>();
-    std::unordered_map<scene::Face, std::size_t, scene::FaceHash> faces(boundary.triangle_count());
-    boundary.triangles.visit([&](auto corners) {
-        for (std::size_t i = 0; i < boundary.triangle_count(); ++i) {
-            scene::Face face{};
-            for (std::size_t k = 0; k < 3; ++k)
-                face[k] = static_cast<std::uint64_t>(ends[2 * static_cast<std::size_t>(corners[3 * i + k])]);
-            std::ranges::sort(face);
-            faces.emplace(face, i);
-        }
+    return core::carry_out("finding cells at the boundary", run, [&](const Progress& progress) {
+        return scene::cells_at(boundary, grid, {.threads = core::threads_here(), .progress = progress});
     });
-    const Result<LinearGrid> linear = linearize({grid.points, grid.cells, {}, {}}, {}, run);
-    if (!linear) return linear.error();
-    const Result<TetList> tets = split(linear->grid, run);
-    if (!tets) return tets.error();
-    const auto user_cell = [&](std::uint64_t cell) {
-        return linear->source_cells.empty() ? cell : linear->source_cells.as<std::uint64_t>()[cell];
-    };
-    std::vector<std::uint64_t> cells(boundary.triangle_count(), UINT64_MAX);
-    for (std::size_t tet = 0; tet < tets->tets.size(); ++tet) {
-        for (std::size_t left_out = 0; left_out < 4; ++left_out) {
-            scene::Face face{};
-            for (std::size_t k = 0, to = 0; k < 4; ++k)
-                if (k != left_out) face[to++] = tets->tets[tet][k];
-            std::ranges::sort(face);
-            const auto found = faces.find(face);
-            if (found != faces.end())
-                cells[found->second] = std::min(cells[found->second], user_cell(tets->cells[tet]));
-        }
-    }
-    return cells;
 }
 
 Result<std::vector<Field>> fields_at_boundary(const Surface& boundary, const Grid& grid, std::span<const Field> fields,

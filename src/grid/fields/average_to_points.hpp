@@ -25,8 +25,9 @@ namespace isotet::core {
 ///              2^32 cells) beside the result, which is float32 for float32 and float64 for all other types
 /// `by_value`        cells around a point are added in the order of their values and volumes, not of their numbers, and
 ///                   volumes follow from Grid::point_numbers: pieces with ghost cells get the values of the whole
-Array average_to_points(const Grid& grid, const CellReader& cells, const Array& values, Scalar scalar,
-                        bool by_value = false, std::span<const double> volumes = {});
+/// Cancelled, the values are of no use.
+Array average_to_points(const Grid& grid, const CellReader& cells, const Array& values, Scalar scalar, bool by_value,
+                        std::span<const double> volumes, const Progress& progress);
 
 /// Six times the volume of a cell: the sum over its tets, each taken as positive; -1 for one that is not contoured.
 double six_volumes_of(const CellReader& cells, const PointReader& points, std::size_t cell);

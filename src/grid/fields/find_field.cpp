@@ -86,7 +86,7 @@ Result<PointField> find_by_name(const Grid& grid, std::string_view name, const F
 
     PointField found{std::string(name), {}, take_cells, {}};
     if (take_cells) {
-        auto values = core::average_field(grid, field, *scalar, options.for_pieces);
+        auto values = core::average_field(grid, field, *scalar, options.for_pieces, progress);
         if (!values) return values.error();
         found.values = std::move(*values);
         if (options.keep_cell_values) found.cell_values = core::scalar_of(field.values, *scalar);

@@ -2,11 +2,14 @@
 // For each key (a point, a vertex) the list of items (cells, triangles) that use it.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
+
+#include <isotet/progress.hpp>
 
 #include "base/buffer.hpp"
 #include "base/parallel.hpp"
@@ -18,16 +21,22 @@ namespace isotet::core {
 template <class Index>
 class Incidence {
 public:
-    /// `keys_of(item, body)` calls body(key) for every key of an item, the same ones each time.
+    /// `keys_of(item, body)` calls body(key) for every key of an item, the same ones each time. Cancelled, no list is sound.
     template <class KeysOf>
-    Incidence(std::size_t keys, std::size_t items, const KeysOf& keys_of) : begins_(keys + 1) {
+    Incidence(std::size_t keys, std::size_t items, const KeysOf& keys_of, const Progress& progress = {})
+        : begins_(keys + 1) {
         constexpr std::size_t grain = 1 << 14;
         const auto for_uses = [&](const auto& body) {
-            parallel_each(items, grain, [&](std::size_t item) {
-                keys_of(item, [&](std::uint64_t key) { body(item, std::atomic_ref(begins_[key])); });
+            parallel_pieces(items, grain, progress, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t item = begin; item < end; ++item)
+                    keys_of(item, [&](std::uint64_t key) { body(item, std::atomic_ref(begins_[key])); });
             });
         };
         for_uses([](std::size_t, auto count) { count.fetch_add(1, std::memory_order_relaxed); });
+        if (progress.cancelled()) { // not all were counted
+            std::ranges::fill(begins_, 0);
+            return;
+        }
         std::uint64_t sum = 0;
         for (std::uint64_t& end : begins_) end = sum += end;
         items_ = Buffer<Index>(sum);

@@ -2,6 +2,7 @@
 #include "grid/fields/one_field.hpp"
 
 #include <algorithm>
+#include <span>
 
 #include <fmt/core.h>
 
@@ -37,20 +38,26 @@ Result<void> check_length(const Field& field, std::string_view what, std::size_t
                                         what));
 }
 
-Result<Array> average_field(const Grid& grid, const Field& field, Scalar scalar, bool by_value) {
+Result<Array> average_field(const Grid& grid, const Field& field, Scalar scalar, bool by_value,
+                            const Progress& progress) {
     const Grid bare{grid.points, grid.cells, {}, {}, grid.point_numbers};
     const auto cells = CellReader::open(bare);
     if (!cells) return cells.error();
     if (auto fits = check_length(field, "cell", cells->count()); !fits) return fits.error();
+    const auto averaged = [&](std::span<const double> volumes) -> Result<Array> {
+        Array values = average_to_points(bare, *cells, field.values, scalar, by_value, volumes, progress);
+        if (progress.cancelled()) return Error{ErrorCode::cancelled, "averaging a cell field was cancelled"};
+        return values;
+    };
     if (has_cells_to_linearize(grid.cells)) { // which checks the cells, too
-        const auto volumes = relative_volumes(bare, {.threads = threads_here()});
+        const auto volumes = relative_volumes(bare, {.threads = threads_here(), .progress = progress});
         if (!volumes) return volumes.error();
-        return average_to_points(bare, *cells, field.values, scalar, by_value, *volumes);
+        return averaged(*volumes);
     }
-    if (auto sound = check_cells(bare, *cells, {}); !sound) return sound.error();
+    if (auto sound = check_cells(bare, *cells, progress); !sound) return sound.error();
     if (by_value && !grid.point_numbers.empty())
         if (auto numbers = check_point_numbers(bare); !numbers) return numbers.error();
-    return average_to_points(bare, *cells, field.values, scalar, by_value);
+    return averaged({});
 }
 
 } // namespace isotet::core

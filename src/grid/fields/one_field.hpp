@@ -20,6 +20,7 @@ Result<std::optional<Field>> find_or_gather(const std::vector<Field>& fields, co
 Result<void> check_length(const Field& field, std::string_view what, std::size_t expected);
 
 /// A cell field averaged to the points of its grid, which is checked first; `by_value` as average_to_points() has it.
-Result<Array> average_field(const Grid& grid, const Field& field, Scalar scalar, bool by_value);
+Result<Array> average_field(const Grid& grid, const Field& field, Scalar scalar, bool by_value,
+                            const Progress& progress);
 
 } // namespace isotet::core

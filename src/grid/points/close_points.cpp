@@ -48,10 +48,12 @@ public:
         tbb::parallel_sort(placed_.begin(), placed_.end());
     }
 
-    std::vector<std::uint64_t> lowest() {
-        parallel_each(placed_.size(), 1 << 10, [&](std::size_t i) {
-            if (i == 0 || placed_[i - 1].cell != placed_[i].cell) join_cell(i);
+    std::vector<std::uint64_t> lowest(const Progress& progress) {
+        parallel_pieces(placed_.size(), 1 << 10, progress, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                if (i == 0 || placed_[i - 1].cell != placed_[i].cell) join_cell(i);
         });
+        if (progress.cancelled()) return {};
         std::vector<std::uint64_t> result(sets_.size());
         parallel_each(result.size(), 1 << 14, [&](std::size_t point) { result[point] = sets_.root(point); });
         return result;
@@ -107,8 +109,8 @@ private:
 } // namespace
 
 std::vector<std::uint64_t> lowest_of_chain(const Array& points, const std::vector<std::uint8_t>& wanted,
-                                           const Point& lower, double tolerance) {
-    return Chains(points, wanted, lower, tolerance).lowest();
+                                           const Point& lower, double tolerance, const Progress& progress) {
+    return Chains(points, wanted, lower, tolerance).lowest(progress);
 }
 
 } // namespace isotet::core

@@ -7,6 +7,7 @@
 
 #include <isotet/array.hpp>
 #include <isotet/export.hpp>
+#include <isotet/progress.hpp>
 
 #include "numbers/exact.hpp"
 
@@ -20,9 +21,10 @@ namespace isotet::core {
 /// `lower`       the lower corner of a box around the wanted points, at most 2^40 times the tolerance long
 /// `tolerance`   above 0
 ///
-/// Guarantees   the same for any thread count
+/// Guarantees   the same for any thread count; cancelled, it is of no use
 /// Cost         O(n log n), 40 bytes a point; more only where crowds of points are just out of each other's reach
 ISOTET_API std::vector<std::uint64_t> lowest_of_chain(const Array& points, const std::vector<std::uint8_t>& wanted,
-                                           const Point& lower, double tolerance);
+                                                      const Point& lower, double tolerance,
+                                                      const Progress& progress = {});
 
 } // namespace isotet::core

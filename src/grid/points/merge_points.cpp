@@ -161,7 +161,7 @@ Result<MergedPoints> merge(const Grid& grid, const MergeOptions& options, const 
             return Error{ErrorCode::invalid_argument,
                          fmt::format("the tolerance is {}, but for a grid of length {} it must be 0 or at least {}",
                                      tolerance, box.length(), 0x1p-40 * box.length())};
-        lowest = core::lowest_of_chain(grid.points, used, box.lower, tolerance);
+        lowest = core::lowest_of_chain(grid.points, used, box.lower, tolerance, progress);
     } else {
         lowest = core::lowest_at_same_place(grid.points, used.data());
     }

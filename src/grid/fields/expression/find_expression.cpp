@@ -18,13 +18,13 @@ namespace isotet::core {
 namespace {
 
 /// Each component averaged.
-Result<Array> average_components(const Grid& grid, const Field& field, bool by_value) {
+Result<Array> average_components(const Grid& grid, const Field& field, bool by_value, const Progress& progress) {
     const std::size_t components = field.values.components(), points = grid.points.tuples();
-    if (components == 1) return average_field(grid, field, {}, by_value);
+    if (components == 1) return average_field(grid, field, {}, by_value, progress);
     Buffer<double> all(points * components);
     bool is_narrow = false;
     for (std::size_t c = 0; c < components; ++c) {
-        const auto averaged = average_field(grid, field, {c, false}, by_value);
+        const auto averaged = average_field(grid, field, {c, false}, by_value, progress);
         if (!averaged) return averaged;
         is_narrow = averaged->type() == ScalarType::float32;
         averaged->visit([&](auto values) {
@@ -59,7 +59,7 @@ private:
             grid_.cells.count(), [&](const ExpressionNode& node) { return values_in_cells(node); }, {}};
         auto values = evaluate_expression(tree_, source, progress_);
         if (!values) return values.error();
-        auto averaged = average_field(grid_, {tree_.text, *values}, {}, options_.for_pieces);
+        auto averaged = average_field(grid_, {tree_.text, *values}, {}, options_.for_pieces, progress_);
         if (!averaged) return averaged.error();
         PointField found{tree_.text, *std::move(averaged), true, {}};
         if (options_.keep_cell_values) found.cell_values = *std::move(values);
@@ -103,7 +103,7 @@ private:
         if (!*at_points && !*in_cells)
             return invalid_argument(fmt::format("the components of '{}' are of points and of cells", node.field.field));
         if (*in_cells && (!*at_points || options_.prefer == Association::cell))
-            return average_components(grid_, **in_cells, options_.for_pieces);
+            return average_components(grid_, **in_cells, options_.for_pieces, progress_);
         if (auto fits = check_length(**at_points, "point", grid_.points.tuples()); !fits) return fits.error();
         return (*at_points)->values;
     }

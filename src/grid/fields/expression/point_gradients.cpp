@@ -98,12 +98,15 @@ private:
 template <class Index>
 Result<Array> gradients(const CellReader& cells, const PointReader& points, const Array& values, std::size_t wanted,
                         const Progress& progress) {
-    Incidence<Index> around(wanted, cells.count(), [&](std::size_t cell, const auto& body) {
-        if (!is_contoured(cells.type(cell))) return;
-        const std::uint64_t first = cells.first(cell), end = first + cells.corners(cell);
-        for (std::uint64_t i = first; i < end; ++i)
-            if (cells.corner(i) < wanted) body(cells.corner(i));
-    });
+    Incidence<Index> around(
+        wanted, cells.count(),
+        [&](std::size_t cell, const auto& body) {
+            if (!is_contoured(cells.type(cell))) return;
+            const std::uint64_t first = cells.first(cell), end = first + cells.corners(cell);
+            for (std::uint64_t i = first; i < end; ++i)
+                if (cells.corner(i) < wanted) body(cells.corner(i));
+        },
+        progress);
     const std::size_t width = 3 * values.components();
     const std::span<const double> all = values.as<double>();
     Buffer<double> out(wanted * width);
