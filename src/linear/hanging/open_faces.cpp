@@ -52,7 +52,9 @@ public:
 
     Result<OpenFaces> find() {
         add_hashes();
-        const std::vector<FoundFace> found = alone_of(collect());
+        auto collected = collect();
+        if (!collected) return collected.error();
+        const std::vector<FoundFace> found = alone_of(*std::move(collected));
         if (progress_.cancelled()) return Error{ErrorCode::cancelled, "looking for hanging points was cancelled"};
         return shared_of(found);
     }
@@ -100,7 +102,7 @@ private:
     }
 
     /// Faces at points whose sums are not 0, by cells.
-    std::vector<FoundFace> collect() const {
+    Result<std::vector<FoundFace>> collect() const {
         std::vector<std::vector<FoundFace>> parts((cells_.count() + cells_per_look - 1) / cells_per_look);
         core::parallel_pieces(parts.size(), 1, progress_, [&](std::size_t first, std::size_t last) {
             FaceWalk walk(cells_, faces_);
@@ -115,7 +117,13 @@ private:
                 }
             }
         });
+        std::size_t count = 0;
+        for (const std::vector<FoundFace>& part : parts) count += part.size();
+        constexpr std::uint64_t bytes_each = sizeof(FoundFace) + 2 * sizeof(core::Keyed) + 1; // alone_of() too
+        if (auto fits = core::require_memory("looking for hanging points", bytes_each * count); !fits)
+            return fits.error();
         std::vector<FoundFace> out;
+        out.reserve(count);
         for (std::vector<FoundFace>& part : parts) {
             out.insert(out.end(), part.begin(), part.end());
             part = {};
