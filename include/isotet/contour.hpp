@@ -151,6 +151,9 @@ struct ContourOptions {
     /// What is packed has gradients and the cells of tets, so that normals and cell fields that are asked for later do not
     /// pack again: 4 bytes a point and 4 a tet.
     bool pack_all = false;
+    /// As ExtractOptions::sink. What is not as the engine made it (source cells of cells that were made linear, vertices that were
+    /// moved) is copied there.
+    std::shared_ptr<SurfaceSink> sink = {};
 };
 
 /// What set() had to do.

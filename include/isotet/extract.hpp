@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,6 +16,8 @@
 #include <isotet/surface.hpp>
 
 namespace isotet {
+
+class SurfaceSink;
 
 enum class Ties : std::uint8_t {
     merge, ///< default mode: vertices on edges that meet in a tied point are one vertex; no zero-area triangles at ties
@@ -31,6 +34,8 @@ struct ExtractOptions {
                                            ///< points, made by with_field() or of the same PackedFile. On the CPU only
     std::vector<Field> cell_fields;  ///< copied to the triangles: one tuple a user's cell; needs
                                      ///< PackOptions::source_cells
+    std::shared_ptr<SurfaceSink> sink; ///< gives the memory of surfaces (surface_sink.hpp): the CPU engine makes them
+                                       ///< there, and what comes from a device is copied; null: isotet's own
 };
 
 struct ExtractReport {

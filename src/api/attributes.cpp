@@ -33,11 +33,12 @@ void with_indices(const Array& triangles, Work&& work) {
 } // namespace
 
 template <class Real>
-Array interpolate_field(const Field& field, const core::Storage& storage, const ops::RawSurface& raw) {
+Array interpolate_field(const Field& field, const core::Storage& storage, const ops::RawSurface& raw,
+                        const core::ArraySlot& slot) {
     const std::size_t components = field.values.components(), vertices = raw.ends.tuples();
     const auto ends = raw.ends.as<std::int64_t>();
     const auto weights = raw.weights.as<Real>();
-    core::Buffer<Real> out(vertices * components);
+    core::SharedBuffer<Real> out = slot.make<Real>(vertices, components);
     field.values.visit([&](auto values) {
         core::parallel_each(vertices, grain, [&](std::size_t v) {
             const auto below = static_cast<std::size_t>(ends[2 * v]), above = static_cast<std::size_t>(ends[2 * v + 1]);
@@ -50,12 +51,12 @@ Array interpolate_field(const Field& field, const core::Storage& storage, const 
     return std::move(out).to_array(components);
 }
 
-Field copy_cell_field(const Field& field, const ops::RawSurface& raw) {
+Field copy_cell_field(const Field& field, const ops::RawSurface& raw, const core::ArraySlot& slot) {
     const auto cells = raw.source_cells.as<std::int64_t>();
     const std::size_t components = field.values.components();
     Field out{field.name, {}};
     field.values.visit([&]<class T>(std::span<const T> values) {
-        core::Buffer<T> copy(cells.size() * components);
+        core::SharedBuffer<T> copy = slot.make<T>(cells.size(), components);
         core::parallel_each(cells.size(), grain, [&](std::size_t t) {
             std::copy_n(values.data() + static_cast<std::size_t>(cells[t]) * components, components,
                         copy.data() + t * components);
@@ -66,8 +67,8 @@ Field copy_cell_field(const Field& field, const ops::RawSurface& raw) {
 }
 
 template <class Real>
-Array face_normals(const ops::RawSurface& raw) {
-    core::Buffer<float> normals(3 * raw.triangles.tuples());
+Array face_normals(const ops::RawSurface& raw, const core::ArraySlot& slot) {
+    core::SharedBuffer<float> normals = slot.make<float>(raw.triangles.tuples(), 3);
     const Real* positions = raw.positions.as<Real>().data();
     with_indices(raw.triangles, [&](auto triangles) {
         core::parallel_ranges(raw.triangles.tuples(), grain, [&](std::size_t begin, std::size_t end) {
@@ -127,10 +128,12 @@ Array fill_normals(const ops::RawSurface& raw) {
     return raw.normals;
 }
 
-template Array interpolate_field<float>(const Field&, const core::Storage&, const ops::RawSurface&);
-template Array interpolate_field<double>(const Field&, const core::Storage&, const ops::RawSurface&);
-template Array face_normals<float>(const ops::RawSurface&);
-template Array face_normals<double>(const ops::RawSurface&);
+template Array interpolate_field<float>(const Field&, const core::Storage&, const ops::RawSurface&,
+                                        const core::ArraySlot&);
+template Array interpolate_field<double>(const Field&, const core::Storage&, const ops::RawSurface&,
+                                         const core::ArraySlot&);
+template Array face_normals<float>(const ops::RawSurface&, const core::ArraySlot&);
+template Array face_normals<double>(const ops::RawSurface&, const core::ArraySlot&);
 template Array fill_normals<float>(const ops::RawSurface&);
 template Array fill_normals<double>(const ops::RawSurface&);
 

@@ -1,4 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <optional>
+
 #include <isotet/engine.hpp>
 #include <isotet/extract.hpp>
 
@@ -6,6 +8,7 @@
 #include "api/finish.hpp"
 #include "api/fits.hpp"
 #include "api/ties.hpp"
+#include "base/array_slot.hpp"
 #include "base/carry_out.hpp"
 #include "base/parallel.hpp"
 #include "cpu/extract.hpp"
@@ -43,6 +46,10 @@ Result<std::vector<Extraction>> extract_as(const core::Packed& packed, std::span
     request.more_vertex_bytes = more.vertex;
     request.more_triangle_bytes = more.triangle;
 
+    std::optional<core::RememberingSink> sink;
+    if (options.sink) sink.emplace(options.sink);
+    const core::ArraySlots slots = api::slots_of(options, sink ? &*sink : nullptr);
+    request.slots = api::slots_for_engine<Real>(slots, placement, options, storages);
     auto raw = reference ? reference::extract(packed, request, progress) : cpu::extract(packed, request, progress);
     if (!raw) return std::move(raw).error();
     progress("extract", 0.8);
@@ -52,7 +59,8 @@ Result<std::vector<Extraction>> extract_as(const core::Packed& packed, std::span
     for (std::size_t i = 0; i < out.size(); ++i) {
         ops::RawSurface& surface = raw->surfaces[i];
         ExtractReport& report = out[i].report;
-        out[i].surface = api::finish<Real>(placement, options, storages, surface);
+        out[i].surface = api::finish<Real>(placement, options, storages, surface, slots, i);
+        if (sink) sink->bring(out[i].surface, i);
         const auto told =
             api::report_ties(packed, isovalues[i], request.isovalues[i], surface.tied_points, report, progress);
         if (!told) return told.error();

@@ -2,10 +2,13 @@
 #include <isotet/engine.hpp>
 #include <isotet/extract.hpp>
 
+#include <optional>
+
 #include <fmt/core.h>
 
 #include "api/active_cells.hpp"
 #include "api/finish.hpp"
+#include "base/array_slot.hpp"
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
 #include "base/parallel.hpp"
@@ -73,6 +76,10 @@ Result<DirectExtraction> extract_as(const ops::DirectInput& input, const core::B
     request.normals = options.normals == Normals::gradient;
     request.source_cells = options.source_cells || !options.cell_fields.empty();
     request.active_cells_only = direct.active_cells_only;
+    std::optional<core::RememberingSink> sink;
+    if (options.sink) sink.emplace(options.sink);
+    const core::ArraySlots slots = api::slots_of(options, sink ? &*sink : nullptr);
+    request.slots = api::slots_for_engine<Real>(slots, {{}, input.grid.points.type()}, options, {});
     auto result = reference ? reference::extract_direct<Real>(input, request, progress)
                             : cpu::extract_direct<Real>(input, request, progress);
     if (!result) return std::move(result).error();
@@ -87,7 +94,9 @@ Result<DirectExtraction> extract_as(const ops::DirectInput& input, const core::B
         Extraction& extraction = out.surfaces.emplace_back();
         ExtractReport& report = extraction.report;
         if (!original.empty() && !surface.raw.ends.empty()) surface.raw.ends = user_ends(surface.raw.ends, original);
-        extraction.surface = api::finish<Real>(placement, options, result->carried, surface.raw);
+        const std::size_t number = out.surfaces.size() - 1;
+        extraction.surface = api::finish<Real>(placement, options, result->carried, surface.raw, slots, number);
+        if (sink) sink->bring(extraction.surface, number);
         report.tied_points = surface.raw.tied_points;
         report.false_ties = surface.false_ties;
         report.near_tie = surface.near_tie;

@@ -10,6 +10,7 @@
 #include <isotet/export.hpp>
 #include <isotet/extract.hpp>
 
+#include "base/array_slot.hpp"
 #include "ops/extraction.hpp"
 #include "packed/packed.hpp"
 
@@ -24,11 +25,20 @@ struct Placement {
     ScalarType point_type = ScalarType::float32;
 };
 
+/// Where all arrays of surfaces are made: nothing where the caller gives no memory. Refers to `options`.
+core::ArraySlots slots_of(const ExtractOptions& options, SurfaceSink* sink);
+
+/// Those of arrays that finish() takes as an engine made them. Without `storages`, point fields are not among them.
+template <class Real>
+core::ArraySlots slots_for_engine(core::ArraySlots all, const Placement& placement, const ExtractOptions& options,
+                                  std::span<const core::Storage> storages);
+
 /// Geometry, normals and fields in the user's coordinates and units. `storages` are those of the point fields of
-/// `options`, in their order.
+/// `options`, in their order; `number` is that of the surface in the call.
 template <class Real>
 ISOTET_API Surface finish(const Placement& placement, const ExtractOptions& options,
-                          std::span<const core::Storage> storages, const ops::RawSurface& raw);
+                          std::span<const core::Storage> storages, const ops::RawSurface& raw,
+                          const core::ArraySlots& slots = {}, std::size_t number = 0);
 
 /// Bytes at most that finish() adds to each vertex and triangle of the surface of an engine that interpolates point
 /// fields itself.

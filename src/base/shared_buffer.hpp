@@ -34,6 +34,12 @@ public:
     const T* begin() const noexcept { return data(); }
     const T* end() const noexcept { return data() + size_; }
 
+    /// Hands the memory over to an Array, without a copy.
+    Array to_array(std::size_t components = 1) && {
+        const T* const first = data_.get();
+        return Array(scalar_type_of<T>(), first, std::exchange(size_, 0) / components, components, std::move(data_));
+    }
+
 private:
     std::shared_ptr<T> data_;
     std::size_t size_ = 0;

@@ -105,7 +105,9 @@ Result<ops::RawSurfaces> extract(const core::Packed& packed, const ops::Request<
     const std::vector<Total> totals = scan(selection, masks, isovalues.size(), counted.starts);
     std::vector<SurfaceArrays<Real>> arrays;
     std::vector<Target<Real>> targets;
-    for (const Total& total : totals) targets.push_back(arrays.emplace_back(request, total).target(request));
+    arrays.reserve(totals.size());
+    for (std::size_t k = 0; k < totals.size(); ++k)
+        targets.push_back(arrays.emplace_back(request, order[k], totals[k]).target(request));
     const std::span<const Target<Real>> all_targets(targets);
     if (auto ok = emit(packed, wanted, selection, masks, counted, all_targets, batches, progress); !ok)
         return ok.error();

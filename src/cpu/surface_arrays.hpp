@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <utility>
+#include <vector>
 
+#include "base/array_slot.hpp"
 #include "cpu/extract.hpp"
 #include "cpu/steps.hpp"
 
@@ -13,13 +15,26 @@ namespace isotet::cpu {
 template <class Real>
 class SurfaceArrays {
 public:
-    SurfaceArrays(const ops::Request<Real>& request, const Total& total)
-        : total_(total), wide_(total.vertices >= wide_from), positions_(3 * total.vertices),
-          triangles_(wide_ ? 0 : 3 * total.triangles), wide_triangles_(wide_ ? 3 * total.triangles : 0),
-          normals_(request.normals ? 3 * total.vertices : 0), ends_(request.ends ? 2 * total.vertices : 0),
-          weights_(request.ends ? total.vertices : 0), source_cells_(request.source_cells ? total.triangles : 0) {
-        for (const ops::CarriedField& field : request.fields)
-            fields_.emplace_back(total.vertices * field.values.components());
+    /// `number`   of the isovalue in the request
+    SurfaceArrays(const ops::Request<Real>& request, std::size_t number, const Total& total)
+        : total_(total), wide_(total.vertices >= wide_from) {
+        const std::size_t vertices = total.vertices, triangles = total.triangles;
+        const auto make = [&]<class T>(core::SharedBuffer<T>& to, SurfaceArray array, std::size_t tuples,
+                                       std::size_t components, std::size_t field = 0) {
+            to = core::slot_of(request.slots, number, array, field).template make<T>(tuples, components);
+        };
+        make(positions_, SurfaceArray::positions, vertices, 3);
+        if (wide_) make(wide_triangles_, SurfaceArray::triangles, triangles, 3);
+        else make(triangles_, SurfaceArray::triangles, triangles, 3);
+        if (request.normals) make(normals_, SurfaceArray::normals, vertices, 3);
+        if (request.ends) {
+            make(ends_, SurfaceArray::edge_ends, vertices, 2);
+            make(weights_, SurfaceArray::edge_weights, vertices, 1);
+        }
+        if (request.source_cells) make(source_cells_, SurfaceArray::source_cells, triangles, 1);
+        fields_.resize(request.fields.size());
+        for (std::size_t i = 0; i < fields_.size(); ++i)
+            make(fields_[i], SurfaceArray::point_field, vertices, request.fields[i].values.components(), i);
     }
 
     static std::uint64_t bytes(const ops::Request<Real>& request, const Total& total) {
@@ -41,7 +56,7 @@ public:
             target.weights = weights_.data();
         }
         if (request.source_cells) target.source_cells = source_cells_.data();
-        for (core::Buffer<Real>& field : fields_) target.fields.push_back(field.data());
+        for (core::SharedBuffer<Real>& field : fields_) target.fields.push_back(field.data());
         return target;
     }
 
@@ -64,14 +79,14 @@ public:
 private:
     Total total_;
     bool wide_;
-    core::Buffer<Real> positions_;
-    core::Buffer<std::uint32_t> triangles_;
-    core::Buffer<std::uint64_t> wide_triangles_;
-    core::Buffer<float> normals_;
-    core::Buffer<std::int64_t> ends_;
-    core::Buffer<Real> weights_;
-    core::Buffer<std::int64_t> source_cells_;
-    std::vector<core::Buffer<Real>> fields_;
+    core::SharedBuffer<Real> positions_;
+    core::SharedBuffer<std::uint32_t> triangles_;
+    core::SharedBuffer<std::uint64_t> wide_triangles_;
+    core::SharedBuffer<float> normals_;
+    core::SharedBuffer<std::int64_t> ends_;
+    core::SharedBuffer<Real> weights_;
+    core::SharedBuffer<std::int64_t> source_cells_;
+    std::vector<core::SharedBuffer<Real>> fields_;
 };
 
 } // namespace isotet::cpu

@@ -14,6 +14,7 @@
 #include "api/fits.hpp"
 #include "api/ties.hpp"
 #include "packed/field_storage.hpp"
+#include "base/array_slot.hpp"
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
 #include "base/guard.hpp"
@@ -30,6 +31,7 @@ struct DeviceSurface::Data {
     std::shared_ptr<const core::Packed> packed; ///< the grid as it was when this was extracted
     vulkan::SurfaceBuffers buffers;
     double isovalue = 0;
+    std::size_t number = 0; ///< in the call that extracted it
     core::StoredIsovalue<float> stored{0};
     std::vector<core::Storage>
         storages; ///< of the point fields that were interpolated on the device: of all, or of none
@@ -198,6 +200,7 @@ Result<Extraction> DeviceSurface::Data::download() const {
     }
     if (auto told = api::report_ties(*packed, isovalue, stored, raw->tied_points, out.report, {}); !told)
         return told.error();
+    if (options.sink) core::RememberingSink(options.sink).bring(out.surface, number);
     out.report.selected_clusters = raw->selected_clusters;
     out.report.surface_bytes = api::bytes_of(out.surface);
     return out;
@@ -267,6 +270,7 @@ Result<void> DeviceGrid::Data::extract(std::span<const double> isovalues, std::s
         if (!data || data->context != grid->shared_context()) data = std::make_unique<DeviceSurface::Data>();
         data->context = grid->shared_context();
         data->isovalue = isovalues[i];
+        data->number = i;
         data->packed = packed.shared_data();
         data->stored = core::store_isovalue<float>(isovalues[i], data->packed->storage);
         data->storages.clear();

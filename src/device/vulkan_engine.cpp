@@ -7,8 +7,10 @@
 
 #include <isotet/device.hpp>
 
+#include "base/array_slot.hpp"
 #include "base/errors.hpp"
 #include "base/memory.hpp"
+#include "base/parallel.hpp"
 
 namespace isotet {
 
@@ -29,12 +31,18 @@ public:
     Result<std::vector<Extraction>> extract(std::span<const double> isovalues, const ExtractOptions& options,
                                             const Run& run) override {
         std::vector<Extraction> extractions;
+        ExtractOptions on_device = options;
+        on_device.sink = nullptr;
         for (const double isovalue : isovalues) {
-            if (auto ok = grid_.extract(isovalue, surface_, options, run); !ok) return ok.error();
+            if (auto ok = grid_.extract(isovalue, surface_, on_device, run); !ok) return ok.error();
             work_ = grid_.work();
             auto extraction = grid_.download(surface_, run);
             if (!extraction) return extraction.error();
             work_.downloaded_bytes += grid_.work().downloaded_bytes;
+            if (options.sink)
+                core::with_threads(run.threads, [&] {
+                    core::RememberingSink(options.sink).bring(extraction->surface, extractions.size());
+                });
             extractions.push_back(*std::move(extraction));
         }
         return extractions;

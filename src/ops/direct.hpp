@@ -44,6 +44,7 @@ struct DirectRequest {
     bool normals = false;
     bool source_cells = false;
     bool active_cells_only = false; ///< others were left out by an active filter
+    core::ArraySlots slots = {};    ///< as Request::slots
 };
 
 struct DirectSurface {

@@ -24,6 +24,7 @@
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
 
+#include "base/array_slot.hpp"
 #include "numbers/storage.hpp"
 #include "packed/packed.hpp"
 
@@ -58,6 +59,7 @@ struct Request {
     std::vector<CarriedField> fields;
     /// Bytes that the caller will add to each vertex and triangle: engines reckon with them when they predict memory.
     std::size_t more_vertex_bytes = 0, more_triangle_bytes = 0;
+    core::ArraySlots slots = {}; ///< of arrays that go out as the engine makes them; it may make them elsewhere
 };
 
 /// The surface of one isovalue; V vertices, F triangles. Parts that were not asked for are empty.

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "base/array_slot.hpp"
 #include "base/buffer.hpp"
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
@@ -172,6 +173,13 @@ Result<void> finish(const Snapshot& now, std::span<const double> isovalues, cons
     return {};
 }
 
+void bring_all(core::RememberingSink& sink, std::vector<Extraction>& surfaces, const Run& run) {
+    sink.begin_at(0);
+    core::with_threads(run.threads, [&] {
+        for (std::size_t i = 0; i < surfaces.size(); ++i) sink.bring(surfaces[i].surface, i);
+    });
+}
+
 /// The isovalues that `result` lacks, by an engine that keeps no grid.
 Result<void> extract_the_rest(const Snapshot& now, std::span<const double> isovalues, const Run& run,
                               ContourResult& result) {
@@ -205,11 +213,14 @@ Result<ContourResult> Contour::extract(std::span<const double> isovalues, const 
         const std::optional<PackedGrid>& packed = data.state.packed();
         const std::shared_ptr<const core::Residency> residency = packed ? packed->data().residency : nullptr;
         const std::uint64_t read_before = residency ? residency->use().read : 0;
+        const auto sink = data.options.sink ? std::make_shared<core::RememberingSink>(data.options.sink) : nullptr;
         ContourResult result;
         if (method != Method::direct)
-            if (auto ok = data.state.extract(isovalues, data.source, data.options, run, result, data.told); !ok)
+            if (auto ok = data.state.extract(isovalues, data.source, data.options, sink, run, result, data.told); !ok)
                 return ok.error();
         Snapshot now{data.source, data.options, packed, data.asked.inputs};
+        now.options.sink = sink;
+        if (sink) sink->begin_at(result.surfaces.size());
         session::Told told = std::exchange(data.told, {});
         lock.unlock();
         if (method == Method::direct) {
@@ -230,6 +241,7 @@ Result<ContourResult> Contour::extract(std::span<const double> isovalues, const 
             return ok.error();
         }
         if (auto ok = finish(now, isovalues, run, result); !ok) return ok.error();
+        if (sink) bring_all(*sink, result.surfaces, run);
         if (whole) {
             result.field.lower = whole->lower;
             result.field.upper = whole->upper;

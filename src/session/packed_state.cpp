@@ -25,6 +25,7 @@ ExtractOptions extract_options(const ContourOptions& options, const ContourInput
     extract.point_fields = input.point_fields;
     extract.packed_fields = input.packed_fields;
     extract.cell_fields = input.cell_fields;
+    if (!exact) extract.sink = options.sink;
     return extract;
 }
 
@@ -249,9 +250,12 @@ Result<void> PackedState::bring_up_to_date(Source& source, ContourOptions& optio
 }
 
 Result<void> PackedState::extract(std::span<const double> isovalues, const Source& source, ContourOptions& options,
-                                  const Run& run, ContourResult& result, Told& told) {
-    const ExtractOptions extract = extract_options(options, source.input());
+                                  const std::shared_ptr<core::RememberingSink>& sink, const Run& run,
+                                  ContourResult& result, Told& told) {
+    ExtractOptions extract = extract_options(options, source.input());
+    if (extract.sink) extract.sink = sink;
     while (grid_ && result.surfaces.size() < isovalues.size()) {
+        if (sink) sink->begin_at(result.surfaces.size());
         auto extraction = grid_->extract(isovalues.subspan(result.surfaces.size(), 1), extract, run);
         if (extraction) {
             result.surfaces.push_back(std::move(extraction->front()));

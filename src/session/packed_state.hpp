@@ -8,6 +8,7 @@
 
 #include <isotet/contour.hpp>
 
+#include "base/array_slot.hpp"
 #include "session/marks.hpp"
 #include "session/source.hpp"
 
@@ -47,7 +48,8 @@ public:
 
     /// Extracts from the engine's grid, if there is one, one isovalue after another: what came before an error is kept.
     Result<void> extract(std::span<const double> isovalues, const Source& source, ContourOptions& options,
-                         const Run& run, ContourResult& result, Told& told);
+                         const std::shared_ptr<core::RememberingSink>& sink, const Run& run, ContourResult& result,
+                         Told& told);
 
 private:
     Result<void> pack_grid(const ContourInput& input, const ContourOptions& options, const Run& run);

@@ -1,10 +1,15 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // A session on a device gives what a session on the CPU gives, and goes on without the device where it may.
+#include <algorithm>
 #include <array>
+#include <cstddef>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include <isotet/contour.hpp>
 #include <isotet/device.hpp>
+#include <isotet/surface_sink.hpp>
 
 #include "gpu_engine/engines.hpp"
 #include "support/small_grid.hpp"
@@ -53,6 +58,30 @@ TEST_F(SessionOnDevice, GivesTheBytesOfTheCpuThroughChanges) {
     for (Contour* contour : {&cpu, &device})
         EXPECT_EQ(contour->set(session_input(moved, 1)).value(), ContourUpdate::points);
     EXPECT_EQ(surfaces_of(device, "vulkan"), surfaces_of(cpu, "cpu"));
+}
+
+TEST_F(SessionOnDevice, BringsSurfacesIntoTheCallersMemory) {
+    struct Segment final : SurfaceSink {
+        std::shared_ptr<void> take(const Wanted& wanted) override {
+            auto bytes = std::make_shared<std::vector<std::max_align_t>>(wanted.bytes() / sizeof(std::max_align_t) + 1);
+            taken.push_back({wanted.surface, bytes->data()});
+            return {bytes, bytes->data()};
+        }
+        std::vector<std::pair<std::size_t, const void*>> taken;
+    };
+    const auto segment = std::make_shared<Segment>();
+    ContourOptions options{.engine = vulkan_engine(device()), .engine_required = true, .edge_ends = true};
+    Contour plain = Contour::create(session_input(grid, 0), options).value();
+    options.sink = segment;
+    Contour device = Contour::create(session_input(grid, 0), options).value();
+    EXPECT_EQ(surfaces_of(device, "vulkan"), surfaces_of(plain, "vulkan"));
+    segment->taken.clear();
+    const ContourResult result = device.extract(std::array{0.1, 0.2}).value();
+    EXPECT_EQ(segment->taken.size(), 8u);
+    for (std::size_t i = 0; i < 2; ++i)
+        for (const Array* array : {&result.surfaces[i].surface.positions, &result.surfaces[i].surface.triangles,
+                                   &result.surfaces[i].surface.edge_ends, &result.surfaces[i].surface.edge_weights})
+            EXPECT_EQ(std::ranges::count(segment->taken, std::pair<std::size_t, const void*>(i, array->data())), 1);
 }
 
 TEST_F(SessionOnDevice, LeavesSurfacesOnTheDevice) {

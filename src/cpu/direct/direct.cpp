@@ -169,7 +169,8 @@ private:
     Result<ops::DirectSurface> make_surface(const VertexSource<Real>& source, CutCells<Point> cut,
                                             const CutContext& context, const Progress& progress) {
         const CutCounts counts = cut.counts();
-        EmitOptions options{request_.ends || request_.normals, request_.source_cells, counts.edges >= wide_from};
+        EmitOptions options{request_.ends || request_.normals, request_.source_cells, counts.edges >= wide_from,
+                            &request_.slots, result_.surfaces.size()};
         const std::uint64_t needed =
             welding_memory<Point>(counts.edges) +
             emitting_memory<Real, Point>(counts.edges, counts.triangles, counts.edges, options);

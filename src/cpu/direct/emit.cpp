@@ -93,9 +93,18 @@ Result<ops::RawSurface> emit(const VertexSource<Real>& source, const CutCells<Po
                              const EmitOptions& options, const Progress& progress) {
     const std::uint64_t vertices = welded.vertex_count(), triangle_count = cut.chunks.back().triangles,
                         edges = cut.chunks.back().edges;
-    core::Buffer<Real> positions(3 * vertices), weights(options.ends ? vertices : 0);
-    core::Buffer<std::int64_t> ends(options.ends ? 2 * vertices : 0),
-        source_cells(options.source_cells ? triangle_count : 0);
+    const auto make = [&]<class T>(core::SharedBuffer<T>& to, SurfaceArray array, std::size_t tuples,
+                                   std::size_t components) {
+        to = options.slot(array).template make<T>(tuples, components);
+    };
+    core::SharedBuffer<Real> positions, weights;
+    core::SharedBuffer<std::int64_t> ends, source_cells;
+    make(positions, SurfaceArray::positions, vertices, 3);
+    if (options.ends) {
+        make(weights, SurfaceArray::edge_weights, vertices, 1);
+        make(ends, SurfaceArray::edge_ends, vertices, 2);
+    }
+    if (options.source_cells) make(source_cells, SurfaceArray::source_cells, triangle_count, 1);
     Target<Real> target{positions.data()};
     if (options.ends) {
         target.ends = ends.data();
@@ -103,7 +112,8 @@ Result<ops::RawSurface> emit(const VertexSource<Real>& source, const CutCells<Po
     }
 
     ops::RawSurface surface;
-    const auto emit_with = [&]<class Index>(core::Buffer<Index> triangles) {
+    const auto emit_with = [&]<class Index>(core::SharedBuffer<Index> triangles) {
+        make(triangles, SurfaceArray::triangles, triangle_count, 3);
         core::Buffer<Index> numbers(edges);
         number_edges(source, welded, target, numbers.data(), progress);
         welded = {};
@@ -112,8 +122,8 @@ Result<ops::RawSurface> emit(const VertexSource<Real>& source, const CutCells<Po
                        progress);
         surface.triangles = std::move(triangles).to_array(3);
     };
-    if (options.wide) emit_with(core::Buffer<std::uint64_t>(3 * triangle_count));
-    else emit_with(core::Buffer<std::uint32_t>(3 * triangle_count));
+    if (options.wide) emit_with(core::SharedBuffer<std::uint64_t>());
+    else emit_with(core::SharedBuffer<std::uint32_t>());
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "extraction was cancelled"};
 
     surface.positions = std::move(positions).to_array(3);

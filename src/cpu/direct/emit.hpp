@@ -2,8 +2,10 @@
 // The surface from welded edges and the polygons made of them.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
+#include "base/array_slot.hpp"
 #include "cpu/direct/weld.hpp"
 #include "numbers/arithmetic.hpp"
 
@@ -62,6 +64,12 @@ struct EmitOptions {
     bool ends = false;
     bool source_cells = false;
     bool wide = false;
+    const core::ArraySlots* slots = nullptr; ///< not null: those of the request
+    std::size_t surface = 0;                 ///< its number there
+
+    core::ArraySlot slot(SurfaceArray array) const {
+        return slots ? core::slot_of(*slots, surface, array) : core::ArraySlot();
+    }
 };
 
 /// Bytes of what emit() makes, and beside it while it works.
