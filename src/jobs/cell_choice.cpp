@@ -169,13 +169,16 @@ void leave_values_of_cells(Grid& grid, bool solid) {
     const auto cells = core::CellReader::open(grid);
     if (!cells) return; // the checks of the grid say why
     std::vector<std::uint8_t> used(grid.points.tuples());
+    const auto counts = [&](std::size_t cell) {
+        return cells->type(cell) != 0 && (!solid || core::has_a_volume(cells->type(cell)));
+    };
     for (std::size_t cell = 0; cell < cells->count(); ++cell) {
-        if (cells->type(cell) == 0 || (solid && !core::has_a_volume(cells->type(cell)))) continue;
+        if (!counts(cell)) continue;
         const std::uint64_t first = cells->first(cell), end = first + cells->corners(cell);
         for (std::uint64_t i = first; i < end && i < cells->connectivity_size(); ++i)
             if (const std::uint64_t point = cells->corner(i); point < used.size()) used[point] = 1;
     }
-    core::mark_points_of_faces(grid.cells, used);
+    core::mark_points_of_faces(grid.cells, used, counts);
     for (Field& field : grid.point_fields) {
         const std::size_t width = field.values.components();
         const auto without_unused = [&](auto from) {

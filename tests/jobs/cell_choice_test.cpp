@@ -194,6 +194,19 @@ TEST(ChosenCells, HaveTheValuesOfTheirPointsAlone) {
     }
 }
 
+TEST(ChosenCells, OfPolyhedraHaveTheValuesOfTheirPointsAlone) {
+    const test::TemporaryFolder folder;
+    const Grid some = chosen(written(folder, layered("kelvin")), {"layer=1"});
+    std::vector<std::uint8_t> used(some.points.tuples());
+    for (std::size_t cell = 0; cell < some.cells.count(); ++cell)
+        for (auto k = static_cast<std::size_t>(some.cells.offsets.at(cell));
+             some.cells.types.at(cell) != 0 && k < static_cast<std::size_t>(some.cells.offsets.at(cell + 1)); ++k)
+            used[static_cast<std::size_t>(some.cells.connectivity.at(k))] = 1;
+    EXPECT_NE(std::ranges::count(used, 0), 0);
+    for (std::size_t point = 0; point < used.size(); ++point)
+        EXPECT_EQ(std::isnan(some.point_fields[0].values.at(point)), used[point] == 0) << point;
+}
+
 TEST(ChosenCells, LeaveAllNumbersAsTheyAre) {
     const test::TemporaryFolder folder;
     const std::string file = written(folder, layered("mixed"));

@@ -14,32 +14,40 @@ namespace isotet::core {
 
 namespace {
 
-/// Streams that do not fit stay: the checks of what was read say so.
+/// Calls visit(cell, place in the stream, point) for the points of all faces. False where the stream does not fit, which the
+/// checks of what was read tell.
+template <class Visit>
+bool each_point_of_faces(const FaceReader& faces, std::size_t cells, const Visit& visit) {
+    for (std::size_t cell = 0; cell < cells; ++cell) {
+        if (!fault_of_faces(faces, cell, std::numeric_limits<std::uint64_t>::max()).empty()) return false;
+        for (std::uint64_t at = faces.begin(cell) + 1; at < faces.end(cell);)
+            for (std::uint64_t left = faces.at(at++); left > 0; --left, ++at) visit(cell, at, faces.at(at));
+    }
+    return true;
+}
+
+/// Streams that do not fit stay.
 template <class Number>
 void renumber_faces(Cells& cells, const Number& number) {
     const auto faces = FaceReader::open(cells);
     if (!faces || !faces->has_faces()) return;
     std::vector<std::int64_t> stream(cells.faces.size());
     for (std::size_t i = 0; i < stream.size(); ++i) stream[i] = static_cast<std::int64_t>(faces->at(i));
-    for (std::size_t cell = 0; cell < cells.count(); ++cell) {
-        if (!fault_of_faces(*faces, cell, std::numeric_limits<std::uint64_t>::max()).empty()) return;
-        for (std::uint64_t at = faces->begin(cell) + 1; at < faces->end(cell);)
-            for (std::uint64_t left = faces->at(at++); left > 0; --left, ++at) stream[at] = number(faces->at(at));
-    }
-    cells.faces = Array::own(std::move(stream));
+    if (each_point_of_faces(*faces, cells.count(), [&](std::size_t, std::uint64_t at, std::uint64_t point) {
+            stream[at] = number(point);
+        }))
+        cells.faces = Array::own(std::move(stream));
 }
 
 } // namespace
 
-void mark_points_of_faces(const Cells& cells, std::vector<std::uint8_t>& used) {
+void mark_points_of_faces(const Cells& cells, std::vector<std::uint8_t>& used,
+                          const std::function<bool(std::size_t cell)>& counts) {
     const auto faces = FaceReader::open(cells);
     if (!faces || !faces->has_faces()) return;
-    for (std::size_t cell = 0; cell < cells.count(); ++cell) {
-        if (!fault_of_faces(*faces, cell, std::numeric_limits<std::uint64_t>::max()).empty()) return;
-        for (std::uint64_t at = faces->begin(cell) + 1; at < faces->end(cell);)
-            for (std::uint64_t left = faces->at(at++); left > 0; --left, ++at)
-                if (faces->at(at) < used.size()) used[faces->at(at)] = 1;
-    }
+    each_point_of_faces(*faces, cells.count(), [&](std::size_t cell, std::uint64_t, std::uint64_t point) {
+        if (point < used.size() && counts(cell)) used[point] = 1;
+    });
 }
 
 std::vector<std::uint8_t> keep_used_points(Grid& grid) {
@@ -48,7 +56,7 @@ std::vector<std::uint8_t> keep_used_points(Grid& grid) {
         for (std::size_t i = 0; i < grid.cells.connectivity.size(); ++i)
             if (const std::uint64_t point = widened(corners[i]); point < used.size()) used[point] = 1;
     });
-    mark_points_of_faces(grid.cells, used);
+    mark_points_of_faces(grid.cells, used, [](std::size_t) { return true; });
     std::vector<std::int64_t> place(used.size(), -1);
     std::int64_t next = 0;
     for (std::size_t i = 0; i < used.size(); ++i)

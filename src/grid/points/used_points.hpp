@@ -2,7 +2,9 @@
 // A grid without the points that none of its cells uses.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include <isotet/export.hpp>
@@ -16,8 +18,9 @@ namespace isotet::core {
 /// Returns   a byte a point of before, 1 where it was kept; empty: all were
 ISOTET_API std::vector<std::uint8_t> keep_used_points(Grid& grid);
 
-/// Sets the bytes of the points in faces of polyhedra.
-ISOTET_API void mark_points_of_faces(const Cells& cells, std::vector<std::uint8_t>& used);
+/// Sets the bytes of the points in faces of those polyhedra for which `counts` is true.
+ISOTET_API void mark_points_of_faces(const Cells& cells, std::vector<std::uint8_t>& used,
+                                     const std::function<bool(std::size_t cell)>& counts);
 
 /// The tuples of `values` whose number `kept` marks; an empty array stays empty.
 ISOTET_API Array kept_tuples(const Array& values, const std::vector<std::uint8_t>& kept);
