@@ -48,7 +48,7 @@ Result<void> add_cells(const Lattice& lattice, std::size_t level, const CellBox&
     piece.grid.points = std::move(points).to_array(3);
     piece.point_ids = std::move(numbers).to_array();
     std::vector<std::string> notes; // of all boxes together
-    auto cells = vtk_xml::hexahedra_of(size, notes);
+    auto cells = vtk_xml::cells_of_box(size, notes);
     if (!cells) return cells.error();
     piece.grid.cells = *std::move(cells);
     return {};

@@ -94,7 +94,7 @@ Result<std::optional<ReadResult>> join_loaded(Loaded loaded, const ReadOptions& 
     std::vector<Piece>& pieces = loaded.pieces;
     if (std::ranges::all_of(pieces, [](const Piece& piece) { return piece.cell_count() == 0; }))
         for (const Piece& piece : pieces)
-            if (!piece.flat.empty()) return broken(piece.name, piece.flat + " has no cells with a volume");
+            if (!piece.flat.empty()) return broken(piece.name, piece.flat + " has no cells with an area");
     for (Piece& piece : pieces)
         if (piece.cell_count() == 0) piece.grid.cells = {}; // offsets of no cells need no types
     if (pieces.size() > 1) std::erase_if(pieces, is_empty);

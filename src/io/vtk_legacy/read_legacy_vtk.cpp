@@ -108,7 +108,7 @@ Result<void> take_structured(const LegacyFile& file, Piece& piece, std::vector<s
         return invalid_data(stated_size(file) + ": too many points");
     auto points = structured_points(file, size);
     if (!points) return points.error();
-    auto cells = vtk_xml::hexahedra_of(size, notes);
+    auto cells = vtk_xml::cells_of_box(size, notes);
     if (!cells) return cells.error();
     piece.grid.points = std::move(*points);
     piece.grid.cells = std::move(*cells);
@@ -242,7 +242,7 @@ Result<Loaded> load_legacy(const ByteSource& source, const ReadOptions& options,
     for (Attribute& field : file->point_data) piece.grid.point_fields.push_back({field.name, std::move(field.values)});
     if (!structured)
         if (auto taken = take_cells(source, path, *file, options, progress, piece); !taken) return taken.error();
-    const bool flat = structured && piece.cell_count() == 0; // its cells are not volumes
+    const bool flat = structured && piece.cell_count() == 0; // a line or a point
     for (Attribute& field : file->cell_data) {
         if (flat) continue;
         if (field.name == vtk_xml::ghost_rank_name && field.values.tuples() == piece.cell_count())

@@ -74,10 +74,10 @@ Result<std::vector<Piece>> load_unstructured(const std::shared_ptr<Document>& do
 Result<Layouts> layouts_of_unstructured(const Document& document);
 Result<Layouts> layouts_of_structured(const Document& document);
 
-/// How many hexahedra a structured kind stands for.
+/// How many cells a structured kind stands for.
 Result<std::uint64_t> count_structured(const Document& document);
 
-/// Points and hexahedra of the structured kinds, and their fields. A flat grid has no hexahedra and no cell fields.
+/// Points and cells of the structured kinds, and their fields. A line of points has no cells and no cell fields.
 Result<Piece> load_structured(Document& document, const Wanted& wanted, const Progress& progress, Loaded& loaded);
 
 /// Leaves out cells of structured pieces that an earlier one has, too: their boxes may overlap, with or without marks of
@@ -107,7 +107,10 @@ ISOTET_API Result<Array> points_of(const GridSize& size, const std::array<std::v
 /// What a grid is whose cells have no volume: "a plane of 3 x 4 points"; empty where they have one.
 std::string flatness(const GridSize& points);
 
-/// The hexahedra of a box, and a note that says so.
-ISOTET_API Result<Cells> hexahedra_of(const GridSize& points, std::vector<std::string>& notes);
+/// How many cells cells_of_box() gives.
+ISOTET_API std::uint64_t cells_in_box(const GridSize& points);
+
+/// The hexahedra of a box or the quadrilaterals of a plane, and a note that says so. A line has none.
+ISOTET_API Result<Cells> cells_of_box(const GridSize& points, std::vector<std::string>& notes);
 
 } // namespace isotet::io::vtk_xml

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// VTI, VTR and VTS: boxes of points whose cells are implied. Each piece is a box within the whole one.
+// VTI, VTR and VTS: boxes of points whose cells are implied, hexahedra, or quadrilaterals of a plane. Each piece is a box within the whole one.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -228,6 +228,35 @@ Array hexahedra(const GridSize& points) {
     return std::move(corners).to_array();
 }
 
+/// Those of a plane.
+template <class Index>
+Cells quadrilaterals(const GridSize& points) {
+    constexpr std::uint8_t vtk_quad = 9;
+    const std::array<std::uint64_t, 3> along{points.x, points.y, points.z}, strides{1, points.x, points.x * points.y};
+    const std::size_t first = along[0] > 1 ? 0 : 1, second = along[2] > 1 ? 2 : 1;
+    const std::uint64_t per_row = along[first] - 1, count = per_row * (along[second] - 1);
+    core::Buffer<Index> corners(static_cast<std::size_t>(4 * count));
+    core::Buffer<std::int64_t> offsets(static_cast<std::size_t>(count + 1));
+    core::Buffer<std::uint8_t> types(static_cast<std::size_t>(count));
+    offsets[0] = 0;
+    core::parallel_each(static_cast<std::size_t>(count), std::size_t{1} << 14, [&](std::size_t cell) {
+        const std::uint64_t p = cell % per_row * strides[first] + cell / per_row * strides[second];
+        const std::uint64_t places[] = {p, p + strides[first], p + strides[first] + strides[second],
+                                        p + strides[second]};
+        for (std::size_t k = 0; k < 4; ++k) corners[4 * cell + k] = static_cast<Index>(places[k]);
+        offsets[cell + 1] = static_cast<std::int64_t>(4 * (cell + 1));
+        types[cell] = vtk_quad;
+    });
+    Cells cells;
+    cells.connectivity = std::move(corners).to_array();
+    cells.offsets = std::move(offsets).to_array();
+    cells.types = std::move(types).to_array();
+    return cells;
+}
+
+/// A line or a point.
+bool is_thin(const GridSize& points) { return (points.x > 1) + (points.y > 1) + (points.z > 1) < 2; }
+
 } // namespace
 
 Result<Array> points_of(const GridSize& size, const ImagePoints& image) {
@@ -249,21 +278,33 @@ Result<Array> points_of(const GridSize& size, const std::array<std::vector<doubl
     });
 }
 
-Result<Cells> hexahedra_of(const GridSize& points, std::vector<std::string>& notes) {
+std::uint64_t cells_in_box(const GridSize& points) {
+    if (points.x * points.y * points.z == 0 || is_thin(points)) return 0;
+    const auto along = [](std::uint64_t count) { return std::max<std::uint64_t>(count - 1, 1); };
+    return along(points.x) * along(points.y) * along(points.z);
+}
+
+Result<Cells> cells_of_box(const GridSize& points, std::vector<std::string>& notes) {
     Cells cells;
     cells.uniform_type = CellType::hexahedron;
-    const std::uint64_t count = points.x * points.y * points.z;
-    if (points.x > 1 && points.y > 1 && points.z > 1) {
-        const bool narrow = count < (1U << 31U);
-        if (auto fits = core::require_memory("hexahedra of a structured grid", 8 * (narrow ? 4 : 8) * count); !fits)
+    const std::uint64_t points_in_all = points.x * points.y * points.z, count = cells_in_box(points);
+    const bool narrow = points_in_all < (1U << 31U), plane = count > 0 && !flatness(points).empty();
+    if (count > 0) {
+        const std::uint64_t bytes = plane ? 4 * (narrow ? 4 : 8) + 9 : 8 * (narrow ? 4 : 8);
+        if (auto fits = core::require_memory("cells of a structured grid", bytes * points_in_all); !fits)
             return fits.error();
-        cells.connectivity = narrow ? hexahedra<std::int32_t>(points) : hexahedra<std::int64_t>(points);
+        if (plane) cells = narrow ? quadrilaterals<std::int32_t>(points) : quadrilaterals<std::int64_t>(points);
+        else cells.connectivity = narrow ? hexahedra<std::int32_t>(points) : hexahedra<std::int64_t>(points);
     }
-    if (const std::string flat = flatness(points); !flat.empty())
-        notes.push_back(fmt::format("{} has no cells with a volume", flat));
-    else
+    if (count == 0) {
+        if (const std::string flat = flatness(points); !flat.empty())
+            notes.push_back(fmt::format("{} has no cells with an area", flat));
+    } else if (plane) {
+        notes.push_back(fmt::format("{} was read as {} quadrilaterals", flatness(points), count));
+    } else {
         notes.push_back(fmt::format("a structured grid of {} x {} x {} points was read as {} hexahedra", points.x,
-                                    points.y, points.z, cells.count()));
+                                    points.y, points.z, count));
+    }
     return cells;
 }
 
@@ -289,9 +330,7 @@ Result<Layouts> layouts_of_structured(const Document& document) {
 Result<std::uint64_t> count_structured(const Document& document) {
     const auto whole = extent_of(document.primary(), "WholeExtent");
     if (!whole) return whole.error();
-    const GridSize size = size_of_box(*whole);
-    if (size.x < 2 || size.y < 2 || size.z < 2) return std::uint64_t{0};
-    return (size.x - 1) * (size.y - 1) * (size.z - 1);
+    return cells_in_box(size_of_box(*whole));
 }
 
 Result<void> leave_out_overlaps(std::span<Loaded> parts) {
@@ -356,11 +395,11 @@ Result<Piece> load_structured(Document& document, const Wanted& wanted, const Pr
     piece.grid.points = std::move(*places);
     const Extent& whole = boxes->whole;
     piece.extent = {whole.first[0], whole.last[0], whole.first[1], whole.last[1], whole.first[2], whole.last[2]};
-    auto hexahedra_of_all = hexahedra_of(size_of_box(boxes->whole), loaded.notes);
-    if (!hexahedra_of_all) return hexahedra_of_all.error();
-    piece.grid.cells = std::move(*hexahedra_of_all);
+    auto cells_of_all = cells_of_box(size_of_box(boxes->whole), loaded.notes);
+    if (!cells_of_all) return cells_of_all.error();
+    piece.grid.cells = std::move(*cells_of_all);
     piece.flat = flatness(size_of_box(boxes->whole));
-    if (piece.grid.cells.count() == 0) { // flat: its cells are not volumes
+    if (piece.grid.cells.count() == 0) { // a line or a point: its cells are none of a grid
         piece.grid.cell_fields.clear();
         piece.cell_ids = Array();
         piece.left_out.clear();

@@ -147,7 +147,7 @@ Result<Piece> CgnsFile::read_zone(std::size_t at, const ReadOptions& options, st
     if (zone.is_structured) {
         std::vector<std::uint64_t> size = zone.points;
         size.resize(3, 1);
-        auto hexahedra = vtk_xml::hexahedra_of({size[0], size[1], size[2]}, loaded.notes);
+        auto hexahedra = vtk_xml::cells_of_box({size[0], size[1], size[2]}, loaded.notes);
         if (!hexahedra) return hexahedra.error();
         piece.grid.cells = *std::move(hexahedra);
     } else {

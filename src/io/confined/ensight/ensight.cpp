@@ -219,7 +219,7 @@ void EnsightLoad::read_variables(const EnsightTime& time) {
     }
 }
 
-/// Cells of a flat block have no volume.
+/// A line of nodes has no cells.
 Result<Piece> EnsightLoad::piece_of(EnsightPart& part) {
     const std::size_t place = static_cast<std::size_t>(&part - grid_.parts.data());
     Piece piece;
@@ -228,7 +228,7 @@ Result<Piece> EnsightLoad::piece_of(EnsightPart& part) {
     if (piece.grid.points.empty()) piece.grid.points = Array(ScalarType::float32, nullptr, 0, 3, nullptr);
     piece.grid.point_fields = std::move(point_fields_[place]);
     if (part.is_structured) {
-        auto cells = vtk_xml::hexahedra_of({part.size[0], part.size[1], part.size[2]}, loaded_.notes);
+        auto cells = vtk_xml::cells_of_box({part.size[0], part.size[1], part.size[2]}, loaded_.notes);
         if (!cells) return cells.error();
         piece.grid.cells = *std::move(cells);
     } else {

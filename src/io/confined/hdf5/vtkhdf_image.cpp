@@ -77,7 +77,7 @@ void HdfImage::announce(FileInfo& info) const {
     if (info.times.empty()) info.times = steps_.times;
     for (const Association association : {Association::point, Association::cell})
         for (const std::string& name : data_sets_of(path_, group(association))) {
-            if (vtk_xml::is_ghost_array(name) || (association == Association::cell && is_flat())) continue;
+            if (vtk_xml::is_ghost_array(name) || (association == Association::cell && cells() == 0)) continue;
             const auto field = read_field(association, name, 0, Depth::description);
             if (field) io::announce(info, {name, association, field->type(), field->components()});
             else leave_out(info, {kind_of_field(association), name, field.error().message});
@@ -99,7 +99,7 @@ Result<void> HdfImage::load_fields(Association association, const ReadOptions& o
     return {};
 }
 
-std::uint64_t HdfImage::cells() const { return is_flat() ? 0 : (size_.x - 1) * (size_.y - 1) * (size_.z - 1); }
+std::uint64_t HdfImage::cells() const { return vtk_xml::cells_in_box(size_); }
 
 Result<void> HdfImage::load(const ReadOptions& options, const std::string& name, Loaded& loaded) const {
     Piece piece;
@@ -107,12 +107,12 @@ Result<void> HdfImage::load(const ReadOptions& options, const std::string& name,
     auto points = vtk_xml::points_of(size_, points_);
     if (!points) return points.error();
     piece.grid.points = *std::move(points);
-    auto cells = vtk_xml::hexahedra_of(size_, loaded.notes);
+    auto cells = vtk_xml::cells_of_box(size_, loaded.notes);
     if (!cells) return cells.error();
     piece.grid.cells = *std::move(cells);
     piece.flat = vtk_xml::flatness(size_);
     if (auto done = load_fields(Association::point, options, loaded, piece); !done) return done;
-    if (!is_flat())
+    if (this->cells() > 0)
         if (auto done = load_fields(Association::cell, options, loaded, piece); !done) return done;
     loaded.pieces.push_back(std::move(piece));
     return {};

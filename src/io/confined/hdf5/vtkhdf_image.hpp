@@ -32,7 +32,6 @@ private:
     std::string group(Association association) const {
         return root_ + (association == Association::point ? "/PointData" : "/CellData");
     }
-    bool is_flat() const { return size_.x < 2 || size_.y < 2 || size_.z < 2; }
     Result<Array> read_field(Association association, const std::string& name, std::size_t step, Depth depth) const;
     Result<void> load_fields(Association association, const ReadOptions& options, Loaded& loaded, Piece& piece) const;
 

@@ -202,10 +202,9 @@ private:
     }
 
     Result<void> structured_cells() {
-        const bool solid = size_->x > 1 && size_->y > 1 && size_->z > 1;
-        mesh_.cells = solid ? (size_->x - 1) * (size_->y - 1) * (size_->z - 1) : 0;
+        mesh_.cells = vtk_xml::cells_in_box(*size_);
         if (depth_ == Depth::description) return {};
-        auto cells = vtk_xml::hexahedra_of(*size_, notes_);
+        auto cells = vtk_xml::cells_of_box(*size_, notes_);
         if (!cells) return cells.error();
         mesh_.grid.cells = *std::move(cells);
         return {};
