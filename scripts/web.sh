@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-# Builds isotet as WebAssembly with clang-19 and Debian's C and C++ libraries for wasm32-wasi, one thread, SIMD of 128 bits:
+# Builds isotet as WebAssembly with clang-19 and Debian's C and C++ libraries for wasm32-wasi, SIMD of 128 bits:
 # FOLDER/isotet.wasm, which `isotet export --as grid` puts into pages, FOLDER/isotet_readers.wasm, for `isotet page`, and the package
 # FOLDER/npm, isotet.js for other pages. Give the first, with the second beside it, to a build by -DISOTET_WEB_MODULE=FOLDER/isotet.wasm.
 # Then compares with a program, where ISOTET_PROGRAM names one: surfaces by Node; and where npm is installed, in Chromium, threads, the
