@@ -44,7 +44,8 @@ public:
 
     virtual ~SurfaceSink();
 
-    /// At least `wanted.bytes()`, aligned for the type; null: there are none, and the call ends with out_of_memory.
+    /// At least `wanted.bytes()`, aligned for the type, and their owner: by it the memory is known again. Null: there is none,
+    /// and the call ends with out_of_memory.
     /// What is given is written and read by many threads during the call, and never written after it. It is given back
     /// when the last copy of the Array is gone, or during the call where that begins anew: of several requests for one
     /// array the last counts. Nothing is asked for an array without tuples.

@@ -2,6 +2,7 @@
 // VTK's XML and legacy grids, broken on purpose: an error with a sentence, and no memory for what cannot be there.
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <random>
@@ -154,6 +155,61 @@ TEST(VtkXml, PiecesMustCoverAStructuredGrid) {
               "the pieces have 8 of the 12 points of the whole extent");
     EXPECT_EQ(error_of(image("<Piece Extent=\"0 3 0 1 0 1\"/>"), "ImageData"),
               "a piece reaches out of the whole extent");
+}
+
+/// A box of points from `first` to `last` along z, 0 to 3 else, with a cell field that is `value`.
+std::string image_piece(int first, int last, int value) {
+    std::string values;
+    for (int i = 0; i < 9 * std::max(last - first, 1); ++i) values += fmt::format("{} ", value);
+    return fmt::format("<Piece Extent=\"0 3 0 3 {} {}\"><PointData/><CellData><DataArray type=\"Float32\" Name=\"c\" "
+                       "format=\"ascii\">{}</DataArray></CellData></Piece>",
+                       first, last, values);
+}
+
+std::string image_file(int first, int last, std::string_view pieces) {
+    return fmt::format("<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 3 0 3 {} {}\" Origin=\"0 0 0\" "
+                       "Spacing=\"1 1 1\">{}</ImageData></VTKFile>",
+                       first, last, pieces);
+}
+
+TEST(VtkXml, PlanesHaveQuadrilateralsWithTheirFields) {
+    const TemporaryFolder folder;
+    const auto plane = read(folder.write("plane.vti", image_file(2, 2, image_piece(2, 2, 7)))).value();
+    ASSERT_EQ(plane.grid.cells.count(), 9u);
+    EXPECT_EQ(plane.grid.cells.types.at(8), 9);
+    ASSERT_EQ(plane.grid.cell_fields.size(), 1u);
+    EXPECT_EQ(plane.grid.cell_fields[0].values.at(8), 7);
+}
+
+/// A flat piece has points of the box, and none of its cells.
+TEST(VtkXml, PlanesInABoxTakeNoneOfItsCells) {
+    const TemporaryFolder folder;
+    for (const int at : {0, 1, 3})
+        for (const bool before : {false, true}) {
+            const std::string solid = image_piece(0, 3, 1), flat = image_piece(at, at, 9);
+            const auto box = read(folder.write("box.vti", image_file(0, 3, before ? flat + solid : solid + flat))).value();
+            ASSERT_EQ(box.grid.cells.count(), 27u);
+            for (std::size_t cell = 0; cell < 27; ++cell) EXPECT_EQ(box.grid.cell_fields[0].values.at(cell), 1);
+
+            folder.write("solid.vti", image_file(0, 3, solid));
+            folder.write("flat.vti", image_file(at, at, flat));
+            const std::string solid_piece = "<Piece Extent=\"0 3 0 3 0 3\" Source=\"solid.vti\"/>",
+                              flat_piece = fmt::format("<Piece Extent=\"0 3 0 3 {0} {0}\" Source=\"flat.vti\"/>", at);
+            const auto joined =
+                read(folder.write("box.pvti",
+                                  fmt::format("<VTKFile type=\"PImageData\"><PImageData WholeExtent=\"0 3 0 3 0 3\" "
+                                              "GhostLevel=\"0\" Origin=\"0 0 0\" Spacing=\"1 1 1\"><PPointData/>"
+                                              "<PCellData><PDataArray type=\"Float32\" Name=\"c\"/></PCellData>"
+                                              "{}{}</PImageData></VTKFile>",
+                                              before ? flat_piece : solid_piece, before ? solid_piece : flat_piece)))
+                    .value();
+            std::size_t volumes = 0;
+            const Cells& cells = joined.grid.cells;
+            for (std::size_t cell = 0; cell < cells.count(); ++cell)
+                volumes += cells.types.empty() || cells.types.at(cell) == 12;
+            EXPECT_EQ(volumes, 27u) << at;
+            EXPECT_EQ(cells.count(), 36u) << at;
+        }
 }
 
 TEST(VtkXml, GhostRanksOfGeosMarkGhostCells) {

@@ -36,6 +36,13 @@ struct Extent {
     }
 };
 
+/// Whether the piece has no cells of the whole: it is flat along an axis along which that is not.
+bool lies_between_cells(const Extent& whole, const Extent& piece) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (piece.points(axis) < 2 && whole.points(axis) > 1) return true;
+    return false;
+}
+
 std::uint64_t all_points(const Extent& extent) { return extent.points(0) * extent.points(1) * extent.points(2); }
 std::uint64_t all_cells(const Extent& extent) { return extent.cells(0) * extent.cells(1) * extent.cells(2); }
 
@@ -78,6 +85,7 @@ struct Boxes {
 /// Calls visit(row of the piece, its first place in the whole) for each row along x.
 template <class Visit>
 void each_row(const Extent& whole, const Extent& piece, bool of_points, const Visit& visit) {
+    if (!of_points && lies_between_cells(whole, piece)) return;
     const auto count = [&](const Extent& extent, std::size_t axis) {
         return of_points ? extent.points(axis) : extent.cells(axis);
     };
@@ -351,6 +359,13 @@ Result<void> leave_out_overlaps(std::span<Loaded> parts) {
             pieces.push_back(&piece);
             boxes.push_back(box);
             total += all_cells(box);
+        }
+    // Planes in a box have cells of their own.
+    for (std::size_t i = boxes.size(); i-- > 0;)
+        if (lies_between_cells(whole, boxes[i])) {
+            total -= all_cells(boxes[i]);
+            boxes.erase(boxes.begin() + static_cast<std::ptrdiff_t>(i));
+            pieces.erase(pieces.begin() + static_cast<std::ptrdiff_t>(i));
         }
     if (boxes.size() < 2) return {};
     double in_whole = 1;

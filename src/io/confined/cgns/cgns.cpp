@@ -101,7 +101,9 @@ Result<void> CgnsFile::describe(Loaded& loaded) {
     for (const CgnsZone& zone : zones_) {
         CgnsCounts counts;
         if (zone.is_structured) {
-            counts.cells = zone.points.size() == 3 ? zone.cells[0] * zone.cells[1] * zone.cells[2] : 0;
+            std::vector<std::uint64_t> size = zone.points;
+            size.resize(3, 1);
+            counts.cells = vtk_xml::cells_in_box({size[0], size[1], size[2]});
         } else {
             const auto found = count_cgns_cells(tree_, zone);
             if (!found) return wrong(zone, found.error());

@@ -40,7 +40,7 @@ Result<void> read_size(const CgnsTree& tree, CgnsZone& zone) {
         if (most == 0) return invalid_data("it has more points than any file can hold");
     }
     if (zone.is_structured) // what the file says of cells along an axis of one point differs
-        for (std::size_t k = 0; k < axes; ++k) zone.cells[k] = std::max<std::uint64_t>(zone.points[k], 1) - 1;
+        for (std::size_t k = 0; k < axes; ++k) zone.cells[k] = zone.points[k] > 1 ? zone.points[k] - 1 : zone.points[k];
     return {};
 }
 

@@ -44,8 +44,10 @@ Result<HdfImage> HdfImage::open(const std::string& path, const std::string& root
 /// A tuple of the field for each point or cell of a step; for a description empty, with the field's type and components.
 Result<Array> HdfImage::read_field(Association association, const std::string& name, std::size_t step,
                                    Depth depth) const {
-    const std::uint64_t less = association == Association::cell ? 1 : 0;
-    std::vector<std::uint64_t> expected{size_.z - less, size_.y - less, size_.x - less};
+    const auto along = [&](std::uint64_t points) {
+        return association == Association::cell && points > 1 ? points - 1 : points;
+    };
+    std::vector<std::uint64_t> expected{along(size_.z), along(size_.y), along(size_.x)};
     if (!steps_.times.empty()) expected.insert(expected.begin(), steps_.times.size());
     const std::string full = group(association) + "/" + name;
     const auto described = read_hdf5_array(path_, full, {}, Depth::description);
@@ -58,7 +60,7 @@ Result<Array> HdfImage::read_field(Association association, const std::string& n
     }
     if (shape != expected)
         return Error{ErrorCode::invalid_data,
-                     fmt::format("its shape is not that of the image's {}", less == 0 ? "points" : "cells")};
+                     fmt::format("its shape is not that of the image's {}", association == Association::point ? "points" : "cells")};
     if (depth == Depth::description) return Array(described->values.type(), nullptr, 0, components, nullptr);
     if (!is_written(path_, full)) return Error{ErrorCode::invalid_data, "it has values that were never written"};
     Box box{std::vector<std::uint64_t>(shape.size(), 0), std::vector<std::uint64_t>(shape.size(), 1), shape};
