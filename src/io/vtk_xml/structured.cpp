@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// VTI, VTR and VTS: boxes of points whose cells are implied, hexahedra, or quadrilaterals of a plane. Each piece is a box within the whole one.
+// VTI, VTR and VTS: boxes of points whose cells are implied, hexahedra, or quadrilaterals of a plane. Each piece is a box
+// within the whole one.
 #include <algorithm>
 #include <array>
 #include <cstring>

@@ -23,7 +23,7 @@ inline constinit std::atomic<unsigned> door{0};    ///< workers that are in; wit
 constexpr unsigned open = 1U << 31U;
 
 inline constinit std::atomic<std::size_t> next_piece{0};
-inline constinit std::size_t pieces = 0; ///< these are set while the door is closed and nobody is in
+inline constinit std::size_t pieces = 0; ///< these are set while the door is closed and no worker is in
 inline constinit const void* job = nullptr;
 inline constinit void (*do_piece)(const void* job, std::size_t piece) = nullptr;
 
