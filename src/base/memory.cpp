@@ -5,9 +5,13 @@
 #include <charconv>
 #include <fstream>
 #include <limits>
+#include <mutex>
 #include <optional>
 
 #include <fmt/core.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <sys/resource.h>
 
 #include "base/block.hpp"
@@ -95,6 +99,15 @@ Result<void> require_memory(std::string_view what, std::uint64_t bytes) {
     if (bytes <= free) return {};
     return Error{ErrorCode::out_of_memory,
                  fmt::format("{} needs {}, but {} are free", what, format_bytes(bytes), format_bytes(free))};
+}
+
+void trim_heap() noexcept {
+#ifdef __GLIBC__
+    // Where another allocator has replaced malloc(), the first call makes glibc's heap, which no other call may read then.
+    static std::mutex one_at_a_time;
+    const std::lock_guard lock(one_at_a_time);
+    malloc_trim(0);
+#endif
 }
 
 } // namespace isotet::core

@@ -25,6 +25,10 @@ std::uint64_t control_group_free(const std::string& membership, const std::strin
 /// An out_of_memory error when `bytes` are more than free_memory(): "packing needs 12.3 GB, but 4.5 GB are free".
 ISOTET_API Result<void> require_memory(std::string_view what, std::uint64_t bytes);
 
+/// Gives freed memory that the C library keeps back to the system, where it can.
+/// Threads   safe from many threads
+ISOTET_API void trim_heap() noexcept;
+
 using isotet::format_bytes;
 using isotet::peak_resident_memory;
 using isotet::reset_peak_memory;

@@ -7,9 +7,6 @@
 #include <cstring>
 
 #include <fmt/format.h>
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
 
 #include <isotet/boundary.hpp>
 #include <isotet/fields.hpp>
@@ -17,6 +14,8 @@
 #include <isotet/linear_cells.hpp>
 #include <isotet/memory.hpp>
 #include <isotet/scene.hpp>
+
+#include "base/memory.hpp"
 
 namespace isotet::view {
 
@@ -437,9 +436,7 @@ void GridView::rest() {
         has_cells_ = false;
     }
     release_memory();
-#ifdef __GLIBC__
-    malloc_trim(0);
-#endif
+    core::trim_heap();
 }
 
 /// The field that colours, as surfaces carry it.
