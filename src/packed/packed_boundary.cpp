@@ -20,6 +20,8 @@
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
 #include "grid/boundary_faces.hpp"
+#include "grid/cell/native_cells.hpp"
+#include "grid/cell/splitter.hpp"
 #include "numbers/point_hash.hpp"
 #include "packed/boundary_points.hpp"
 #include "packed/packed.hpp"
@@ -31,9 +33,6 @@ namespace isotet {
 
 namespace core {
 namespace {
-
-/// The corners of a tet's faces, each counter-clockwise seen from outside.
-constexpr std::array<std::array<std::uint8_t, 3>, 4> tet_faces{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 
 /// A face by its three points, ascending, and by how often it is used as it stands (positive) or mirrored.
 template <class Point>
@@ -81,21 +80,40 @@ void cancel(std::vector<Face<Point>>& faces) {
 using LocalFace = Face<std::uint8_t>;
 using PackedFace = Face<std::uint64_t>;
 
-/// The faces of a cluster that its own tets do not cancel.
-void add_faces(const Packed& packed, std::size_t cluster, std::vector<LocalFace>& local, std::vector<PackedFace>& out) {
-    local.clear();
-    for_tets(packed, cluster, [&](const std::array<std::uint8_t, 4>& corners, std::size_t) {
-        for (const auto& f : tet_faces) local.push_back(LocalFace::make({corners[f[0]], corners[f[1]], corners[f[2]]}));
-    });
-    std::sort(local.begin(), local.end());
-    cancel(local);
-    std::array<std::uint64_t, max_cluster_points> points{};
-    local_points(packed, cluster, points.data());
-    for (const LocalFace& face : local) {
-        PackedFace global = PackedFace::make({points[face.points[0]], points[face.points[1]], points[face.points[2]]});
-        global.uses *= face.uses;
-        out.push_back(global);
+/// Calls f(a, b, c) for the outer faces of the tets into which a stored cell is split, counter-clockwise seen from outside: what
+/// the others have within the cell cancels.
+template <class F>
+void for_outer_faces(const Packed& packed, const std::uint64_t* locals, const StoredCell& cell, const F& f) {
+    const WholeCell whole = ranked_cell(packed, locals, cell);
+    const auto& corners = cell.corners;
+    if (has_repeated_corner(whole)) {
+        for (const auto& tet : split_locally(whole))
+            for (const CellFace& face : shape_of(CellKind::tetrahedron).faces())
+                f(corners[tet[face.corners[0]]], corners[tet[face.corners[1]]], corners[tet[face.corners[2]]]);
+        return;
     }
+    for (const CellFace& face : shape_of(cell.kind).faces()) {
+        const auto& [a, b, c, d] = face.corners;
+        if (face.count == 3) {
+            f(corners[a], corners[b], corners[c]);
+        } else if (is_cut_from_first(whole.corners[a], whole.corners[b], whole.corners[c], whole.corners[d])) {
+            f(corners[a], corners[b], corners[c]);
+            f(corners[a], corners[c], corners[d]);
+        } else {
+            f(corners[a], corners[b], corners[d]);
+            f(corners[b], corners[c], corners[d]);
+        }
+    }
+}
+
+/// Calls f(face) for the faces of a cluster's cells, as tets. Local indices ascend as packed points do.
+template <class F>
+void for_faces(const Packed& packed, std::size_t cluster, const std::uint64_t* locals, const F& f) {
+    const auto call = [&](std::uint8_t a, std::uint8_t b, std::uint8_t c) { f(LocalFace::make({a, b, c})); };
+    for (const StoredTet& tet : packed.cluster_tets(cluster))
+        for (const CellFace& face : shape_of(CellKind::tetrahedron).faces())
+            call(tet.corners[face.corners[0]], tet.corners[face.corners[1]], tet.corners[face.corners[2]]);
+    packed.for_other_cells(cluster, [&](const StoredCell& cell) { for_outer_faces(packed, locals, cell, call); });
 }
 
 /// Sums of the hashes of faces at their lowest points, signed by how they are used: 0 where all faces cancel.
@@ -111,29 +129,42 @@ public:
         std::array<std::uint64_t, max_cluster_points> points{}, hashes{}, sums{};
         const std::size_t count = local_points(packed_, cluster, points.data());
         for (std::size_t i = 0; i < count; ++i) hashes[i] = mixed(points[i] + 1);
-        for_tets(packed_, cluster, [&](const std::array<std::uint8_t, 4>& corners, std::size_t) {
-            for (const auto& f : tet_faces) { // local indices ascend as packed points do
-                const LocalFace face = LocalFace::make({corners[f[0]], corners[f[1]], corners[f[2]]});
-                const auto& [a, b, c] = face.points;
-                const std::uint64_t hash = mixed(hashes[a] + hashes[b] + hashes[c]);
-                sums[a] += face.uses > 0 ? hash : -hash;
-            }
+        for_faces(packed_, cluster, points.data(), [&](const LocalFace& face) {
+            const auto& [a, b, c] = face.points;
+            const std::uint64_t hash = mixed(hashes[a] + hashes[b] + hashes[c]);
+            sums[a] += face.uses > 0 ? hash : -hash;
         });
         for (std::size_t i = 0; i < count; ++i)
             if (sums[i] != 0) std::atomic_ref(sums_[points[i]]).fetch_add(sums[i], std::memory_order_relaxed);
     }
 
     bool is_open_at(std::uint64_t lowest) const { return sums_[lowest] != 0; }
-    bool is_open_in(std::size_t cluster) const {
-        std::array<std::uint64_t, max_cluster_points> points;
-        const std::size_t count = local_points(packed_, cluster, points.data());
-        return std::any_of(points.data(), points.data() + count, [&](std::uint64_t p) { return is_open_at(p); });
-    }
 
 private:
     const Packed& packed_;
     Buffer<std::uint64_t> sums_; ///< a point
 };
+
+/// The faces of a cluster that its own tets do not cancel, of those that are open at their lowest point.
+void add_faces(const Packed& packed, std::size_t cluster, const FaceSums& sums, std::vector<LocalFace>& local,
+               std::vector<PackedFace>& out) {
+    std::array<std::uint64_t, max_cluster_points> points{};
+    const std::size_t count = local_points(packed, cluster, points.data());
+    std::array<bool, max_cluster_points> open{};
+    for (std::size_t i = 0; i < count; ++i) open[i] = sums.is_open_at(points[i]);
+    if (std::ranges::find(open, true) == open.end()) return;
+    local.clear();
+    for_faces(packed, cluster, points.data(), [&](const LocalFace& face) {
+        if (open[face.points[0]]) local.push_back(face);
+    });
+    std::sort(local.begin(), local.end());
+    cancel(local);
+    for (const LocalFace& face : local) {
+        PackedFace global = PackedFace::make({points[face.points[0]], points[face.points[1]], points[face.points[2]]});
+        global.uses *= face.uses;
+        out.push_back(global);
+    }
+}
 
 /// Calls work(cluster, scratch) for all clusters, on all threads, and done(scratch) behind several of them.
 template <class Scratch, class Work, class Done>
@@ -166,10 +197,9 @@ Result<std::vector<PackedFace>> boundary_faces(const Packed& packed, const Progr
     std::vector<PackedFace> faces;
     std::mutex mutex;
     const auto look = [&](std::uint32_t cluster, Found& found) {
-        if (sums.is_open_in(cluster)) add_faces(packed, cluster, found.local, found.faces);
+        add_faces(packed, cluster, sums, found.local, found.faces);
     };
     const auto keep = [&](Found& found) {
-        std::erase_if(found.faces, [&](const PackedFace& face) { return !sums.is_open_at(face.points[0]); });
         const std::lock_guard lock(mutex);
         faces.insert(faces.end(), found.faces.begin(), found.faces.end());
     };

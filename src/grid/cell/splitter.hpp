@@ -9,6 +9,12 @@
 
 namespace isotet::core {
 
+/// True when the diagonal of a quadrilateral face starts in its first corner (or third): when one of these is the lowest.
+template <class Number>
+constexpr bool is_cut_from_first(Number a, Number b, Number c, Number d) {
+    return std::min(a, c) <= std::min(b, d);
+}
+
 /// Dompierre and others, 1999: every face is cut from its lowest corner. A tet stays as it is.
 ///
 /// Calls sink.expect(count), and then sink.add(a, b, c, d) with positions of corners for each of the `count` tets, those with
@@ -39,9 +45,8 @@ private:
 
     Number number(Position corner) const { return numbers_[corner]; }
 
-    /// True when the diagonal of the quadrilateral a b c d starts in a (or c): when one of these is the lowest.
     bool diagonal_from_first(Position a, Position b, Position c, Position d) const {
-        return std::min(number(a), number(c)) <= std::min(number(b), number(d));
+        return is_cut_from_first(number(a), number(b), number(c), number(d));
     }
 
     /// Two tets between the quadrilateral a b c d and a point.
