@@ -15,10 +15,10 @@ namespace isotet {
 
 /// Returns memory that isotet keeps for its next call to the system: large arrays that were given back, at most 1/64 of
 /// the machine's memory. Worth a call before the program does something else for long.
-///
+/// What the C library keeps of freed memory goes back as well, where it can.
 /// Threads that wait for the next call are given back to oneTBB, too, so that tbb::finalize() may succeed.
 ///
-/// Returns      how many bytes that were; 0 also when there was no memory for that
+/// Returns      how many bytes isotet kept; 0 also when there was no memory for that
 /// Guarantees   nothing that an object of yours holds is touched
 /// Threads      safe from many threads, also while operations run
 ISOTET_API std::size_t release_memory() noexcept;

@@ -2,13 +2,16 @@
 #include <isotet/memory.hpp>
 
 #include "base/block.hpp"
+#include "base/memory.hpp"
 #include "base/parallel.hpp"
 
 namespace isotet {
 
 std::size_t release_memory() noexcept {
     core::drop_idle_arenas();
-    return core::drop_kept_blocks();
+    const std::size_t kept = core::drop_kept_blocks();
+    core::trim_heap();
+    return kept;
 }
 
 } // namespace isotet

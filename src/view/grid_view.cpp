@@ -15,8 +15,6 @@
 #include <isotet/memory.hpp>
 #include <isotet/scene.hpp>
 
-#include "base/memory.hpp"
-
 namespace isotet::view {
 
 namespace {
@@ -436,7 +434,6 @@ void GridView::rest() {
         has_cells_ = false;
     }
     release_memory();
-    core::trim_heap();
 }
 
 /// The field that colours, as surfaces carry it.

@@ -35,6 +35,8 @@ std::uint64_t free_memory() { return (std::uint64_t{1} << 32U) - *resident_memor
 
 std::uint64_t control_group_free(const std::string&, const std::string&) { return free_memory(); }
 
+void trim_heap() noexcept {}
+
 Result<void> require_memory(std::string_view what, std::uint64_t bytes) {
     if (bytes <= free_memory()) return {};
     return Error{ErrorCode::out_of_memory,
