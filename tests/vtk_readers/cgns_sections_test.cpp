@@ -1,9 +1,11 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Sections of CGNS in any order, with boundary elements anywhere among those of the volume; several solutions.
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <isotet/read.hpp>
@@ -315,6 +317,36 @@ TEST(CgnsSolutions, AreThoseOfTheirSteps) {
             ASSERT_EQ(result->grid.point_fields.size(), with_pointers ? 2u : 1u);
             EXPECT_EQ(result->grid.point_fields[0].values.at(3), with_pointers ? 2 - static_cast<double>(step) : 1 + static_cast<double>(step));
         }
+    }
+}
+
+TEST(CgnsStructured, PlanesAreQuadrilaterals) {
+    const TemporaryFolder folder;
+    for (const int dimensions : {2, 3}) {
+        const std::string path = folder.file(fmt::format("plane{}.cgns", dimensions));
+        int file = 0, base = 0, zone = 0, at = 0;
+        cg_set_file_type(CG_FILE_HDF5);
+        ASSERT_EQ(cg_open(path.c_str(), CG_MODE_WRITE, &file), 0) << cg_get_error();
+        cg_base_write(file, "Base", dimensions, 3, &base);
+        const Points sizes = dimensions == 2 ? Points{3, 4, 2, 3, 0, 0} : Points{3, 4, 1, 2, 3, 0, 0, 0, 0};
+        ASSERT_EQ(cg_zone_write(file, base, "Zone", sizes.data(), CG_Structured, &zone), 0) << cg_get_error();
+        std::vector<double> x, y, z(12, 5), c(12);
+        for (int i = 0; i < 12; ++i) x.push_back(i % 3), y.push_back(i / 3);
+        std::iota(c.begin(), c.end(), 0.0);
+        cg_coord_write(file, base, zone, CG_RealDouble, "CoordinateX", x.data(), &at);
+        cg_coord_write(file, base, zone, CG_RealDouble, "CoordinateY", y.data(), &at);
+        cg_coord_write(file, base, zone, CG_RealDouble, "CoordinateZ", z.data(), &at);
+        const bool of_cells = dimensions == 2; // with no layer of cells libcgns writes no values of them
+        cg_sol_write(file, base, zone, "Flow", of_cells ? CG_CellCenter : CG_Vertex, &at);
+        ASSERT_EQ(cg_field_write(file, base, zone, at, CG_RealDouble, "c", c.data(), &at), 0) << cg_get_error();
+        cg_close(file);
+        const auto result = read(path);
+        ASSERT_TRUE(result) << dimensions << ": " << result.error().message;
+        ASSERT_EQ(result->grid.cells.count(), 6u);
+        EXPECT_EQ(result->grid.cells.types.at(5), 9);
+        EXPECT_EQ(result->grid.points.at(11, 1), 3);
+        const std::vector<Field>& fields = of_cells ? result->grid.cell_fields : result->grid.point_fields;
+        EXPECT_EQ(fields.at(0).values.at(5), 5);
     }
 }
 

@@ -279,6 +279,21 @@ TEST_P(EnsightFiles, BlocksAndComplexVariablesAreReadWhole) {
     }
 }
 
+TEST_P(EnsightFiles, BlocksOfOneLayerOfPointsAreQuadrilaterals) {
+    GoldText geometry(GetParam(), true), cells(GetParam());
+    geometry.line("a").line("b").line("node id off").line("element id off").line("part").integers({1}).line("c");
+    geometry.line("block uniform").integers({4, 3, 1}, 3).floats({0, 0, 0}).floats({1, 1, 1});
+    cells.line("c").line("part").integers({1}).line("block").floats({0, 1, 2, 3, 4, 5});
+    const auto result = read_ensight(folder_, {{"grid.geo", geometry.text()},
+                                               {"c", cells.text()},
+                                               {"a.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: grid.geo\n"
+                                                          "VARIABLE\nscalar per element: c c\n"}});
+    ASSERT_TRUE(result) << result.error().message;
+    ASSERT_EQ(result->grid.cells.count(), 6u);
+    EXPECT_EQ(result->grid.cells.types.at(5), 9);
+    EXPECT_EQ(result->grid.cell_fields.at(0).values.at(5), 5);
+}
+
 TEST_P(EnsightFiles, CellsOfBlocksThatAreBlankedOrGhostsAreLeftOut) {
     for (const std::string kind : {"block uniform iblanked", "block uniform with_ghost", "block uniform range"}) {
         GoldText geometry(GetParam(), true), cells(GetParam());

@@ -218,12 +218,12 @@ TEST_F(ReadVtkhdfParts, PointsMayBeIntegers) {
     EXPECT_EQ(result->grid.points.at(3, 2), 7);
 }
 
-/// An image of 3 x 5 x 3 points whose box does not begin at 0.
-void write_image(Hdf5Writer& file, std::vector<double> direction) {
+/// An image of 3 x 5 points a layer, whose box does not begin at 0.
+void write_image(Hdf5Writer& file, std::vector<double> direction, std::int64_t last_layer = 2) {
     for (const char* name : {"/VTKHDF", "/VTKHDF/PointData", "/VTKHDF/CellData"}) file.group(name);
     file.attribute("/VTKHDF", "Version", Counts{2, 0});
     file.attribute("/VTKHDF", "Type", "ImageData");
-    file.attribute("/VTKHDF", "WholeExtent", Counts{1, 3, 0, 4, 0, 2});
+    file.attribute("/VTKHDF", "WholeExtent", Counts{1, 3, 0, 4, 0, last_layer});
     file.real_attribute("/VTKHDF", "Origin", {1, 2, 3});
     file.real_attribute("/VTKHDF", "Spacing", {0.5, 0.25, 1});
     file.real_attribute("/VTKHDF", "Direction", std::move(direction));
@@ -260,6 +260,19 @@ TEST_F(ReadVtkhdfParts, PlacesThePointsOfImages) {
     ASSERT_EQ(result->info.left_out.size(), 1u);
     EXPECT_EQ(result->info.left_out[0].name, "short");
     EXPECT_EQ(inspect(folder_.file("a.vtkhdf")).value().left_out.size(), 1u);
+}
+
+TEST_F(ReadVtkhdfParts, ImagesOfOneLayerOfPointsAreQuadrilaterals) {
+    {
+        Hdf5Writer file(folder_.file("a.vtkhdf"));
+        write_image(file, {1, 0, 0, 0, 1, 0, 0, 0, 1}, 0);
+        file.data<double>("/VTKHDF/CellData/c", counted(8), {1, 4, 2});
+    }
+    const auto result = read(folder_.file("a.vtkhdf"));
+    ASSERT_TRUE(result) << result.error().message;
+    ASSERT_EQ(result->grid.cells.count(), 8u);
+    EXPECT_EQ(result->grid.cells.types.at(7), 9);
+    EXPECT_EQ(result->grid.cell_fields.at(0).values.at(7), 7);
 }
 
 TEST_F(ReadVtkhdfParts, ReadsTheStepOfAnImageThatIsAskedFor) {

@@ -183,6 +183,17 @@ TEST_F(ReadXdmfData, ReadsCoordinatesApart) {
               std::string::npos);
 }
 
+TEST_F(ReadXdmfData, ReadsPlanesAsQuadrilaterals) {
+    const auto plane =
+        read_grid("<Topology TopologyType='3DCoRectMesh' Dimensions='3 1 4'/><Geometry "
+                  "GeometryType='ORIGIN_DXDYDZ'>" +
+                  numbers("0 0 3") + numbers("5 1 4") + "</Geometry>" + xdmf_field("c", "1 2 3 4 5 6", "Cell"));
+    ASSERT_TRUE(plane) << plane.error().message;
+    ASSERT_EQ(plane->grid.cells.count(), 6u);
+    EXPECT_EQ(plane->grid.cells.types.at(5), 9);
+    EXPECT_EQ(plane->grid.cell_fields.at(0).values.at(5), 6);
+}
+
 /// Axes are stated slowest first; the points of all three ways are the same.
 TEST_F(ReadXdmfData, ReadsStructuredGridsAsHexahedra) {
     const std::string sizes = " Dimensions='2 3 4'/>", of_cells = xdmf_field("c", "1 2 3 4 5 6", "Cell");
