@@ -5,6 +5,7 @@
     python bench/scale/variants.py zlib GRID.vtu OUT.vtu FIELD
     python bench/scale/variants.py legacy GRID.vtu OUT.vtk FIELD     binary
     python bench/scale/variants.py vtkhdf GRID.vtu OUT.vtkhdf FIELD  not compressed; needs VTK 9.4 or later
+    python bench/scale/variants.py exodus GRID.vtu OUT.e FIELD       one block
     python bench/scale/variants.py foam SIDE FOLDER FIELD [PARTS]    hexahedra, binary, a volScalarField; PARTS: decomposed
 """
 import pathlib
@@ -71,6 +72,15 @@ def vtkhdf(source, out, field):
     writer.SetInputData(read(source))
     writer.SetFileName(str(out))
     writer.SetCompressionLevel(0)
+    writer.Write()
+
+
+def exodus(source, out, field):
+    import vtk
+
+    writer = vtk.vtkExodusIIWriter()
+    writer.SetInputData(read(source))
+    writer.SetFileName(str(out))
     writer.Write()
 
 
@@ -176,4 +186,4 @@ def foam(side, folder, field, parts="1"):
 
 
 if __name__ == "__main__":
-    {"wide": wide, "zlib": zlib, "legacy": legacy, "vtkhdf": vtkhdf, "foam": foam}[sys.argv[1]](*sys.argv[2:])
+    {"wide": wide, "zlib": zlib, "legacy": legacy, "vtkhdf": vtkhdf, "exodus": exodus, "foam": foam}[sys.argv[1]](*sys.argv[2:])

@@ -10,6 +10,7 @@
 #include "api/active_cells.hpp"
 #include "api/finish.hpp"
 #include "base/errors.hpp"
+#include "base/fresh_memory.hpp"
 #include "base/guard.hpp"
 #include "cpu/direct/active_filter.hpp"
 #include "grid/cells.hpp"
@@ -100,7 +101,7 @@ Result<Cells> ActiveCellFilter::finish() {
         if (!data_) return moved_from("the filter of active cells");
         if (data_->next_round)
             return invalid_argument("gradient normals need cells around those that are cut: all must be added twice");
-        if (data_->out_of_memory) return Error{ErrorCode::out_of_memory, "looking for active cells ran out of memory"};
+        if (data_->out_of_memory) return core::ran_out_of_memory("looking for active cells");
         auto cells = data_->filter->finish();
         if (!cells)
             return invalid_data("a cell has a type that is not taken, a point that is not there, or one whose "

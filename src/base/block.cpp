@@ -3,7 +3,6 @@
 #include "base/block_place.hpp"
 #include "base/block_reuse.hpp"
 #include "base/fresh_memory.hpp"
-#include "base/memory.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -75,13 +74,8 @@ Block map_block(std::size_t bytes) {
     return {data, size};
 }
 
-std::uint64_t left_for_blocks();
-
 /// No data also where the pages could not all be used.
-Block map_fresh(std::size_t bytes) {
-    static auto* const fresh = new FreshMemory(left_for_blocks);
-    return fresh->take(bytes) ? map_block(bytes) : Block{};
-}
+Block map_fresh(std::size_t bytes) { return fresh_memory().take(bytes) ? map_block(bytes) : Block{}; }
 
 /// Blocks given back, waiting for the next one who wants about as much; and what is in use.
 class KeptBlocks {
@@ -135,11 +129,11 @@ public:
     }
 
     void prepare(std::size_t bytes) {
+        if (is_in_use()) return;
+        const Block block = map_fresh(bytes);
+        if (!block.data) return;
         const std::lock_guard lock(mutex_);
         make_room_for_one();
-        if (reuses_ || bytes_ > 0) return;
-        const Block block = map_block(bytes);
-        if (!block.data) return;
         blocks_.push_back(block);
         bytes_ += block.bytes;
     }
@@ -156,6 +150,10 @@ public:
         const std::lock_guard lock(mutex_);
         return in_use_;
     }
+    std::size_t mapped() {
+        const std::lock_guard lock(mutex_);
+        return in_use_ + bytes_;
+    }
 
     void begin_reuse() {
         const std::lock_guard lock(mutex_);
@@ -168,6 +166,11 @@ public:
     }
 
 private:
+    bool is_in_use() {
+        const std::lock_guard lock(mutex_);
+        return reuses_ || bytes_ > 0;
+    }
+
     void make_room_for_one() {
         if (blocks_.size() == blocks_.capacity()) blocks_.reserve(2 * blocks_.size() + 16);
     }
@@ -226,13 +229,6 @@ KeptBlocks& kept_blocks() {
     return *blocks;
 }
 
-/// What the control group has, less what blocks will take of it once they are written.
-std::uint64_t left_for_blocks() {
-    const std::uint64_t left = control_group_free("/proc/self/cgroup", "/sys/fs/cgroup");
-    const std::uint64_t mapped = kept_blocks().in_use(), resident = resident_memory().value_or(mapped);
-    return left - std::min(left, mapped - std::min(mapped, resident));
-}
-
 std::atomic<BlockPlace*> other_place{nullptr};
 
 } // namespace
@@ -273,6 +269,8 @@ void prepare_blocks(std::size_t bytes) noexcept {
     } catch (...) { // no memory for the list, or no lock
     }
 }
+
+std::size_t mapped_blocks() { return kept_blocks().mapped(); }
 
 std::size_t drop_kept_blocks() noexcept {
     try {

@@ -2,21 +2,37 @@
 #include "base/fresh_memory.hpp"
 
 #include <algorithm>
+#include <utility>
+
+#include "base/memory.hpp"
 
 namespace isotet::core {
 
 bool FreshMemory::take(std::size_t bytes) {
-    constexpr std::uint64_t of_heap = std::uint64_t{16} << 20;       // stays free
     constexpr std::uint64_t known_at_most = std::uint64_t{64} << 20; // then it is asked for again
     const std::lock_guard lock(mutex_);
     if (bytes > known_) {
         const std::uint64_t left = left_();
         known_ = 0;
-        if (left < of_heap || left - of_heap < bytes) return false;
-        known_ = std::min<std::uint64_t>(left - of_heap, bytes + known_at_most);
+        const std::uint64_t room = left - std::min(left, of_heap);
+        if (room < bytes) {
+            refusal_ = {bytes, room};
+            return false;
+        }
+        known_ = std::min<std::uint64_t>(room, bytes + known_at_most);
     }
     known_ -= bytes;
     return true;
+}
+
+FreshMemory::Refusal FreshMemory::take_refusal() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(refusal_, {});
+}
+
+FreshMemory& fresh_memory() {
+    static auto* const memory = new FreshMemory(unclaimed_memory); // arrays may be given back while the process ends
+    return *memory;
 }
 
 } // namespace isotet::core

@@ -13,8 +13,10 @@
 #include <malloc.h>
 #endif
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include "base/block.hpp"
+#include "base/fresh_memory.hpp"
 #include "base/scratch_memory.hpp"
 
 namespace isotet::core {
@@ -31,13 +33,15 @@ std::optional<std::uint64_t> number_in(const std::string& path) {
     return value;
 }
 
-/// A line "name 123" of a file of counters; 0 where there is none.
-std::uint64_t counter_in(const std::string& path, std::string_view name) {
+/// Bytes of files that are only cached, by a file of counters. Of version 1, "total_..." has those of groups below, too.
+std::uint64_t cached_in(const std::string& path) {
     std::ifstream file(path);
-    std::uint64_t value = 0;
-    for (std::string word; file >> word >> value;)
-        if (word == name) return value;
-    return 0;
+    std::uint64_t value = 0, own = 0, total = 0;
+    for (std::string name; file >> name >> value;) {
+        if (name == "inactive_file" || name == "active_file") own += value;
+        if (name == "total_inactive_file" || name == "total_active_file") total += value;
+    }
+    return std::max(own, total);
 }
 
 /// A line "Name:   123 kB" of a file in /proc, in bytes.
@@ -50,6 +54,44 @@ std::optional<std::uint64_t> proc_bytes(const char* path, std::string_view name)
     return {};
 }
 
+struct Pages {
+    std::uint64_t size = 0, resident = 0, shared = 0; ///< in bytes
+};
+
+/// Of this process. Readable in a reader process, too.
+Pages pages_of_process() {
+    std::ifstream file("/proc/self/statm");
+    static const auto size = static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+    Pages pages;
+    if (!(file >> pages.size >> pages.resident >> pages.shared)) return {};
+    return {pages.size * size, pages.resident * size, pages.shared * size};
+}
+
+struct Heap {
+    std::uint64_t used = 0, free = 0; ///< bytes
+};
+
+Heap heap_of_process() {
+#if defined(__GLIBC__) && (__GLIBC__ > 2 || __GLIBC_MINOR__ >= 33)
+    const auto heap = mallinfo2();
+    return {heap.uordblks + heap.hblkhd, heap.fordblks};
+#else
+    return {};
+#endif
+}
+
+/// What blocks and `heap` bytes will take beside what they do, once they are written to.
+std::uint64_t unwritten(std::uint64_t heap, const Pages& pages) {
+    const std::uint64_t own = pages.resident - std::min(pages.shared, pages.resident);
+    const std::uint64_t taken = mapped_blocks() + heap;
+    return own == 0 ? 0 : taken - std::min(taken, own);
+}
+
+std::uint64_t free_of_system() {
+    return std::min(proc_bytes("/proc/meminfo", "MemAvailable:").value_or(unlimited),
+                    control_group_free("/proc/self/cgroup", "/sys/fs/cgroup"));
+}
+
 } // namespace
 
 std::uint64_t control_group_free(const std::string& membership, const std::string& mount) {
@@ -57,8 +99,7 @@ std::uint64_t control_group_free(const std::string& membership, const std::strin
     const auto consider = [&](const std::string& limit, const std::string& used, const std::string& statistics) {
         const auto most = number_in(limit), all = number_in(used);
         if (!most || !all) return;
-        const std::uint64_t cached = counter_in(statistics, "inactive_file") + counter_in(statistics, "active_file");
-        const std::uint64_t now = *all - std::min(cached, *all);
+        const std::uint64_t now = *all - std::min(cached_in(statistics), *all);
         least = std::min(least, *most > now ? *most - now : 0);
     };
     std::ifstream file(membership);
@@ -81,24 +122,42 @@ std::uint64_t control_group_free(const std::string& membership, const std::strin
     return least;
 }
 
+std::uint64_t unclaimed_memory() {
+    const Heap heap = heap_of_process();
+    std::uint64_t system = free_of_system();
+    const std::uint64_t least = system - std::min(system, unwritten(heap.used + heap.free, pages_of_process()));
+    if (heap.free <= least / 4) return least;
+    trim_heap(); // what was free of the heap may have been there, or not
+    system = free_of_system();
+    return system - std::min(system, unwritten(heap.used, pages_of_process()));
+}
+
 std::uint64_t free_memory() {
-    std::uint64_t least = proc_bytes("/proc/meminfo", "MemAvailable:").value_or(unlimited);
-    least = std::min(least, control_group_free("/proc/self/cgroup", "/sys/fs/cgroup"));
+    const std::uint64_t least = unclaimed_memory();
     rlimit limit{};
-    if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
-        const std::uint64_t used = proc_bytes("/proc/self/status", "VmSize:").value_or(0);
-        least = std::min<std::uint64_t>(least, limit.rlim_cur > used ? limit.rlim_cur - used : 0);
-    }
-    return least;
+    if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return least;
+    return std::min<std::uint64_t>(least,
+                                   limit.rlim_cur - std::min<std::uint64_t>(limit.rlim_cur, pages_of_process().size));
+}
+
+Error too_little_memory(std::string_view what, std::uint64_t bytes) {
+    return {ErrorCode::out_of_memory,
+            fmt::format("{} needs {}, but {} are free", what, format_bytes(bytes), format_bytes(free_memory()))};
 }
 
 Result<void> require_memory(std::string_view what, std::uint64_t bytes) {
     if (auto there = require_scratch(what, bytes)) return *std::move(there);
-    std::uint64_t free = free_memory();
-    if (bytes > free && drop_kept_blocks() > 0) free = free_memory();
-    if (bytes <= free) return {};
-    return Error{ErrorCode::out_of_memory,
-                 fmt::format("{} needs {}, but {} are free", what, format_bytes(bytes), format_bytes(free))};
+    if (bytes <= free_memory() || (drop_kept_blocks() > 0 && bytes <= free_memory())) return {};
+    return too_little_memory(what, bytes);
+}
+
+Error ran_out_of_memory(std::string_view what) {
+    const auto [bytes, left] = fresh_memory().take_refusal();
+    std::string message = fmt::format("{} ran out of memory", what);
+    if (bytes > 0)
+        message += fmt::format(": beside {} that were taken, {} more are needed, but {} are free",
+                               format_bytes(mapped_blocks()), format_bytes(bytes), format_bytes(left));
+    return {ErrorCode::out_of_memory, std::move(message)};
 }
 
 void trim_heap() noexcept {

@@ -14,6 +14,7 @@
 
 #include <isotet/fields.hpp>
 
+#include "base/fresh_memory.hpp"
 #include "base/parallel.hpp"
 #include "base/rising_progress.hpp"
 #include "grid/cell/linear_names.hpp"
@@ -371,7 +372,7 @@ Result<Value> without_exceptions(const std::string& path, const Run& run, const 
         core::with_threads(run.threads, [&] { result = work(rises); });
         return result;
     } catch (const std::bad_alloc&) {
-        return Error{ErrorCode::out_of_memory, path + " needs more memory than is free"};
+        return core::ran_out_of_memory("reading " + path);
     } catch (const std::exception& exception) {
         return Error{ErrorCode::internal, fmt::format("reading {} failed: {}", path, exception.what())};
     } catch (...) { // by a callback of the caller

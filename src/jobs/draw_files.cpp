@@ -20,6 +20,7 @@
 #include "jobs/picture_source.hpp"
 #include "jobs/picture_text.hpp"
 #include "jobs/refuse.hpp"
+#include "jobs/way_out.hpp"
 
 namespace isotet::jobs {
 
@@ -191,9 +192,7 @@ Result<void> check_volume(const DrawJob& job) {
     return {};
 }
 
-} // namespace
-
-Result<DrawReport> draw_files(const DrawJob& job, Caller& caller) {
+Result<DrawReport> draw_all(const DrawJob& job, Caller& caller) {
     if (Result<void> fits = check_method(job); !fits) return fits.error();
     if (Result<void> fits = check_volume(job); !fits) return fits.error();
     if (Result<void> fits = check_drawn_solid(job); !fits) return fits.error();
@@ -237,6 +236,14 @@ Result<DrawReport> draw_files(const DrawJob& job, Caller& caller) {
         if (Result<void> compared = compare(*last, *reference, job, report.pictures, caller); !compared)
             return compared.error();
     return report;
+}
+
+} // namespace
+
+Result<DrawReport> draw_files(const DrawJob& job, Caller& caller) {
+    return with_way_out("drawing",
+                        "a packed file (isotet pack), or the picture of a surface that isotet extract wrote,",
+                        [&] { return draw_all(job, caller); });
 }
 
 } // namespace isotet::jobs

@@ -25,6 +25,7 @@
 #include "jobs/refinement_record.hpp"
 #include "jobs/refuse.hpp"
 #include "jobs/vertex_colors.hpp"
+#include "jobs/way_out.hpp"
 
 namespace isotet::jobs {
 
@@ -37,6 +38,8 @@ public:
 
     Result<void> run();
     ExtractNumbers take_numbers() { return std::move(numbers_); }
+    /// What needs less memory.
+    std::string way_out() const;
 
 private:
     Result<void> open();
@@ -857,6 +860,14 @@ Result<void> ExtractRun::run() {
     return write_collection(series_, plan_.collection, caller_.run());
 }
 
+std::string ExtractRun::way_out() const {
+    std::vector<std::string_view> ways;
+    if (plan_.contour.expected_isovalues.size() > 1) ways.push_back("one isovalue at a time");
+    if (!job_.with || !job_.with->empty()) ways.push_back("a surface without fields (`with` leaves them out)");
+    if (!packed_) ways.push_back("a packed file (isotet pack)");
+    return ways.empty() ? "`memory` with a smaller number" : fmt::format("{}", fmt::join(ways, ", or "));
+}
+
 } // namespace
 
 std::uint64_t ExtractNumbers::transient_peak() const {
@@ -873,7 +884,8 @@ double ExtractNumbers::work_seconds() const {
 
 Result<ExtractNumbers> extract_files(const ExtractJob& job, Caller& caller) {
     ExtractRun run(job, caller);
-    if (Result<void> done = run.run(); !done) return done.error();
+    const Result<void> done = core::guarded("extraction", [&] { return run.run(); });
+    if (!done) return with_way_out(done.error(), run.way_out());
     return run.take_numbers();
 }
 

@@ -17,6 +17,7 @@
 
 #include "grid/fields/sampled_view.hpp"
 #include "grid/patches.hpp"
+#include "jobs/way_out.hpp"
 
 namespace isotet::jobs {
 
@@ -216,9 +217,7 @@ Result<SurveyedGrid> read_for(const ChoiceWish& wish, const GridSource& source, 
     return read;
 }
 
-} // namespace
-
-Result<GridSummary> look_into(const InfoJob& job, Caller& caller) {
+Result<GridSummary> look_all(const InfoJob& job, Caller& caller) {
     if (auto paths = check_output_paths({job.grid.file}, job.other_outputs); !paths) return paths.error();
     GridOptions options = job.grid;
     options.hanging_points = HangingChoice::not_sought; // cells are counted as the file has them
@@ -272,6 +271,13 @@ Result<GridSummary> look_into(const InfoJob& job, Caller& caller) {
     if (job.each_block)
         if (auto added = add_blocks(*source, summary, caller); !added) return added.error();
     return summary;
+}
+
+} // namespace
+
+Result<GridSummary> look_into(const InfoJob& job, Caller& caller) {
+    return with_way_out("looking into the file", "`heads`, which says what the head of the file does,",
+                        [&] { return look_all(job, caller); });
 }
 
 } // namespace isotet::jobs

@@ -21,6 +21,7 @@
 #include "base/memory.hpp"
 #include "base/stopwatch.hpp"
 #include "jobs/refuse.hpp"
+#include "jobs/way_out.hpp"
 
 namespace isotet::jobs {
 
@@ -97,7 +98,8 @@ Result<void> PackRun::begin_scratch() {
 }
 
 Error PackRun::explain(Error error) const {
-    if (!scratch_ || error.code != ErrorCode::out_of_memory) return error;
+    if (!scratch_) return with_way_out(std::move(error), "`scratch`, a folder with room for files,");
+    if (error.code != ErrorCode::out_of_memory) return error;
     return scratch_->failure().value_or(std::move(error));
 }
 
@@ -419,7 +421,7 @@ Result<void> PackRun::run() {
 
 Result<PackNumbers> pack_file(const PackJob& job, Caller& caller) {
     PackRun run(job, caller);
-    if (auto done = run.run(); !done) return run.explain(done.error());
+    if (auto done = core::guarded("packing", [&] { return run.run(); }); !done) return run.explain(done.error());
     return run.take_numbers();
 }
 

@@ -7,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include "base/fresh_memory.hpp"
 #include "base/memory.hpp"
 #include "view/grid_view.hpp"
 
@@ -33,14 +34,24 @@ namespace core {
 
 std::uint64_t free_memory() { return (std::uint64_t{1} << 32U) - *resident_memory(); }
 
+std::uint64_t unclaimed_memory() { return free_memory(); }
+
 std::uint64_t control_group_free(const std::string&, const std::string&) { return free_memory(); }
 
 void trim_heap() noexcept {}
 
+Error too_little_memory(std::string_view what, std::uint64_t bytes) {
+    return {ErrorCode::out_of_memory,
+            fmt::format("{} needs {}, but {} are free", what, format_bytes(bytes), format_bytes(free_memory()))};
+}
+
+Error ran_out_of_memory(std::string_view what) {
+    return {ErrorCode::out_of_memory, fmt::format("{} ran out of memory", what)};
+}
+
 Result<void> require_memory(std::string_view what, std::uint64_t bytes) {
     if (bytes <= free_memory()) return {};
-    return Error{ErrorCode::out_of_memory,
-                 fmt::format("{} needs {}, but {} are free", what, format_bytes(bytes), format_bytes(free_memory()))};
+    return too_little_memory(what, bytes);
 }
 
 } // namespace core

@@ -66,7 +66,8 @@ TEST_F(Program, CtrlCEndsWhatDoesNotStop) {
     ASSERT_GE(::fcntl(end, F_SETPIPE_SZ, 4096), 0);
     RunResult run;
     for (const int moment : {150, 1000, 5000}) { // later where the program had not begun
-        run = isotet({"render", "--help-all"}, {.stdout_file = pipe, .interrupt_after = std::chrono::milliseconds(moment)});
+        run = isotet({"render", "--help-all"},
+                     {.stdout_file = pipe, .interrupt_after = std::chrono::milliseconds(moment)});
         if (run.signal == 0) break;
     }
     ::close(end);
@@ -127,8 +128,8 @@ TEST_F(Program, CtrlCLeavesTheOldFile) {
 }
 
 TEST_F(Program, ClosedStandardStreamsDoNotLeakIntoFiles) {
-    const std::vector<std::string> arguments{"extract", "make:kuhn:4:sphere", "-i",         "99",
-                                             "--allow-empty", path("s.vtp")};
+    const std::vector<std::string> arguments{"extract", "make:kuhn:4:sphere", "-i",
+                                             "99",      "--allow-empty",      path("s.vtp")};
     EXPECT_EQ(isotet(arguments).status, 0);
     const std::string expected = content_of(path("s.vtp"));
     for (const std::vector<int>& streams : {std::vector<int>{0}, {1}, {2}, {0, 1, 2}}) {
@@ -233,6 +234,54 @@ TEST_F(Program, TooLittleAddressSpaceIsToldWithTheAmounts) {
     EXPECT_EQ(run.status, 4) << run.err;
     EXPECT_TRUE(is_one_error(run, " needs "));
     EXPECT_TRUE(is_one_error(run, " free"));
+}
+
+/// A control group with a limit on memory, where one can be made; else there is none.
+class MemoryGroup {
+public:
+    MemoryGroup() {
+        const std::filesystem::path mount = "/sys/fs/cgroup";
+        is_first_ = std::filesystem::exists(mount / "memory");
+        folder_ = (is_first_ ? mount / "memory" : mount) / fmt::format("isotet-test-{}", ::getpid());
+        std::error_code error;
+        std::filesystem::create_directory(folder_, error);
+        has_limit_ = !error && std::filesystem::exists(limit());
+    }
+    ~MemoryGroup() {
+        std::error_code error;
+        std::filesystem::remove(folder_, error); // a folder of a control group has nothing that can be removed
+    }
+    MemoryGroup(const MemoryGroup&) = delete;
+    MemoryGroup& operator=(const MemoryGroup&) = delete;
+
+    /// What a shell does to have no more than so many bytes; nothing where there is no group.
+    std::string enter(std::size_t bytes) const {
+        if (!has_limit_) return {};
+        const std::string swap = is_first_ ? "memory.swappiness" : "memory.swap.max";
+        return fmt::format("echo {} > {}; echo 0 > {} 2> /dev/null; echo $$ > {}/cgroup.procs; ", bytes,
+                           limit().string(), (folder_ / swap).string(), folder_.string());
+    }
+
+private:
+    std::filesystem::path limit() const { return folder_ / (is_first_ ? "memory.limit_in_bytes" : "memory.max"); }
+
+    std::filesystem::path folder_;
+    bool is_first_ = false, has_limit_ = false;
+};
+
+TEST_F(Program, IsNotKilledWhereItsControlGroupHasTooLittleMemory) {
+    ASSERT_EQ(isotet({"make", "kuhn", "--side", "48", "-o", path("g.vtu"), "-q"}).status, 0);
+    const MemoryGroup group;
+    const std::string run_it = fmt::format("exec '{}' extract '{}' '{}' -f gyroid -q "
+                                           "--isovalue=-0.9,-0.7,-0.5,-0.3,-0.1,0.1,0.3,0.5,0.7,0.9",
+                                           program_path(), path("g.vtu"), path("o.vtp"));
+    for (const std::size_t megabytes : {200, 90, 80, 60, 40, 25}) {
+        const RunResult run = run_program({"/bin/bash", "-c", group.enter(megabytes * 1'000'000) + run_it});
+        if (run.status == 0) continue;
+        EXPECT_EQ(run.status, 4) << megabytes << " MB: " << run.err;
+        EXPECT_TRUE(is_one_error(run, " are free; ")) << megabytes << " MB";
+        EXPECT_TRUE(is_one_error(run, " needs less")) << megabytes << " MB";
+    }
 }
 
 TEST_F(Program, LocaleChangesNothing) {

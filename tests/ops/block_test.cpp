@@ -180,7 +180,9 @@ TEST(BlockReuse, LeavesNoMoreThanIsKeptWithoutIt) {
         const BlockReuse outer;
         const BlockReuse inner;
         std::vector<Block> blocks;
-        for (int i = 0; i < 100; ++i) blocks.push_back(take_block(256 * megabyte)); // never touched
+        const std::size_t kept_at_most =
+            static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) / 64;
+        for (int i = 0; i < 100; ++i) blocks.push_back(take_block(kept_at_most / 25)); // never touched
         for (const Block& block : blocks) {
             given += block.bytes;
             give_back(block);

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <limits>
 
+#include "base/buffer.hpp"
+
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -50,6 +52,22 @@ TEST_F(ControlGroup, OfVersionOneIsReadFromItsMemoryController) {
     put("mount/memory/one/memory.limit_in_bytes", "3000\n");
     put("mount/memory/one/memory.usage_in_bytes", "3500\n");
     EXPECT_EQ(free(), 0u);
+}
+
+TEST_F(ControlGroup, OfVersionOneGivesFilesThatGroupsBelowItHaveCachedAway) {
+    put("membership", "4:memory:/one\n");
+    put("mount/memory/one/memory.limit_in_bytes", "3000\n");
+    put("mount/memory/one/memory.usage_in_bytes", "2500\n");
+    put("mount/memory/one/memory.stat",
+        "inactive_file 100\nactive_file 0\ntotal_inactive_file 900\ntotal_active_file 600\n");
+    EXPECT_EQ(free(), 2000u);
+}
+
+TEST(FreeMemory, IsLessByWhatWasTakenAndNotWrittenToYet) {
+    constexpr std::size_t bytes = std::size_t{512} << 20;
+    const std::uint64_t before = core::free_memory();
+    const core::Buffer<std::byte> taken(bytes);
+    EXPECT_LT(core::free_memory(), before - bytes / 2) << "the system counts it only when it is written to";
 }
 
 TEST_F(ControlGroup, WithoutALimitLeavesEverything) {

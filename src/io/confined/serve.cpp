@@ -21,6 +21,7 @@
 
 #include <fmt/core.h>
 
+#include "base/fresh_memory.hpp"
 #include "io/confined/limits.hpp"
 #include "io/confined/loaders.hpp"
 #include "io/confined/opened_files.hpp"
@@ -107,7 +108,7 @@ Reply answer(const Request& request) {
             request.options.memory_limit != 0
                 ? fmt::format("reading needs more than the memory limit of {} bytes, or a size in the file is wrong",
                               request.options.memory_limit)
-                : std::string("reading needs more memory than is free, or a size in the file is wrong"));
+                : core::ran_out_of_memory("reading").message + ", or a size in the file is wrong");
     } catch (const std::exception& exception) {
         return named(ErrorCode::invalid_data, "the reader failed: " + escaped(exception.what()));
     }
