@@ -13,11 +13,9 @@
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
 #include "base/memory.hpp"
-#include "base/parallel.hpp"
 #include "linear/checked_cells.hpp"
 #include "linear/hanging/covers.hpp"
-#include "linear/hanging/face_walk.hpp"
-#include "linear/hanging/open_faces.hpp"
+#include "linear/hanging/lone_faces.hpp"
 
 namespace isotet {
 
@@ -67,33 +65,20 @@ bool fits(const Surface& boundary, std::uint64_t points) {
 }
 
 /// The faces of the boundary, by the cells that have them.
-OpenFaces faces_at(const BoundaryPoints& points, const core::CellReader& cells, const core::FaceReader& faces,
-                   const Progress& progress) {
-    constexpr std::size_t cells_per_part = 1 << 13;
-    std::vector<std::vector<FoundFace>> parts((cells.count() + cells_per_part - 1) / cells_per_part);
-    core::parallel_pieces(parts.size(), 1, progress, [&](std::size_t first_part, std::size_t last_part) {
-        FaceWalk walk(cells, faces);
-        for (std::size_t part = first_part; part < last_part; ++part) {
-            const std::size_t end = std::min((part + 1) * cells_per_part, cells.count());
-            for (std::size_t cell = part * cells_per_part; cell < end; ++cell) {
-                std::size_t marked = 0;
-                for (std::uint64_t i = cells.first(cell), n = i + cells.corners(cell); i < n; ++i)
-                    marked += points.has(cells.corner(i));
-                if (marked < 3) continue;
-                walk.each_hash(cell, [&](std::size_t face, const FaceHash& hash) {
-                    const OpenFaces::Place place{cell, static_cast<std::uint32_t>(face)};
-                    if (points.is_lowest(hash.lowest) && points.has_all(walk.loop(place)))
-                        parts[part].push_back({hash.hash, place});
-                });
-            }
-        }
-    });
-    std::vector<FoundFace> all;
-    for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
-    OpenFaces out;
-    FaceWalk walk(cells, faces);
-    for (const FoundFace& face : alone_of(std::move(all))) out.add(face.place, walk.loop(face.place));
-    return out;
+Result<OpenFaces> faces_at(const BoundaryPoints& points, const core::CellReader& cells, const core::FaceReader& faces,
+                           const Progress& progress) {
+    const auto has_cell = [&](std::size_t cell) {
+        std::size_t marked = 0;
+        for (std::uint64_t i = cells.first(cell), n = i + cells.corners(cell); i < n; ++i)
+            marked += points.has(cells.corner(i));
+        return marked >= 3;
+    };
+    const auto has_face = [&](FaceWalk& walk, const OpenFaces::Place& place, const FaceHash& hash) {
+        return points.is_lowest(hash.lowest) && points.has_all(walk.loop(place));
+    };
+    const auto found = lone_faces(cells, faces, has_cell, has_face, progress);
+    if (!found) return found.error();
+    return with_loops(*found, cells, faces);
 }
 
 } // namespace
@@ -108,11 +93,11 @@ Result<bool> has_hanging_points(const Grid& around, const Surface& boundary, con
             return invalid_argument(fmt::format("the surface is no boundary of a grid of {} points", points));
         if (auto enough = core::require_memory("looking for hanging points", 9 * points); !enough)
             return enough.error();
-        const linear::OpenFaces faces =
+        const auto faces =
             linear::faces_at({boundary, static_cast<std::size_t>(points)}, all->cells, all->faces, progress);
-        if (progress.cancelled()) return Error{ErrorCode::cancelled, "looking for hanging points was cancelled"};
+        if (!faces) return faces.error();
         const core::PointReader places(around.points);
-        const auto covers = linear::find_covers(faces, all->cells, places, progress);
+        const auto covers = linear::find_covers(*faces, all->cells, places, progress);
         if (!covers) return covers.error();
         return !covers->whole.empty() || !covers->open.empty();
     });

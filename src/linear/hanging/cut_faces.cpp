@@ -12,7 +12,7 @@
 #include "base/buffer.hpp"
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
-#include "linear/hanging/face_walk.hpp"
+#include "linear/hanging/lone_faces.hpp"
 
 namespace isotet::linear {
 
@@ -37,12 +37,20 @@ public:
     static std::size_t slots(const core::CellReader& cells) { return std::bit_ceil(cells.count() + 1); }
 
     /// Those that one cell has.
-    OpenFaces alone() {
+    Result<OpenFaces> alone() {
         add_hashes();
-        OpenFaces out;
-        FaceWalk walk(cells_, faces_);
-        for (const FoundFace& face : alone_of(collect())) out.add(face.place, walk.loop(face.place));
-        return out;
+        const auto look = [&](FaceWalk& walk, std::size_t begin, std::size_t end, std::vector<FoundFace>& found) {
+            for (std::size_t cell = begin; cell < end; ++cell) {
+                if (cut_[cell] == 0) continue;
+                walk.open(cell);
+                each_cut(walk, cell, [&](const OpenFaces::Place& place, std::span<const std::uint64_t> loop) {
+                    if (sum_at(std::ranges::min(loop)) != 0) found.push_back({linear::hash_of(loop).hash, place});
+                });
+            }
+        };
+        const auto found = lone_faces(cells_, faces_, look, progress_);
+        if (!found) return found.error();
+        return with_loops(*found, cells_, faces_);
     }
 
 private:
@@ -83,36 +91,6 @@ private:
                 });
             }
         });
-    }
-
-    /// Faces whose sums are not 0.
-    std::vector<FoundFace> collect() const {
-        using Found = std::vector<FoundFace>;
-        return gathered<FoundFace>([&](FaceWalk& walk, std::size_t first, std::size_t last, Found& part) {
-            for (std::size_t cell = first; cell < last; ++cell) {
-                if (cut_[cell] == 0) continue;
-                walk.open(cell);
-                each_cut(walk, cell, [&](const OpenFaces::Place& place, std::span<const std::uint64_t> loop) {
-                    if (sum_at(std::ranges::min(loop)) != 0) part.push_back({linear::hash_of(loop).hash, place});
-                });
-            }
-        });
-    }
-
-    /// What look(walk, first, last, part) adds for ranges of cells, in the order of the cells.
-    template <class Item, class Look>
-    std::vector<Item> gathered(const Look& look) const {
-        std::vector<std::vector<Item>> parts((cells_.count() + cells_per_list - 1) / cells_per_list);
-        core::parallel_pieces(parts.size(), 1, progress_, [&](std::size_t first, std::size_t last) {
-            FaceWalk walk(cells_, faces_);
-            for (std::size_t part = first; part < last; ++part) {
-                const std::size_t end = std::min((part + 1) * cells_per_list, cells_.count());
-                look(walk, part * cells_per_list, end, parts[part]);
-            }
-        });
-        std::vector<Item> out;
-        for (const std::vector<Item>& part : parts) out.insert(out.end(), part.begin(), part.end());
-        return out;
     }
 
     const core::CellReader& cells_;
@@ -181,9 +159,7 @@ Result<OpenFaces> find_lone_cut_faces(const core::CellReader& cells, const core:
     if (auto fits = core::require_memory("looking for hanging points", 8 * CutFaceFinder::slots(cells) + cells.count());
         !fits)
         return fits.error();
-    OpenFaces found = CutFaceFinder(cells, faces, rule, progress).alone();
-    if (progress.cancelled()) return Error{ErrorCode::cancelled, "looking for hanging points was cancelled"};
-    return found;
+    return CutFaceFinder(cells, faces, rule, progress).alone();
 }
 
 } // namespace isotet::linear

@@ -51,14 +51,6 @@ inline FaceHash hash_of(const core::WholeCell& cell, const core::CellFace& face,
     return out;
 }
 
-struct FoundFace {
-    std::uint64_t hash;
-    OpenFaces::Place place;
-};
-
-/// Faces of one hash are one face: single ones stay, in their order.
-std::vector<FoundFace> alone_of(std::vector<FoundFace> found);
-
 /// The faces of cells one after another. Those of a cell with eight different corners or fewer need no list.
 class FaceWalk {
 public:

@@ -10,8 +10,7 @@
 #include "base/buffer.hpp"
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
-#include "base/radix_sort.hpp"
-#include "linear/hanging/face_walk.hpp"
+#include "linear/hanging/lone_faces.hpp"
 
 namespace isotet::linear {
 
@@ -52,11 +51,9 @@ public:
 
     Result<OpenFaces> find() {
         add_hashes();
-        auto collected = collect();
-        if (!collected) return collected.error();
-        const std::vector<FoundFace> found = alone_of(*std::move(collected));
-        if (progress_.cancelled()) return Error{ErrorCode::cancelled, "looking for hanging points was cancelled"};
-        return shared_of(found);
+        const auto found = alone();
+        if (!found) return found.error();
+        return shared_of(*found);
     }
 
 private:
@@ -101,34 +98,15 @@ private:
         std::atomic_ref(sums_[point]).fetch_xor(hash, std::memory_order_relaxed);
     }
 
-    /// Faces at points whose sums are not 0, by cells.
-    Result<std::vector<FoundFace>> collect() const {
-        std::vector<std::vector<FoundFace>> parts((cells_.count() + cells_per_look - 1) / cells_per_look);
-        core::parallel_pieces(parts.size(), 1, progress_, [&](std::size_t first, std::size_t last) {
-            FaceWalk walk(cells_, faces_);
-            for (std::size_t part = first; part < last; ++part) {
-                const std::size_t end = std::min((part + 1) * cells_per_look, cells_.count());
-                for (std::size_t cell = part * cells_per_look; cell < end; ++cell) {
-                    if (core::is_contoured(cells_.type(cell)) && !has_odd_corner(cell)) continue;
-                    walk.each_hash(cell, [&](std::size_t face, const FaceHash& hash) {
-                        if (sums_[hash.lowest] != 0)
-                            parts[part].push_back({hash.hash, {cell, static_cast<std::uint32_t>(face)}});
-                    });
-                }
-            }
-        });
-        std::size_t count = 0;
-        for (const std::vector<FoundFace>& part : parts) count += part.size();
-        constexpr std::uint64_t bytes_each = sizeof(FoundFace) + 2 * sizeof(core::Keyed) + 1; // alone_of() too
-        if (auto fits = core::require_memory("looking for hanging points", bytes_each * count); !fits)
-            return fits.error();
-        std::vector<FoundFace> out;
-        out.reserve(count);
-        for (std::vector<FoundFace>& part : parts) {
-            out.insert(out.end(), part.begin(), part.end());
-            part = {};
-        }
-        return out;
+    /// Of those at points whose sums are not 0.
+    Result<std::vector<FoundFace>> alone() const {
+        const auto has_cell = [&](std::size_t cell) {
+            return !core::is_contoured(cells_.type(cell)) || has_odd_corner(cell);
+        };
+        const auto has_face = [&](FaceWalk&, const OpenFaces::Place&, const FaceHash& hash) {
+            return sums_[hash.lowest] != 0;
+        };
+        return lone_faces(cells_, faces_, has_cell, has_face, progress_);
     }
 
     /// Some face of it may have no neighbour.
@@ -163,23 +141,6 @@ private:
 };
 
 } // namespace
-
-std::vector<FoundFace> alone_of(std::vector<FoundFace> found) {
-    core::Buffer<core::Keyed> items(found.size()), scratch(found.size());
-    for (std::size_t i = 0; i < found.size(); ++i) items[i] = {found[i].hash, i};
-    core::radix_sort({items.data(), items.size()}, {scratch.data(), scratch.size()});
-    std::vector<std::uint8_t> is_alone(found.size());
-    for (std::size_t begin = 0, end = 0; begin < items.size(); begin = end) {
-        end = begin + 1;
-        while (end < items.size() && items[end].key == items[begin].key) ++end;
-        is_alone[items[begin].number] = end == begin + 1;
-    }
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < found.size(); ++i)
-        if (is_alone[i] != 0) found[kept++] = found[i];
-    found.resize(kept);
-    return found;
-}
 
 Result<OpenFaces> find_open_faces(const core::CellReader& cells, const core::FaceReader& faces,
                                   const Progress& progress) {
