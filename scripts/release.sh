@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-# Makes a release of what is committed, in build/release: source archive, Debian package, wheel, checksums; then the tag.
+# Makes a release of what is committed, in build/release: source archive, Debian package, wheel, isotet.js as a package for npm,
+# checksums; then the tag. Without a compiler for WebAssembly it says so, and leaves isotet.js and the modules of pages out.
 # Everything is built from the archive, and the package is installed on a fresh Debian 12, which needs root. A name of the
 # release that is taken, files that are not committed, a list of changes without the release, and a failed test end it.
 source "$(dirname "${BASH_SOURCE[0]}")/lib/common.sh"
@@ -47,8 +48,25 @@ make_archive() {
     tar -xf "$out/isotet-$version.tar.xz" -C "$out"
 }
 
+# isotet.js as `npm install FILE` takes it, and the modules that the program puts into pages.
+make_web() {
+    if ! install_packages "${packages_for_web[@]}"; then
+        say "no isotet.js, and no pages with a grid: the packages named above are missing. Unpacked elsewhere: ISOTET_PACKAGES=present ISOTET_WASM_ROOT=FOLDER $0"
+        return
+    fi
+    in_log "isotet.js" "$out/web.log" env -u ISOTET_PROGRAM "$source/scripts/web.sh" "$out/web" || return
+    tar -czf "$out/isotet-js-$version.tgz" -C "$out/web" --owner=0 --group=0 --transform 's,^npm,package,' npm || return
+    web_module=(-DISOTET_WEB_MODULE="$out/web/isotet.wasm")
+}
+
+# With the program that was built around it.
+try_web() {
+    if ((${#web_module[@]} == 0)); then return; fi
+    ISOTET_PROGRAM=$out/tree/apps/cli/isotet in_log "isotet.js: tests" "$out/web_tests.log" "$source/scripts/web.sh" "$out/web"
+}
+
 make_package() {
-    build_source=$source build release "$out/tree" -DCMAKE_BUILD_TYPE=Release -DISOTET_TESTS=OFF || return
+    build_source=$source build release "$out/tree" -DCMAKE_BUILD_TYPE=Release -DISOTET_TESTS=OFF "${web_module[@]}" || return
     in_log "Debian package" "$out/package.log" cpack --config "$out/tree/CPackConfig.cmake" -B "$out" || return
     rm -rf "$out/_CPack_Packages"
 }
@@ -92,8 +110,11 @@ install_packages "${packages_to_build[@]}" "${packages_for_python[@]}" debootstr
 use_ccache
 if [[ $tests == yes ]]; then in_log "tests" "$root/build/release.tests.log" "$root/scripts/test.sh" || exit; fi
 make_archive || exit
+web_module=()
+make_web || exit
 make_package || exit
+if [[ $tests == yes ]]; then try_web || exit; fi
 try_package || exit
 make_wheel || exit
-(cd "$out" && sha256sum -- *.tar.* *.deb *.whl >SHA256SUMS && cat SHA256SUMS)
+(cd "$out" && sha256sum -- *.t*z *.deb *.whl >SHA256SUMS && cat SHA256SUMS)
 if [[ $tag == yes ]]; then git tag -a "v$version" -m "isotet $version" && say "tagged v$version"; fi
