@@ -11,6 +11,7 @@
 #include "render/color/color_places.hpp"
 #include "render/color/linear_light.hpp"
 #include "render/kernels/scene.h"
+#include "vulkan/engine/address.hpp"
 #include "vulkan/engine/layout.hpp"
 
 namespace isotet::render {

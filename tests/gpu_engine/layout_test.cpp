@@ -7,6 +7,7 @@
 
 #include "gpu_engine/kernels/members.h"
 #include "layout_shaders.hpp"
+#include "vulkan/engine/address.hpp"
 #include "vulkan/engine/layout.hpp"
 #include "vulkan/software_device.hpp"
 

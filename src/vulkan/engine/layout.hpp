@@ -8,7 +8,6 @@
 #include "grid/cell/cell_cases.hpp"
 #include "packed/packed.hpp"
 #include "vulkan/kernels/shared/layout.h"
-#include "vulkan/memory.hpp"
 
 namespace isotet::vulkan {
 
@@ -57,12 +56,5 @@ constexpr auto cell_cases = [] {
 }();
 
 } // namespace layout
-
-inline layout::Address address_at(std::uint64_t address) {
-    return {static_cast<std::uint32_t>(address), static_cast<std::uint32_t>(address >> 32)};
-}
-inline layout::Address address_of(const Buffer& buffer, std::uint64_t offset = 0) {
-    return address_at(buffer ? buffer.address() + offset : 0);
-}
 
 } // namespace isotet::vulkan

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/parallel.hpp"
+#include "vulkan/engine/address.hpp"
 
 namespace isotet::vulkan {
 

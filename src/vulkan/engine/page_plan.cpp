@@ -2,6 +2,7 @@
 #include "vulkan/engine/page_plan.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 #include "base/parallel.hpp"
 
@@ -167,6 +168,16 @@ void place_clusters(const Packed& packed, const PlannedPage& page, std::uint32_t
         out[i].others = h.cells[1] | std::uint32_t{h.cells[2]} << 10 | std::uint32_t{h.cells[3]} << 20;
         out[i].seams = h.own_seams | (h.wide_seams ? layout::wide_seams_flag : 0) | std::uint32_t{h.ghost_seams} << 16;
         link += static_cast<std::uint32_t>(ClusterLinks::words(h)) + h.neighbours;
+    }
+}
+
+std::uint64_t mask_words_of(const ClusterHeader& h) { return layout::tied_words + (h.own_seams + 31u) / 32; }
+
+void number_masks(const Packed& packed, layout::Cluster* clusters) {
+    std::uint64_t mask = 0;
+    for (std::size_t c = 0; c < packed.clusters(); ++c) {
+        clusters[c].first_mask = static_cast<std::uint32_t>(mask);
+        mask += mask_words_of(packed.headers[c]);
     }
 }
 

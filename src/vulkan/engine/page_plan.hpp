@@ -42,6 +42,12 @@ std::vector<PlannedPage> plan_pages(const core::Packed& packed, std::uint64_t pa
 void place_clusters(const core::Packed& packed, const PlannedPage& page, std::uint32_t page_number,
                     layout::Cluster* out);
 
+/// Words of a cluster's masks.
+std::uint64_t mask_words_of(const core::ClusterHeader& header);
+
+/// `first_mask` of all clusters of the grid.
+void number_masks(const core::Packed& packed, layout::Cluster* clusters);
+
 /// What the device holds of a page, as it stands there. Parallel.
 /// `clusters`  of this page, from place_clusters()
 /// `out`       page.words words

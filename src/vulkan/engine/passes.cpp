@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "engine_shaders.hpp"
+#include "vulkan/engine/address.hpp"
 
 namespace isotet::vulkan {
 

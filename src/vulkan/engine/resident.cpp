@@ -7,14 +7,13 @@
 #include <fmt/core.h>
 
 #include "base/parallel.hpp"
+#include "vulkan/engine/address.hpp"
 
 namespace isotet::vulkan {
 
 namespace {
 
 std::uint64_t pieces(std::uint64_t n, std::uint64_t size) { return (n + size - 1) / size; }
-
-std::uint64_t mask_words_of(const core::ClusterHeader& h) { return layout::tied_words + pieces(h.own_seams, 32); }
 
 /// A resident array: where it is kept, and how large it is.
 struct KeptArray {
@@ -79,11 +78,7 @@ Result<void> Resident::upload_clusters(Context& context, const core::Packed& pac
     core::parallel_each(plan.size(), 1, [&](std::size_t i) {
         place_clusters(packed, plan[i], static_cast<std::uint32_t>(i), records.data() + plan[i].first_cluster);
     });
-    std::uint64_t mask = 0;
-    for (std::size_t c = 0; c < records.size(); ++c) {
-        records[c].first_mask = static_cast<std::uint32_t>(mask);
-        mask += mask_words_of(packed.headers[c]);
-    }
+    number_masks(packed, records.data());
     return context.staging().upload(clusters, 0, bytes_of(records));
 }
 

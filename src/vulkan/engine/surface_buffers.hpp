@@ -12,6 +12,7 @@
 
 #include "ops/extraction.hpp"
 #include "vulkan/context.hpp"
+#include "vulkan/engine/address.hpp"
 #include "vulkan/engine/layout.hpp"
 
 namespace isotet::vulkan {
