@@ -203,9 +203,11 @@ Result<ContourInput> Engine::input_of(const Wish& wish) const {
         if (!packed) return packed.error();
         input.packed = *packed;
         for (const std::string& name : wish.carried) {
-            const Result<PackedGrid> other = file_->load(name, wish.step);
+            const Result<PackedGrid> other = file_->load(name, wish.step); // with cells of its own
             if (!other) return other.error();
-            input.packed_fields.push_back(*other);
+            Result<Field> values = unpack_field(*other);
+            if (!values) return values.error();
+            input.point_fields.push_back(*std::move(values));
         }
         return input;
     }

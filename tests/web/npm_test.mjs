@@ -72,6 +72,8 @@ for (let i = 0; i < 21; ++i) {
   times.push(performance.now() - start);
 }
 check(packed.fields.map(({name}) => name).join() === 'gyroid,sphere', 'fields of a packed file');
+const carried = packed.contour(0.1, {field: 'gyroid', fields: ['sphere', 'gyroid']}).fields;
+check(carried.sphere.some((value) => value > 0.5) && carried.gyroid.every((value) => Math.abs(value - 0.1) < 1e-5), 'a packed file carries its fields');
 run(program, 'pack', 'make:kuhn:12:gyroid', join(folder, 'double.isotet'), '--precision', 'double');
 const wide = (await open(readFileSync(join(folder, 'double.isotet')))).contour(0.25, {normals: 'vertex'});
 run(program, 'extract', 'make:kuhn:12:gyroid', join(folder, 'double.ply'), '-f', 'gyroid', '-i', '0.25', '--with', '', '--method', 'clusters', '--precision', 'double');
