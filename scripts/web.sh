@@ -3,7 +3,7 @@
 # Builds isotet as WebAssembly with clang-19 and Debian's C and C++ libraries for wasm32-wasi, SIMD of 128 bits:
 # FOLDER/isotet.wasm, which `isotet export --as grid` puts into pages, FOLDER/isotet_readers.wasm, for `isotet page`, and the package
 # FOLDER/npm, isotet.js for other pages. Give the first, with the second beside it, to a build by -DISOTET_WEB_MODULE=FOLDER/isotet.wasm.
-# Then compares with a program, where ISOTET_PROGRAM names one: surfaces by Node; and where npm is installed, in Chromium, threads, the
+# Then compares with a program, where ISOTET_PROGRAM names one: surfaces by Node; and where npm is installed, in Chromium, threads, WebGPU, the
 # examples with three.js and vtk.js, and the program's pages against the rules of axe-core.
 source "$(dirname "${BASH_SOURCE[0]}")/lib/common.sh"
 source "$root/scripts/lib/packages.sh"
@@ -41,5 +41,6 @@ if ! command -v npm >/dev/null; then exit; fi
 mkdir -p "$folder/libraries"
 npm install --prefix "$folder/libraries" --no-save --no-audit --no-fund --ignore-scripts --silent three vtk.js axe-core
 python3 -B "$root/tests/web/threads_test.py" "$folder/npm"
+python3 -B "$root/tests/web/webgpu_test.py" "$folder/npm" "$ISOTET_PROGRAM"
 python3 -B "$root/tests/web/examples_test.py" "$folder/npm" "$folder/libraries/node_modules"
 python3 -B "$root/tests/web/accessible_test.py" "$folder/libraries/node_modules/axe-core/axe.min.js" "$ISOTET_PROGRAM"

@@ -356,13 +356,14 @@ Result<void> GridView::pack(const std::string& field, const Run& run) {
     if (!contoured) return contoured.error();
     ContourOptions options;
     options.method = Method::clusters;
+    options.engine = options_.engine;
     options.source_cells = !grid.cell_fields.empty();
     const bool lean = may_release_cells(grid);
     options.source_cells |= lean; // for picks
     Result<Contour> contour = Contour::create({grid, *contoured, {}, {}}, options);
     if (!contour) return contour.error();
     if (Result<void> ready = contour->prepare(run); !ready) return ready;
-    if (lean) lean_.emplace(*contour->packed(), *std::move(contoured));
+    if (lean) lean_.emplace(*contour->packed(), *std::move(contoured), options_.engine);
     else packed_.contour = *std::move(contour);
     packed_.field = field;
     packed_.step = step;
@@ -373,7 +374,7 @@ Result<void> GridView::pack(const std::string& field, const Run& run) {
 Result<void> GridView::take_packed(const PackedGrid& packed, const std::string& field, const Run& run) {
     Result<PointField> contoured = field_of(field, run);
     if (!contoured) return contoured.error();
-    lean_.emplace(packed, *std::move(contoured));
+    lean_.emplace(packed, *std::move(contoured), options_.engine);
     packed_.field = field;
     packed_.step = step_;
     is_packed_.store(true, std::memory_order_release);

@@ -39,6 +39,7 @@ struct GridViewOptions {
     std::size_t preview_triangles = 150'000; ///< of a surface while a hand moves
     std::size_t max_triangles = 8'000'000; ///< of a surface that a page is sent; larger ones are previews of that size
     int threads = 0;                       ///< at most; 0: all
+    std::shared_ptr<const Engine> engine = cpu_engine(); ///< for isosurfaces; one that keeps no grid
     std::size_t step = 0;                  ///< that the grid is
     std::size_t steps = 1;                 ///< of the file
     std::optional<RefineOptions> refine = RefineOptions{}; ///< of curved cells, as ShowMessage::refined asks

@@ -76,9 +76,11 @@ Result<Surface> PackedSource::isosurface(const PointField& field, std::size_t st
     const bool of_file = has(field.name, step);
     const auto carried = of_file ? with_packed_fields(options, step, run) : Result<ExtractOptions>(options);
     if (!carried) return carried.error();
-    Result<Extraction> extracted = extract(*packed, isovalue, *carried, run);
+    const auto grid = engine_->create_grid(*packed, run);
+    if (!grid) return grid.error();
+    Result<std::vector<Extraction>> extracted = (*grid)->extract({&isovalue, 1}, *carried, run);
     if (!extracted) return extracted.error();
-    return std::move(extracted->surface);
+    return std::move(extracted->front().surface);
 }
 
 Result<Surface> PackedSource::boundary(std::size_t step, const Run& run) {

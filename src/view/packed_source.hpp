@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include <isotet/engine.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/isosurface_scene.hpp>
 #include <isotet/pack.hpp>
@@ -21,8 +23,12 @@ bool same_points(const PackedFileInfo& file, std::size_t one, std::size_t other)
 class PackedSource {
 public:
     /// `packed`   of a grid of linear cells, for `field`
-    PackedSource(const PackedGrid& packed, PointField field)
-        : packed_(packed), field_(std::move(field)), knows_cells_(packed.report().source_bytes > 0) {}
+    /// `engine`   for isosurfaces
+    PackedSource(const PackedGrid& packed, PointField field, std::shared_ptr<const Engine> engine)
+        : engine_(std::move(engine)),
+          packed_(packed),
+          field_(std::move(field)),
+          knows_cells_(packed.report().source_bytes > 0) {}
 
     /// Surfaces of the fields of the file, and slices, read what they meet; other fields bring all of it into memory once.
     explicit PackedSource(const PackedFile& file) : file_(file), knows_cells_(file.info().source_cells) {}
@@ -56,6 +62,7 @@ private:
     Result<PackedGrid> whole(std::size_t step, const Run& run);
     Result<ExtractOptions> with_packed_fields(ExtractOptions options, std::size_t step, const Run& run) const;
 
+    std::shared_ptr<const Engine> engine_ = cpu_engine();
     std::optional<PackedFile> file_;
     std::optional<PackedGrid> packed_; ///< of field_
     PointField field_;

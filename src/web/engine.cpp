@@ -21,6 +21,7 @@
 #include "engine_files.hpp"
 #include "page.hpp"
 #include "view/json.hpp"
+#include "webgpu/card.hpp"
 
 namespace isotet::web {
 
@@ -230,6 +231,7 @@ Result<void> Engine::set(const Wish& wish) {
     if (!input) return input.error();
     ContourOptions options;
     options.surfaces = wish.once ? 1 : 1000;
+    options.engine = card_engine();
     options.normals = wish.normals;
     if (file_) options.precision = file_->info().precision;
     if (contour_) {
@@ -271,6 +273,7 @@ Result<Json> Engine::contour(const Json& message) {
     if (!isovalue) return bad_message("the isovalue is no finite number");
     if (Result<void> set = this->set(*wish); !set) return set.error();
     surfaces_ = {}; // its memory is used again
+    const Card::Asking asking(card());
     Result<ContourResult> made = contour_->extract(*isovalue, {1, {}});
     if (!made) return made.error();
     surfaces_ = *std::move(made);
@@ -322,6 +325,6 @@ __attribute__((export_name("call"))) void isotet_call() {
     const std::optional<view::Json> message = view::parse_json(web::room);
     const Result<view::Json> done =
         message ? web::answer(*message) : Result<view::Json>(web::bad_message("the message is no JSON"));
-    web::say_text(view::text_of(done ? *done : view::Json{{"error", done.error().message}}));
+    if (!web::say_wanted()) web::say_text(view::text_of(done ? *done : view::Json{{"error", done.error().message}}));
 }
 }

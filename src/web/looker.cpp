@@ -7,6 +7,7 @@
 
 #include "page.hpp"
 #include "view/greeting.hpp"
+#include "webgpu/card.hpp"
 
 namespace isotet::web {
 
@@ -55,7 +56,9 @@ void Looker::say_grid(const Told& told) const {
 }
 
 void Looker::show(const ShowMessage& message) {
+    const Card::Asking asking(card());
     const Result<view::Frame> frame = view_->frame(message, 0, known_, {1, {}});
+    if (say_wanted()) return;
     if (frame) page_takes_frame(frame->bytes.data(), frame->bytes.size());
     else say_text(refusal_text(message.number, frame.error().message));
 }

@@ -13,6 +13,7 @@
 
 #include "io/packed/file_grid.hpp"
 #include "page.hpp"
+#include "webgpu/card.hpp"
 
 namespace isotet::web {
 
@@ -49,6 +50,7 @@ Result<std::unique_ptr<Looker>> looker_at(const std::string& path, ViewState& st
     if (!file) return file.error();
     GridViewOptions options;
     options.threads = 1;
+    options.engine = card_engine();
     options.step = state.step.value_or(0);
     options.steps = file->info().steps;
     options.read_step = [path](std::size_t step, const Run& run) { return read_step(path, step, run); };

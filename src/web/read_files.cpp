@@ -14,6 +14,7 @@
 #include "module.hpp"
 #include "page.hpp"
 #include "view/greeting.hpp"
+#include "webgpu/card.hpp"
 
 namespace isotet::web {
 
@@ -64,6 +65,7 @@ Result<std::unique_ptr<Looker>> looker_of_files(Told& told) {
     choose_first_view(*read, told);
     GridViewOptions view_options;
     view_options.threads = 1;
+    view_options.engine = card_engine();
     view_options.regions = read->info.regions;
     view_options.steps = std::max<std::size_t>(1, read->info.times.size());
     view_options.read_step = [file = told.files.front(), options](std::size_t step, const Run& run) -> Result<Grid> {

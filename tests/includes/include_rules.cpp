@@ -41,7 +41,7 @@ const std::vector<FolderRule>& folder_rules() {
         {"src/jobs/", {"jobs/", "grid/", "base/"}},
         {"src/view/", {"view/"}},
         {"src/c/", {"grid/", "base/"}},
-        {"src/web/", {"view/", "io/", "base/"}},
+        {"src/web/", {"view/", "io/", "vulkan/engine/", "api/", "packed/", "numbers/", "base/"}},
         {"src/io/files/", {"io/files/", "io/reader.hpp", "base/"}},
         {"src/io/pieces/", {"io/pieces/", "io/files/", "io/reader.hpp", "grid/", "numbers/", "base/"}},
         {"src/io/write/", {"io/write/", "io/files/", "grid/", "numbers/", "base/"}},

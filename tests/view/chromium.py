@@ -11,11 +11,11 @@ import time
 
 
 class Browser:
-    def __init__(self, width=1280, height=720, ratio=1, dark=False):
+    def __init__(self, width=1280, height=720, ratio=1, dark=False, words=()):
         self.folder = tempfile.mkdtemp(prefix='isotet-chromium-')
         to_read, self.to = os.pipe()
         self.come, to_write = os.pipe()
-        words = [os.environ.get('ISOTET_CHROMIUM', 'chromium'), '--headless=new', '--remote-debugging-pipe', '--no-first-run',
+        words = [os.environ.get('ISOTET_CHROMIUM', 'chromium'), *words, '--headless=new', '--remote-debugging-pipe', '--no-first-run',
                  '--no-default-browser-check', '--disable-background-networking', '--disable-component-update', '--disable-sync',
                  '--disable-dev-shm-usage', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--hide-scrollbars',
                  f'--user-data-dir={self.folder}', f'--window-size={width},{height}']

@@ -4,6 +4,9 @@ import {readFrame} from './frame.js';
 import {nothingShown, surfaceFile} from './mesh_files.js';
 import {partBytes} from './unpack.js';
 
+/** The graphics card, unless the address says `?card=off`; with `?card=any` one that is the processor too. */
+const chosenCard = () => ({off: '', any: 'webgpu-software'}[new URLSearchParams(location.search).get('card')] ?? 'webgpu');
+
 export class EngineLink {
   /** @param on  as that of link.js */
   constructor(on) {
@@ -30,13 +33,15 @@ export class EngineLink {
       this.worker.onmessage = ({data}) => (data.started ? resolve() : this.take(data));
       this.worker.onerror = (event) => { resolve(); this.failed(event.message); };
     });
-    this.worker.postMessage(message);
+    this.worker.postMessage({...message, card: chosenCard()});
   }
 
-  take({text, frame}) {
+  take({text, frame, spent}) {
     if (frame) {
       this.working = false;
-      this.keep(readFrame(frame));
+      const read = readFrame(frame);
+      read.extract_ms += spent;
+      this.keep(read);
       this.next();
       return;
     }
@@ -71,7 +76,7 @@ export class EngineLink {
     if (message.do === 'show' || message.do === 'refine') {
       this.wish = message;
       this.next();
-    } else if (['chart', 'spectrum', 'pick', 'parts', 'share'].includes(message.do)) this.worker.postMessage(message);
+    } else if (['chart', 'spectrum', 'pick', 'parts', 'share', 'measure'].includes(message.do)) this.worker.postMessage(message);
     else if (message.do === 'save') this.save(message);
     else if (message.do === 'part') this.on.part(this.file);
     return true;

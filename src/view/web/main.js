@@ -4,6 +4,7 @@ import {app, id, mayBeField} from './app.js';
 import {colorsChanged, showMap, showRange} from './colors.js';
 import {commands, takeCommand, takeState, wholeState} from './commands.js';
 import {Cuts} from './cuts.js';
+import {rememberVersion, takeCard, takeMeasured} from './device.js';
 import './fold.js';
 import {short} from './format.js';
 import {offerField, refuseFormula} from './formula.js';
@@ -188,6 +189,7 @@ function takeProgress({step, fraction}) {
 
 const messages = {
   welcome(message) {
+    rememberVersion(message);
     app.maps = message.maps;
     app.save.out = message.out;
     app.other = message.other ?? '';
@@ -205,6 +207,8 @@ const messages = {
   spectrum: takeSpectrum,
   command: takeCommand,
   parts: takeParts,
+  card: takeCard,
+  measured: takeMeasured,
   picked: takePicked,
   share: takeShare,
   state: takeState,

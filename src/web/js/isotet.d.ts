@@ -66,8 +66,40 @@ export interface Grid extends Described {
   close(): void;
 }
 
+/** The graphics card that makes surfaces, as the browser names it. */
+export interface DeviceInfo {
+  vendor: string;
+  architecture: string;
+  device: string;
+  description: string;
+  /** Of a buffer at most. */
+  bindingBytes: number;
+}
+
+/**
+ * A grid of `device: 'webgpu'`. Surfaces have the same vertices and triangles in the same order; the card was tested for that, and that
+ * coordinates are within one unit in the last place. It makes surfaces of packed grids in single precision without `fields`; the
+ * processor makes all others, and all after the card has failed. Calls are made one after another; arrays are copies, which stay valid.
+ */
+export interface DeviceGrid extends Described {
+  /** Null: there is none, because of whyNoDevice. */
+  readonly device: DeviceInfo | null;
+  readonly whyNoDevice: string;
+  contour(isovalue: number, options?: ContourOptions): Promise<Surface>;
+  range(options?: ContourOptions): Promise<[number, number]>;
+  close(): void;
+}
+
+export interface DeviceOptions {
+  /** 'webgpu': a graphics card, where there is one; 'webgpu-software': the browser's software adapter too, which is slower than the processor. */
+  device?: 'webgpu' | 'webgpu-software';
+}
+
 /** The same in a thread (Worker). Arrays of surfaces are copies, which stay valid. */
 export interface RemoteGrid extends Described {
+  /** With `device`, as when it was opened. */
+  readonly device?: DeviceInfo | null;
+  readonly whyNoDevice?: string;
   contour(isovalue: number, options?: ContourOptions): Promise<Surface>;
   range(options?: ContourOptions): Promise<[number, number]>;
   close(): void;
@@ -96,10 +128,11 @@ export interface OpenOptions extends ThreadOptions {
  * Reads a grid: a packed one (.isotet), VTU, PVTU, legacy VTK, Gmsh, Medit, TetGen, AVS UCD, CalculiX, Gocad or GRDECL.
  * A Blob is read in parts, and only in a thread.
  */
+export function open(data: Content, options: OpenOptions & Required<DeviceOptions>): Promise<DeviceGrid>;
 export function open(data: Content, options?: OpenOptions): Promise<Grid>;
 
 /** @param options.worker  a thread that runs isotet_worker.js, where the page makes it otherwise */
-export function openInWorker(data: Content, options?: OpenOptions & {worker?: Worker}): Promise<RemoteGrid>;
+export function openInWorker(data: Content, options?: OpenOptions & DeviceOptions & {worker?: Worker}): Promise<RemoteGrid>;
 
 export interface GridArrays {
   /** x, y, z of each point. */
@@ -111,8 +144,9 @@ export interface GridArrays {
 }
 
 /** A grid out of arrays, which are copied. */
+export function fromArrays(grid: GridArrays, options: ThreadOptions & Required<DeviceOptions>): Promise<DeviceGrid>;
 export function fromArrays(grid: GridArrays, options?: ThreadOptions): Promise<Grid>;
-export function fromArraysInWorker(grid: GridArrays, options?: ThreadOptions & {worker?: Worker}): Promise<RemoteGrid>;
+export function fromArraysInWorker(grid: GridArrays, options?: ThreadOptions & DeviceOptions & {worker?: Worker}): Promise<RemoteGrid>;
 
 /**
  * A module in place of those beside isotet.js, for all grids: its bytes, or compiled. isotet_engine.wasm takes arrays and packed files,

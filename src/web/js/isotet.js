@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Isosurfaces of unstructured grids in browsers and Node: isotet as WebAssembly. isotet.d.ts has the contracts.
 import {blobAsFile, bytesAsFile, Files} from './engine_files.js';
+import {CardOfModule} from './webgpu.js';
 import {beginThreads, grown, mostThreads, sharedMemory, threadsHere} from './isotet_threads.js';
 
 const arrays = {
@@ -89,10 +90,13 @@ export class Grid {
   take(at, count, onProgress) {
     const said = JSON.parse(new TextDecoder().decode(new Uint8Array(this.memory.buffer, at, count).slice())); // of shared memory it decodes none
     if (said.progress) onProgress?.(...said.progress);
-    else this.answer = said;
+    else if (!this.card?.hears(said)) this.answer = said;
   }
 
-  call(message) {
+  card = null; // CardOfModule
+
+  /** Has the module do it. */
+  make(message) {
     if (!this.exports) throw new Error('the grid was closed');
     const text = new TextEncoder().encode(JSON.stringify(message)), at = this.exports.room(text.length);
     new Uint8Array(this.memory.buffer).set(text, at);
@@ -104,8 +108,22 @@ export class Grid {
       this.close();
       throw new Error(`${inThread ? 'a thread of isotet' : 'isotet'} stopped, for lack of memory perhaps (${error.message})`);
     }
+  }
+
+  answered() {
     if (this.answer.error) throw new Error(this.answer.error);
     return this.answer;
+  }
+
+  call(message) {
+    this.make(message);
+    return this.answered();
+  }
+
+  /** The same, waiting for the graphics card. */
+  async callWithCard(message) {
+    await this.card.settle(() => this.make(message));
+    return this.answered();
   }
 
   /** Opens it; threads of one that cannot be opened end. */
@@ -148,8 +166,11 @@ export class Grid {
     return once ? {...wish, once} : wish;
   }
 
-  contour(isovalue, options = {}) {
-    const told = this.call({do: 'contour', isovalue, ...this.wish(options)});
+  contourMessage(isovalue, options = {}) { return {do: 'contour', isovalue, ...this.wish(options)}; }
+
+  contour(isovalue, options) { return this.surface(this.call(this.contourMessage(isovalue, options))); }
+
+  surface(told) {
     const fields = Object.fromEntries(Object.entries(told.fields).map(([name, place]) => [name, this.view(place)]));
     return {positions: this.view(told.positions), triangles: this.view(told.triangles), normals: told.normals ? this.view(told.normals) : null,
       fields, method: told.method, notes: told.notes};
@@ -161,11 +182,54 @@ export class Grid {
   }
 
   close() {
+    this.card?.close();
     this.exports = this.memory = null;
     forgotten.unregister(this);
     for (const end of this.ends.splice(0)) end();
   }
 }
+
+/** Arrays that do not change when the module's memory does. */
+export function ownSurface(surface) {
+  const own = (values) => values && values.slice();
+  const fields = Object.fromEntries(Object.entries(surface.fields).map(([name, values]) => [name, own(values)]));
+  return {...surface, positions: own(surface.positions), triangles: own(surface.triangles), normals: own(surface.normals), fields};
+}
+
+/** A grid whose isosurfaces the graphics card makes, where it can. Methods return promises; arrays are the caller's own. */
+export class DeviceGrid {
+  /** @param kind  as CardOfModule.open() */
+  static async create(grid, kind) {
+    const {points, cells, fields, times, notes, threads} = grid;
+    grid.card = new CardOfModule(grid.exports, grid.memory);
+    await grid.card.open(kind);
+    await grid.card.use();
+    return Object.assign(new DeviceGrid(), {grid, points, cells, fields, times, notes, threads});
+  }
+
+  last = Promise.resolve(); // of the calls, one after another
+
+  after(work) {
+    const done = this.last.then(work);
+    this.last = done.catch(() => {});
+    return done;
+  }
+
+  /** Of the graphics card; null: the processor makes all surfaces, because of whyNoDevice. */
+  get device() { return this.grid.card.card?.info ?? null; }
+
+  get whyNoDevice() { return this.grid.card.why; }
+
+  contour(isovalue, options) {
+    return this.after(async () => ownSurface(this.grid.surface(await this.grid.callWithCard(this.grid.contourMessage(isovalue, options)))));
+  }
+
+  range(options) { return this.after(() => this.grid.range(options)); }
+
+  close() { this.grid.close(); }
+}
+
+const withDevice = (grid, kind) => (kind ? DeviceGrid.create(grid, kind) : grid);
 
 const isBlob = (data) => typeof Blob !== 'undefined' && data instanceof Blob;
 
@@ -183,17 +247,17 @@ async function kindOf(data) {
 }
 
 /** @see isotet.d.ts */
-export async function open(data, {name = 'grid', files = {}, onProgress, threads} = {}) {
+export async function open(data, {name = 'grid', files = {}, onProgress, threads, device} = {}) {
   const all = Object.fromEntries(Object.entries(files).map(([path, content]) => [path, fileOf(content)]));
   const kind = await kindOf(data), grid = await Grid.create(kind, {...all, [name]: fileOf(data)}, onProgress, threadsFor(kind, threads));
-  return grid.open({do: 'open', path: name});
+  return withDevice(grid.open({do: 'open', path: name}), device);
 }
 
 /** @see isotet.d.ts */
-export async function fromArrays({points, cells, values}, {threads} = {}) {
+export async function fromArrays({points, cells, values}, {threads, device} = {}) {
   const grid = await Grid.create('packed', {}, null, threadsFor('packed', threads));
   try {
-    return grid.open(grid.messageOf(points, cells, values));
+    return await withDevice(grid.open(grid.messageOf(points, cells, values)), device);
   } catch (error) {
     grid.close();
     throw error;
@@ -245,4 +309,4 @@ export async function openInWorker(data, {worker, onProgress, threads, ...option
   return remote(kind, threadsFor(kind, threads), worker, onProgress, 'open', data, options);
 }
 
-export const fromArraysInWorker = (grid, {worker, threads} = {}) => remote('packed', threadsFor('packed', threads), worker, null, 'fromArrays', grid, {});
+export const fromArraysInWorker = (grid, {worker, threads, device} = {}) => remote('packed', threadsFor('packed', threads), worker, null, 'fromArrays', grid, {device});

@@ -1,0 +1,301 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "card.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <utility>
+
+#include "api/finish.hpp"
+#include "api/fits.hpp"
+#include "api/ties.hpp"
+#include "push.h"
+#include "vulkan/engine/layout.hpp"
+
+namespace isotet::web {
+
+namespace {
+
+namespace layout = vulkan::layout;
+
+/// At the front of the state: two lists of clusters, as layout::ListHead, then eight words that tell of the surface.
+constexpr std::uint32_t head_words = 16;
+
+constexpr std::uint64_t most_memory = std::uint64_t{7} << 29; ///< of the module: it may have 4 GiB
+
+struct Push {
+#define ISOTET_FLOAT(name) float name;
+#define ISOTET_UINT(name) std::uint32_t name;
+    ISOTET_CARD_PUSH(ISOTET_FLOAT, ISOTET_UINT)
+#undef ISOTET_FLOAT
+#undef ISOTET_UINT
+};
+constexpr std::size_t push_size = sizeof(Push) / 4;
+
+bool is_same(const core::StoredIsovalue<float>& a, const core::StoredIsovalue<float>& b) {
+    return a.value == b.value && a.rest == b.rest && a.tied == b.tied;
+}
+
+view::Json place_of(const void* data, std::size_t bytes) { return {reinterpret_cast<std::uintptr_t>(data), bytes}; }
+
+class CardGrid final : public EngineGrid {
+public:
+    explicit CardGrid(const PackedGrid& grid) : packed_(grid) {}
+
+    const PackedGrid& packed() const noexcept override { return packed_; }
+    Result<void> set_field(const PointField& field, const Run& run) override {
+        return take(packed_.with_field(field, run));
+    }
+    Result<void> set_points(const Array& points, const Run& run) override {
+        return take(packed_.with_points(points, run));
+    }
+    Result<std::vector<Extraction>> extract(std::span<const double> isovalues, const ExtractOptions& options,
+                                            const Run& run) override {
+        if (!card().takes(packed_, isovalues.size(), options) || card().is_new(packed_))
+            return isotet::extract(packed_, isovalues, options, run);
+        Result<Extraction> made = card().extract(packed_, isovalues.front(), options);
+        if (!made) return made.error();
+        std::vector<Extraction> all;
+        all.push_back(*std::move(made));
+        return all;
+    }
+
+private:
+    Result<void> take(Result<PackedGrid> changed) {
+        if (!changed) return std::move(changed).error();
+        packed_ = *changed;
+        return {};
+    }
+
+    PackedGrid packed_;
+};
+
+/// The CPU engine, but for grids.
+class CardEngine final : public Engine {
+public:
+    std::string_view name() const noexcept override { return cpu_engine()->name(); }
+    bool is_stateless() const noexcept override { return true; }
+    Result<std::unique_ptr<EngineGrid>> create_grid(const PackedGrid& packed, const Run&) const override {
+        return std::unique_ptr<EngineGrid>(std::make_unique<CardGrid>(packed));
+    }
+    bool extracts_directly() const noexcept override { return true; }
+    Result<DirectExtraction> extract_direct(const Grid& grid, const PointField& field,
+                                            std::span<const double> isovalues, const DirectOptions& options,
+                                            const Run& run) const override {
+        return cpu_engine()->extract_direct(grid, field, isovalues, options, run);
+    }
+};
+
+} // namespace
+
+Card& card() {
+    static Card one;
+    return one;
+}
+
+std::shared_ptr<const Engine> card_engine() {
+    static const auto engine = std::make_shared<const CardEngine>();
+    return engine;
+}
+
+void Card::turn_on(std::uint64_t binding_bytes, std::uint32_t groups_per_axis) {
+    *this = {};
+    on_ = true;
+    binding_bytes_ = binding_bytes;
+    groups_per_axis_ = groups_per_axis;
+}
+
+void Card::turn_off() {
+    const std::uint32_t number = number_;
+    *this = {};
+    number_ = number;
+}
+
+Card::Asking::~Asking() {
+    card_.may_ask_ = false;
+    if (!card_.asked_of_) card_.brought_.clear();
+}
+
+bool Card::takes(const PackedGrid& packed, std::size_t isovalues, const ExtractOptions& options) const {
+    const core::Packed& grid = packed.data();
+    const bool is_plain = options.normals != Normals::gradient && !options.edge_ends && !options.source_cells &&
+                          options.point_fields.empty() && options.packed_fields.empty() &&
+                          options.cell_fields.empty() && !options.sink;
+    return on_ && may_ask_ && isovalues == 1 && is_plain && grid.single() && !grid.residency && grid.clusters() > 0 &&
+           too_large_.lock() != packed.shared_data();
+}
+
+bool Card::is_new(const PackedGrid& packed) {
+    if (seen_.lock() != packed.shared_data()) {
+        seen_ = packed.shared_data();
+        seen_first_ = calls_;
+    }
+    return seen_first_ == calls_;
+}
+
+/// Where all lies on the card. Whether it fits there, and what goes there fits here.
+bool Card::plan(const core::Packed& packed) {
+    std::vector<vulkan::PlannedPage> pages = vulkan::plan_pages(packed, vulkan::max_page_bytes);
+    if (pages.size() != 1) return false;
+    page_ = std::move(pages.front());
+    const std::uint64_t clusters = packed.clusters();
+    const std::uint64_t segments = (clusters + layout::segment_clusters - 1) / layout::segment_clusters,
+                        blocks = (segments + layout::block_segments - 1) / layout::block_segments;
+    std::uint64_t words = head_words, all_masks = 0;
+    for (const core::ClusterHeader& header : packed.headers) all_masks += vulkan::mask_words_of(header);
+    const auto place = [&](std::uint32_t& at, std::uint64_t count) {
+        at = static_cast<std::uint32_t>(words);
+        words += count;
+    };
+    place(places_.counts, 2 * clusters);
+    place(places_.segments, 2 * segments);
+    place(places_.blocks, 2 * blocks);
+    place(places_.starts, 3 * clusters);
+    place(places_.selected, clusters);
+    place(places_.emitted, clusters);
+    place(places_.masks, all_masks);
+    const std::uint64_t largest =
+        std::max({page_.bytes(), 4 * words, clusters * sizeof(layout::Cluster), std::uint64_t{4096}});
+    const std::uint64_t here = std::uint64_t{__builtin_wasm_memory_size(0)} << 16;
+    if (largest > binding_bytes_ || here + page_.bytes() + clusters * sizeof(layout::Cluster) > most_memory)
+        return false;
+    places_.all = static_cast<std::uint32_t>(words);
+    return true;
+}
+
+void Card::fill(const core::Packed& packed) {
+    clusters_.resize(packed.clusters());
+    vulkan::place_clusters(packed, page_, 0, clusters_.data());
+    vulkan::number_masks(packed, clusters_.data());
+    page_words_ = core::Buffer<std::uint32_t>(page_.words);
+    vulkan::fill_page(packed, page_, clusters_.data(), page_words_.data());
+    tables_.assign(layout::cell_cases.begin(), layout::cell_cases.end());
+    places_.clusters_without_data = static_cast<std::uint32_t>(tables_.size());
+    tables_.resize(tables_.size() + (packed.clusters() + 31) / 32);
+    for (std::size_t c = 0; c < packed.clusters(); ++c)
+        tables_[places_.clusters_without_data + c / 32] |= std::uint32_t{packed.has_no_data[c]} << c % 32;
+}
+
+Result<Extraction> Card::extract(const PackedGrid& packed, double isovalue, const ExtractOptions& options) {
+    if (auto ok = api::check_isovalues({&isovalue, 1}); !ok) return ok.error();
+    if (auto ok = api::check_fit(options, packed.data()); !ok) return ok.error();
+    const core::Packed& grid = packed.data();
+    const auto stored = core::store_isovalue<float>(isovalue, grid.storage);
+    const auto found = std::find_if(brought_.begin(), brought_.end(), [&](const Brought& one) {
+        return one.packed == &grid && one.ties == options.ties && is_same(one.isovalue, stored);
+    });
+    if (found == brought_.end()) {
+        if (there_.lock() != packed.shared_data()) {
+            there_.reset();
+            if (!plan(grid)) {
+                too_large_ = packed.shared_data();
+                return isotet::extract(packed, isovalue, options, {1, {}});
+            }
+            fill(grid);
+            there_ = packed.shared_data();
+            ++number_;
+        }
+        asked_of_ = packed.shared_data();
+        asked_ = stored;
+        asked_ties_ = options.ties;
+        told_ = false;
+        return Error{ErrorCode::cancelled, "the graphics card works on this surface"};
+    }
+    if (found->left) return isotet::extract(packed, isovalue, options, {1, {}});
+    ops::RawSurface raw;
+    raw.positions = found->positions;
+    raw.triangles = found->triangles;
+    Extraction out;
+    out.surface = api::finish<float>({grid.origin, grid.point_type}, options, {}, raw);
+    const auto told = api::report_ties(grid, isovalue, stored, found->tied_points, out.report, {});
+    if (!told) return told.error();
+    out.report.selected_clusters = found->selected_clusters;
+    out.report.surface_bytes = api::bytes_of(out.surface);
+    return out;
+}
+
+std::vector<std::uint32_t> Card::push_words() const {
+    const layout::Page& at = page_.layout;
+    bool with_others = false;
+    for (const core::ClusterHeader& header : asked_of_->headers) with_others |= header.others() != 0;
+    Push push{};
+    push.isovalue = asked_.value;
+    push.rest = asked_.rest;
+    push.tied = asked_.tied;
+    push.merge = asked_ties_ == Ties::merge;
+    push.cluster_count = static_cast<std::uint32_t>(asked_of_->clusters());
+    push.groups_per_axis = groups_per_axis_;
+    push.any_no_data = asked_of_->field_report.no_data > 0;
+    push.with_others = with_others;
+    push.values = at.values;
+    push.places = at.positions;
+    push.cells = at.cells;
+    push.group_ranges = at.group_ranges;
+    push.links = at.links;
+    push.clusters_without_data = places_.clusters_without_data;
+    push.counts = places_.counts;
+    push.segments = places_.segments;
+    push.blocks = places_.blocks;
+    push.starts = places_.starts;
+    push.selected = places_.selected;
+    push.emitted = places_.emitted;
+    push.masks = places_.masks;
+    const auto words = std::bit_cast<std::array<std::uint32_t, push_size>>(push);
+    return {words.begin(), words.end()};
+}
+
+std::optional<view::Json> Card::wanted() {
+    if (!asked_of_ || told_) return std::nullopt;
+    told_ = true;
+    view::Json wanted = {
+        {"grid", number_},
+        {"push", push_words()},
+        {"clusters", asked_of_->clusters()},
+        {"stateBytes", std::uint64_t{4} * places_.all},
+        {"segments", (asked_of_->clusters() + layout::segment_clusters - 1) / layout::segment_clusters}};
+    if (!page_words_.empty()) {
+        const auto& ranges = asked_of_->as<float>().ranges;
+        wanted["upload"] = {place_of(page_words_.data(), page_words_.bytes()),
+                            place_of(clusters_.data(), clusters_.size() * sizeof(layout::Cluster)),
+                            place_of(ranges.data(), ranges.size() * sizeof(core::Range<float>)),
+                            place_of(tables_.data(), 4 * tables_.size())};
+    }
+    return wanted;
+}
+
+void Card::leave() {
+    brought_.push_back({asked_of_.get(), asked_, asked_ties_, {}, {}, 0, 0, true});
+    asked_of_.reset();
+}
+
+view::Json Card::measure(double part, bool by_card) {
+    const std::shared_ptr<const core::Packed> there = seen_.lock();
+    if (!there || there == too_large_.lock()) return nullptr;
+    const FieldReport& field = there->field_report;
+    const double isovalue = field.lower + part * (field.upper - field.lower);
+    const PackedGrid packed(there);
+    const Asking asking(*this);
+    const Result<Extraction> made =
+        by_card ? extract(packed, isovalue, {}) : isotet::extract(packed, isovalue, {}, {1, {}});
+    if (!made) return nullptr;
+    const Surface& surface = made->surface;
+    return {
+        {"isovalue", isovalue}, {"vertices", surface.positions.tuples()}, {"triangles", surface.triangles.tuples()}};
+}
+
+view::Json Card::room_for(std::uint32_t vertices, std::uint32_t triangles, std::uint32_t tied_points,
+                          std::uint32_t selected_clusters) {
+    page_words_.release(); // they are there
+    clusters_ = {};
+    tables_ = {};
+    core::SharedBuffer<float> positions(3 * std::size_t{vertices});
+    core::SharedBuffer<std::uint32_t> corners(3 * std::size_t{triangles});
+    const view::Json room = {{"positions", reinterpret_cast<std::uintptr_t>(positions.data())},
+                             {"triangles", reinterpret_cast<std::uintptr_t>(corners.data())}};
+    brought_.push_back({asked_of_.get(), asked_, asked_ties_, std::move(positions).to_array(3),
+                        std::move(corners).to_array(3), tied_points, selected_clusters});
+    asked_of_.reset();
+    return room;
+}
+
+} // namespace isotet::web
