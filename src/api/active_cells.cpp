@@ -18,9 +18,7 @@
 namespace isotet {
 
 Result<void> api::check_active_cells_do(const DirectOptions& options) {
-    const ExtractOptions& extract = options.extract;
-    if (!extract.cell_fields.empty() || options.frame)
-        return invalid_argument("cell fields and frames need all cells of a grid");
+    if (options.frame) return invalid_argument("frames need all cells of a grid");
     return {};
 }
 
@@ -36,13 +34,13 @@ ActiveCellFilter& ActiveCellFilter::operator=(ActiveCellFilter&&) noexcept = def
 ActiveCellFilter::~ActiveCellFilter() = default;
 
 Result<ActiveCellFilter> ActiveCellFilter::create(const Array& points, const PointField& field,
-                                                  std::span<const double> isovalues,
-                                                  std::optional<CellType> type, const DirectOptions& options) {
+                                                  std::span<const double> isovalues, std::optional<CellType> type,
+                                                  const DirectOptions& options) {
     return core::guarded("looking for active cells", [&]() -> Result<ActiveCellFilter> {
         if (isovalues.empty()) return invalid_argument("active cells are those that isovalues cut, but there is none");
         if (isovalues.size() > max_isovalues)
-            return invalid_argument(fmt::format("active cells of {} isovalues, but there may be {}", isovalues.size(),
-                                                max_isovalues));
+            return invalid_argument(
+                fmt::format("active cells of {} isovalues, but there may be {}", isovalues.size(), max_isovalues));
         if (auto ok = api::check_isovalues(isovalues); !ok) return ok.error();
         const ExtractOptions& extract = options.extract;
         if (auto ok = api::check_active_cells_do(options); !ok) return ok.error();
@@ -57,7 +55,7 @@ Result<ActiveCellFilter> ActiveCellFilter::create(const Array& points, const Poi
         ops::DirectRequest request;
         request.isovalues = isovalues;
         request.ties = extract.ties;
-        request.source_cells = extract.source_cells;
+        request.source_cells = extract.source_cells || !extract.cell_fields.empty();
         request.normals = extract.normals == Normals::gradient;
         auto filter = options.precision == Precision::float32 ? cpu::make_active_filter<float>(input, request, type)
                                                               : cpu::make_active_filter<double>(input, request, type);

@@ -15,7 +15,8 @@ struct GridFile::Data {
     ReadOptions options;
     FileInfo info;
 
-    Result<FieldArrays> arrays_of(const std::vector<std::string>& names, std::size_t step, const Run& run) const;
+    Result<FieldArrays> arrays_of(const std::vector<std::string>& names, std::size_t step, const Run& run,
+                                  bool* averages = nullptr) const;
     ReadOptions options_for(std::size_t step, const std::optional<FieldArrays>& fields) const;
     Result<ReadResult> read_closed(const ReadOptions& wanted, bool close_too, const Run& run) const;
 };
@@ -67,9 +68,8 @@ Result<ContourInput> input_of(const Grid& grid, const std::string& field, const 
 }
 
 /// What to read where the cells that the isovalues meet do; nothing: all are needed.
-std::optional<ReadActiveCells> active_cells(const FieldArrays& arrays, const std::string& field,
-                                            const ContourOptions& options) {
-    if (!arrays.cell.empty() || arrays.neighbours || !Contour::can_do_with_active_cells(options)) return std::nullopt;
+std::optional<ReadActiveCells> active_cells(const std::string& field, const ContourOptions& options) {
+    if (!Contour::can_do_with_active_cells(options)) return std::nullopt;
     ReadActiveCells active{field, options.expected_isovalues, {}};
     active.options.precision = options.precision;
     active.options.extract.ties = options.ties;
@@ -116,8 +116,9 @@ Result<void> close(Grid& grid, std::vector<std::string>& notes, const Run& run) 
 
 } // namespace
 
-Result<FieldArrays> GridFile::Data::arrays_of(const std::vector<std::string>& names, std::size_t step,
-                                              const Run& run) const {
+/// `averages`   set where some follow from cell fields at points; the last name counts as contoured
+Result<FieldArrays> GridFile::Data::arrays_of(const std::vector<std::string>& names, std::size_t step, const Run& run,
+                                              bool* averages) const {
     FieldNames there = names_of(info);
     if (step > 0 && info.times.size() > 1) {
         ReadOptions of_step = options;
@@ -131,6 +132,7 @@ Result<FieldArrays> GridFile::Data::arrays_of(const std::vector<std::string>& na
         if (name.empty()) { // the only one there is
             add(all.point, there.point);
             add(all.cell, there.cell);
+            if (averages && !there.cell.empty()) *averages = true;
             continue;
         }
         const Result<FieldArrays> one = arrays_of_field(name, there.point, there.cell);
@@ -138,6 +140,8 @@ Result<FieldArrays> GridFile::Data::arrays_of(const std::vector<std::string>& na
         add(all.point, one->point);
         add(all.cell, one->cell);
         all.neighbours = all.neighbours || one->neighbours;
+        const bool as_it_is = &name != &names.back() && one->point.empty() && one->cell == std::vector{name};
+        if (averages && !one->cell.empty() && !as_it_is) *averages = true;
     }
     return all;
 }
@@ -195,10 +199,11 @@ Result<FileSession> GridFile::session(const std::string& field, const FileContou
     }
     std::vector<std::string> names = options.with;
     names.push_back(field);
-    const Result<FieldArrays> arrays = data_->arrays_of(names, options.step, run);
+    bool averages = false;
+    const Result<FieldArrays> arrays = data_->arrays_of(names, options.step, run, &averages);
     if (!arrays) return arrays.error();
     ReadOptions wanted = data_->options_for(options.step, *arrays);
-    wanted.active_cells = active_cells(*arrays, field, options.contour);
+    if (!averages && !arrays->neighbours) wanted.active_cells = active_cells(field, options.contour);
     Result<ReadResult> read = data_->read_closed(wanted, options.close_hanging_points, run);
     if (!read) return read.error();
     Result<ContourInput> input = input_of(read->grid, field, options, read->notes, run);

@@ -323,7 +323,10 @@ Result<bool> ExtractRun::load(std::size_t step) {
             caller_.detail(fmt::format("reading all cells of step {}", step));
             Result<Grid> grid = source_->read_the_rest(plan_.read, step, run);
             if (!grid) return grid.error();
+            Result<StepFields> of_all = carried_fields(plan_, *grid, run);
+            if (!of_all) return of_all.error();
             all.grid = *std::move(grid);
+            all.cell_fields = std::move(of_all->cell);
             return all;
         };
         input.cell_numbers = active_numbers_;

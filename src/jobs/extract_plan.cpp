@@ -85,12 +85,15 @@ FieldsToRead fields_to_read(const ExtractPlan& plan) {
     return read;
 }
 
+/// Whether values at points follow from cells around them.
+bool looks_around(const FoundField& field) { return !field.cell.empty() || field.neighbours; }
+
 std::optional<ReadActiveCells> plan_active_cells(const ExtractJob& job, const ExtractPlan& plan) {
-    const bool has_components = plan.color || (plan.carried && !plan.carried->components.empty());
-    const bool needs_all = plan.field.neighbours || job.piece || job.solid || job.volumes || job.grid.merge_points ||
+    const bool looks_around_others = (plan.color && looks_around(*plan.color)) ||
+                                     (plan.carried && std::ranges::any_of(plan.carried->components, looks_around));
+    const bool needs_all = looks_around(plan.field) || job.piece || job.solid || job.volumes || job.grid.merge_points ||
                            !job.grid.cells.empty();
-    if (needs_all || has_components || !plan.read.cell || !plan.read.cell->empty() ||
-        plan.contour.expected_isovalues.size() > ActiveCellFilter::max_isovalues ||
+    if (needs_all || looks_around_others || plan.contour.expected_isovalues.size() > ActiveCellFilter::max_isovalues ||
         !Contour::can_do_with_active_cells(plan.contour))
         return std::nullopt;
     ReadActiveCells active{plan.field.name, plan.contour.expected_isovalues, {}, job.field.shape};
@@ -101,9 +104,7 @@ std::optional<ReadActiveCells> plan_active_cells(const ExtractJob& job, const Ex
     return active;
 }
 
-bool names_isovalues(const ExtractJob& job) {
-    return !job.isovalues.empty() || !job.shares.empty() || job.levels > 0;
-}
+bool names_isovalues(const ExtractJob& job) { return !job.isovalues.empty() || !job.shares.empty() || job.levels > 0; }
 
 /// What does not go together with solids.
 Result<void> check_solid(const ExtractJob& job) {
@@ -134,10 +135,8 @@ Error with_way_out(Error error, const ExtractJob& job, const ExtractPlan& plan) 
     if (isovalues.size() > some) isovalues.resize(some);
     cheaper.contour.surfaces = isovalues.size() * plan.steps.size();
     if (try_it(fmt::format("of up to {} isovalues at a time", some))) return error;
-    if (!plan.field.cell.empty()) return error; // which is read in any case
-    cheaper.read.cell.emplace();
     if (cheaper.carried) cheaper.carried->components.clear();
-    if (try_it("without cell fields and components, which `with` leaves out,")) return error;
+    if (try_it("without expressions of cell fields and derivatives, which `with` leaves out,")) return error;
     cheaper.contour.normals = Normals::none;
     try_it("without `normals` gradient");
     return error;
@@ -176,7 +175,8 @@ Result<std::string> plan_collection(const ExtractJob& job, const ExtractPlan& pl
     }
     std::error_code ignored;
     if (std::filesystem::exists(collection, ignored) && !is_written_collection(collection)) {
-        caller.note(fmt::format("no collection of the series is written: '{}' is there already, and not of isotet", collection));
+        caller.note(fmt::format("no collection of the series is written: '{}' is there already, and not of isotet",
+                                collection));
         return std::string();
     }
     std::vector<std::string> inputs = job.grid.other_inputs;

@@ -54,7 +54,9 @@ void number_in_whole(const Array& numbers, std::vector<Extraction>& surfaces) {
 /// The input, cells of degree 1 by their linear types; where it has only some of the cells, and `options` ask for more than these can do, that with all cells.
 Result<ContourInput> input_for(ContourInput input, const ContourOptions& options, const Run& run) {
     if (input.packed) return input;
-    const bool some_do = Contour::can_do_with_active_cells(options) && input.cell_fields.empty() &&
+    const auto is_of_these = [&](const Field& field) { return field.values.tuples() == input.grid.cells.count(); };
+    const bool some_do = Contour::can_do_with_active_cells(options) &&
+                         std::ranges::all_of(input.cell_fields, is_of_these) &&
                          (!options.source_cells || !input.cell_numbers.empty()) &&
                          (options.normals != Normals::gradient || input.has_cells_around);
     if (input.all_cells && !some_do) {

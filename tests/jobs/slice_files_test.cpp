@@ -122,14 +122,13 @@ TEST(SliceFiles, OfReadersThatKeepOnlyCutCellsAreThoseOfAllCells) {
     const test::TemporaryFolder folder;
     const std::string file = folder.file("grid.vtu");
     for (const char* kind : {"shuffled", "hex"}) {
-        const Grid grid = make_grid({.shape = kind, .side = 14, .fields = {"gyroid"}}).value();
+        const Grid grid = numbered_grid(kind, 14);
         ASSERT_TRUE(write_grid(grid, file));
-        for (const SliceShape& shape : {SliceShape(Plane{{0.2, -0.5, 1}, 0.1}), SliceShape(Plane{{0, 0, 1}, 0}),
-                                        SliceShape(Sphere{{0, 0, 0}, 0.4}),
-                                        SliceShape(Cylinder{{0, 1, 1}, {0, 0, 0}, 0.3})}) {
+        for (const SliceShape& shape :
+             {SliceShape(Plane{{0.2, -0.5, 1}, 0.1}), SliceShape(Plane{{0, 0, 1}, 0}),
+              SliceShape(Sphere{{0, 0, 0}, 0.4}), SliceShape(Cylinder{{0, 1, 1}, {0, 0, 0}, 0.3})}) {
             SCOPED_TRACE(testing::Message() << kind << " " << shape.index());
             ReadOptions some;
-            some.cell_fields = std::vector<std::string>{};
             some.active_cells = ReadActiveCells{"", {slice_isovalue(shape)}, {}, shape};
             const ReadResult read_some = read(file, some).value();
             ASSERT_EQ(read_some.cells_in_file, grid.cells.count());

@@ -193,7 +193,7 @@ TEST_P(ReadExodus, IsAnErrorWhenAnElementHasANodeThatIsNotThere) {
 }
 
 /// Parts of a grid with cells of all types, a block each; the last part has none.
-void write_mixed_parts(const TemporaryFolder& folder, int format, std::size_t parts = 3) {
+void write_mixed_parts(const TemporaryFolder& folder, int format, std::size_t parts = 3, std::size_t steps = 0) {
     const Grid whole = make_grid({.shape = "mixed", .side = 4, .fields = {"plane"}}).value();
     const PointField field{"plane", whole.point_fields[0].values, false, {}};
     const core::CellReader reader = core::CellReader::open(whole).value();
@@ -206,7 +206,7 @@ void write_mixed_parts(const TemporaryFolder& folder, int format, std::size_t pa
         const GridPiece piece = piece_of(whole, field, cells, random);
         ExodusSample sample;
         sample.format = format;
-        sample.steps = 0;
+        sample.steps = static_cast<int>(steps);
         sample.nodes.clear();
         sample.node_ids.clear();
         for (std::size_t i = 0; i < piece.points.size(); ++i) {
@@ -240,9 +240,13 @@ TEST_P(ReadExodus, GivesTheSurfacesOfActiveCells) {
     const auto read_later = read(folder_.file("mixed.e.3.0"), options);
     ASSERT_TRUE(all && read_later);
     EXPECT_TRUE(are_same(read_later->grid.cells.connectivity, all->grid.cells.connectivity));
-    write_mixed_parts(folder_, GetParam(), 1);
+    write_mixed_parts(folder_, GetParam(), 3, 1);
+    options.active_cells.reset();
+    expect_same_of_active_cells(folder_.file("mixed.e.3.0"), "x", {0.13}, options);
+    write_mixed_parts(folder_, GetParam(), 1, 2);
     std::filesystem::rename(folder_.file("mixed.e.1.0"), folder_.file("one.e"));
-    expect_same_of_active_cells(folder_.file("one.e"), "y", {0.2});
+    options.step = 1;
+    expect_same_of_active_cells(folder_.file("one.e"), "y", {0.2}, options);
     expect_counted(folder_.file("one.e"), true);
 }
 
@@ -378,8 +382,8 @@ TEST(ReadExodusPieces, VariablesOfNodesMayBeOneArrayAsBeforeVersion202) {
     sample.format = EX_NETCDF4;
     write_exodus(sample, folder.file("a.e"));
     {
-        Hdf5Writer file(folder.file("a.e"), {"vals_nod_var1", "vals_nod_var2", "vals_nod_var3", "vals_nod_var4", "coordx",
-                                             "coordy", "coordz"});
+        Hdf5Writer file(folder.file("a.e"), {"vals_nod_var1", "vals_nod_var2", "vals_nod_var3", "vals_nod_var4",
+                                             "coordx", "coordy", "coordz"});
         std::vector<double> values(2 * 4 * 5), places;
         for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i);
         for (std::size_t axis = 0; axis < 3; ++axis)

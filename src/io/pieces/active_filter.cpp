@@ -12,14 +12,16 @@ Result<PointField> active_field(const Grid& grid, const ReadActiveCells& active)
 }
 
 std::optional<ActiveCellFilter> active_filter(const Grid& grid, std::optional<CellType> type,
-                                              const ReadOptions& options, std::vector<double>& isovalues) {
-    if (!options.active_cells || !grid.cell_fields.empty() || !options.displace.empty()) return std::nullopt;
+                                              const ReadOptions& options, bool numbers,
+                                              std::vector<double>& isovalues) {
+    if (!options.active_cells || !options.displace.empty()) return std::nullopt;
     if (may_have_coincident_points(grid.points)) return std::nullopt;
     const ReadActiveCells& active = *options.active_cells;
     const auto field = active_field(grid, active);
     if (!field) return std::nullopt;
     DirectOptions direct = active.options;
     direct.extract.point_fields = grid.point_fields;
+    direct.extract.source_cells = numbers;
     isovalues = active.isovalues;
     if (isovalues.empty() && active.choose) {
         auto chosen = active.choose(*field);

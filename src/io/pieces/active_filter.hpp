@@ -14,12 +14,13 @@ namespace isotet::io {
 Result<PointField> active_field(const Grid& grid, const ReadActiveCells& active);
 
 /// The filter for ReadOptions::active_cells; nothing where all cells must be read: the field is one of cells, or not
-/// there, there are cell fields, or points coincide, of which more can only be said with all cells.
+/// there, or points coincide, of which more can only be said with all cells.
 ///
 /// `grid`   points and fields, without cells
 /// `type`   of all cells; nothing where they have types of their own
+/// `numbers`   of the cells that are kept are wanted
 /// `isovalues`   get those for which cells are kept
 std::optional<ActiveCellFilter> active_filter(const Grid& grid, std::optional<CellType> type,
-                                              const ReadOptions& options, std::vector<double>& isovalues);
+                                              const ReadOptions& options, bool numbers, std::vector<double>& isovalues);
 
 } // namespace isotet::io

@@ -87,7 +87,7 @@ void SharedCells::add(const std::vector<Cell>& cells) {
     cells_.insert(cells_.end(), cells.begin(), cells.end());
 }
 
-RepeatedCells SharedCells::settle(CellTaker& taker, bool typed) {
+RepeatedCells SharedCells::settle(CellTaker& taker, bool typed, std::vector<std::uint64_t>& dropped) {
     const auto key = [](const Cell& cell) { return std::tuple(kind_for_repetition(cell.type), cell.ascending); };
     std::ranges::sort(cells_, {}, [&](const Cell& cell) { return std::tuple(key(cell), cell.piece, cell.in_piece); });
     RepeatedCells repeated;
@@ -97,6 +97,7 @@ RepeatedCells SharedCells::settle(CellTaker& taker, bool typed) {
         if (!first || key(*first) != key(cell)) first = &cell;
         if (first->piece != cell.piece) {
             ++repeated.left_out;
+            dropped.push_back(cell.number);
             in.insert({first->piece, cell.piece});
             continue;
         }

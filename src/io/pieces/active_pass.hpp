@@ -46,16 +46,17 @@ public:
         std::array<std::int32_t, 8> ascending; ///< its corners; -1 behind the last
         std::array<std::int32_t, 8> corners;
         std::uint8_t type;
-        std::uint32_t piece;   ///< in the order in which the first of several stays
+        std::uint32_t piece;    ///< in the order in which the first of several stays
         std::uint64_t in_piece; ///< its number there
-        std::uint64_t number;  ///< in the joined grid
+        std::uint64_t number;   ///< in the joined grid
     };
 
     void add(const std::vector<Cell>& cells);
 
     /// Hands those that no earlier piece has to the taker, and tells of the others.
-    /// `typed`   the taker takes cells with their types
-    RepeatedCells settle(CellTaker& taker, bool typed);
+    /// `typed`     the taker takes cells with their types
+    /// `dropped`   gets the numbers of the others, in any order
+    RepeatedCells settle(CellTaker& taker, bool typed, std::vector<std::uint64_t>& dropped);
 
 private:
     std::mutex mutex_;
@@ -66,9 +67,9 @@ private:
 class ActivePass {
 public:
     struct Target {
-        CellTaker* taker = nullptr;         ///< null: uses are looked for, and nothing else
-        bool typed = false;                 ///< the taker takes cells with their types
-        std::uint64_t first = 0;            ///< number of the piece's first cell in the joined grid
+        CellTaker* taker = nullptr; ///< null: uses are looked for, and nothing else
+        bool typed = false;         ///< the taker takes cells with their types
+        std::uint64_t first = 0;    ///< number of the piece's first cell in the joined grid
         std::uint32_t piece = 0;
         SharedHashes* hashes = nullptr; ///< get all shared cells
         std::uint64_t place = 0;        ///< of the piece's first cell there

@@ -34,16 +34,40 @@ Result<OrderedPieces> checked(std::vector<Piece> all) {
 
 bool is_empty(const Piece& piece) { return piece.grid.points.tuples() == 0 && piece.cell_count() == 0; }
 
-/// Reads the cells that are still in their files.
-Result<void> read_cells_of(std::vector<Piece>& pieces) {
+/// Why each field of a piece that is still in its file cannot be read; nothing where it can.
+using WhyNot = std::vector<std::optional<std::string>>;
+
+Result<WhyNot> read_fields_of(Piece& piece) {
+    WhyNot why_not;
+    for (const UnreadField& field : std::exchange(piece.unread_fields, {})) {
+        auto values = field.values->read();
+        if (!values && values.error().code != ErrorCode::invalid_data) return values.error();
+        why_not.push_back(values ? std::nullopt : std::optional(values.error().message));
+        if (values) piece.grid.cell_fields.push_back({field.name, *std::move(values)});
+    }
+    return why_not;
+}
+
+/// Reads the cells that are still in their files, and their fields. Those that cannot be read are left out.
+Result<void> read_cells_of(std::vector<Piece>& pieces, FileInfo& info) {
+    std::vector<std::vector<UnreadField>> fields;
+    for (const Piece& piece : pieces) fields.push_back(piece.unread_fields);
+    std::vector<WhyNot> why_not(pieces.size());
     FirstError failed;
     core::parallel_each(pieces.size(), 1, [&](std::size_t i) {
-        if (!pieces[i].unread || failed) return;
+        if (failed) return;
+        auto read = read_fields_of(pieces[i]);
+        if (!read) return failed.add(i, read.error());
+        why_not[i] = *std::move(read);
+        if (!pieces[i].unread) return;
         auto cells = pieces[i].unread->read();
         if (!cells) return failed.add(i, cells.error());
         pieces[i].grid.cells = *std::move(cells);
         pieces[i].unread.reset();
     });
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+        for (std::size_t k = 0; k < why_not[i].size(); ++k)
+            if (why_not[i][k]) leave_out(info, {"cell field", fields[i][k].name, *why_not[i][k]});
     return failed.result();
 }
 
@@ -107,7 +131,7 @@ Result<std::optional<ReadResult>> join_loaded(Loaded loaded, const ReadOptions& 
                               : join_active(pieces, result, options, progress, may_free);
         if (!active || *active) return active;
         if (pieces.empty()) return std::optional<ReadResult>();
-        if (auto read = read_cells_of(pieces); !read) return read.error();
+        if (auto read = read_cells_of(pieces, result.info); !read) return read.error();
     }
     if (pieces.size() == 1 && pieces[0].left_out.empty()) {
         if (const auto sound = check_shape(pieces[0]); !sound) return sound.error();

@@ -127,13 +127,10 @@ private:
         std::optional<std::uint8_t> type;
         for (const Piece& piece : all_.pieces) {
             if (piece.cell_count() == 0) continue;
-            if (options_.active_cells->boundary && !piece.left_out.empty()) return false;
             if (counted_ && !may_be_counted(piece, options_)) return false;
             if (!piece.unread || !check_shape(points_as_piece(piece))) return false;
             if (!counted_ && !piece.grid.cell_fields.empty()) return false;
-            if (!piece.left_out.empty() &&
-                ((!counted_ && numbers_cells()) || piece.left_out.size() != piece.cell_count()))
-                return false;
+            if (!piece.left_out.empty() && piece.left_out.size() != piece.cell_count()) return false;
             const CellPlaces& places = piece.unread->places();
             typed_ = typed_ || !places.are_uniform() || (type && *type != places.type(0));
             type = places.type(0);
@@ -142,13 +139,16 @@ private:
         return type.has_value();
     }
 
-    /// Numbers of cells in the joined grid are those in the file, as long as none is left out.
-    bool numbers_cells() const { return counted_ || options_.active_cells->options.extract.source_cells; }
+    /// Whether it must be known which cells were kept.
+    bool wants_numbers() const {
+        return options_.active_cells->options.extract.source_cells ||
+               std::ranges::any_of(all_.pieces, [](const Piece& piece) { return !piece.unread_fields.empty(); });
+    }
 
     /// What the cells go by for; null where all are needed.
     std::unique_ptr<CellTaker> make_taker(const Grid& grid) {
         if (counted_) return CellCounter::make(grid.points, type_, kept_cells());
-        auto filter = active_filter(grid, type_, options_, isovalues_);
+        auto filter = active_filter(grid, type_, options_, wants_numbers(), isovalues_);
         if (!filter) return nullptr;
         auto taker = std::make_unique<ActiveTaker>(*std::move(filter));
         if (type_) taker->set_type(*type_);
@@ -188,7 +188,7 @@ private:
         ReadResult result = begun_;
         result.grid.points = piece.grid.points;
         result.grid.point_fields = piece.grid.point_fields;
-        auto filter = active_filter(result.grid, type_, options_, isovalues_);
+        auto filter = active_filter(result.grid, type_, options_, wants_numbers(), isovalues_);
         if (!filter) return std::optional<ReadResult>();
         WholeCells whole(places, [&](std::uint64_t first, std::uint64_t count, const Array& corners) {
             filter->add_cells(first, places.types(first, count), corners);
@@ -234,7 +234,7 @@ private:
     /// `pass_again`   hands all cells to a CellsAround
     template <class PassAgain>
     Result<std::optional<ReadResult>> with_cells(ActiveCellFilter& filter, ReadResult result,
-                                                 const PassAgain& pass_again) const {
+                                                 const PassAgain& pass_again) {
         auto cells = filter.finish();
         if (!cells && cells.error().code != ErrorCode::invalid_data) return cells.error();
         if (!cells) return std::optional<ReadResult>();
@@ -242,12 +242,72 @@ private:
         const Result<bool> hang = may_have_hanging_points(result.grid, pass_again);
         if (!hang && hang.error().code != ErrorCode::invalid_data) return hang.error();
         if (!hang || *hang) return std::optional<ReadResult>();
-        result.cell_numbers = filter.numbers();
+        if (const Array numbers = filter.numbers(); !numbers.empty()) {
+            const auto read = read_fields(numbers.as<std::uint64_t>(), result);
+            if (!read) return read.error();
+            if (!*read) return std::optional<ReadResult>();
+            if (options_.active_cells->options.extract.source_cells)
+                result.cell_numbers = numbers_in_grid(numbers.as<std::uint64_t>());
+        }
         if (!used_.empty()) {
             const Box box = box_of(result.grid.points, used_);
             result.bounds = {box.lower[0], box.lower[1], box.lower[2], box.upper[0], box.upper[1], box.upper[2]};
         }
         return std::optional(std::move(result));
+    }
+
+    /// Numbers as join() has them: of a piece alone those in its file, else without the cells that are left out.
+    Array numbers_in_grid(std::span<const std::uint64_t> numbers) {
+        const std::vector<std::uint64_t> first = first_cells();
+        std::vector<std::uint64_t> result;
+        result.reserve(numbers.size());
+        std::ranges::sort(dropped_);
+        std::uint64_t kept_before = 0, dropped = 0; // cells of earlier pieces; repeated ones so far
+        for (const std::size_t p : all_.order_of_file()) {
+            const std::vector<std::uint8_t>& out = all_.pieces[p].left_out;
+            std::uint64_t seen = 0, kept = 0;
+            for (; result.size() < numbers.size(); result.push_back(kept_before + kept - dropped)) {
+                const std::uint64_t number = numbers[result.size()], cell = number - first[p];
+                if (cell >= all_.pieces[p].cell_count()) break;
+                if (out.empty() || all_.size() == 1) kept = cell;
+                else
+                    for (; seen < cell; ++seen) kept += out[seen] == 0 ? 1 : 0;
+                while (dropped < dropped_.size() && dropped_[dropped] < number) ++dropped;
+            }
+            kept_before += kept_cells_of(all_.pieces[p]);
+        }
+        return Array::own(std::move(result));
+    }
+
+    /// Cell fields of cells with these numbers. False where one cannot be read.
+    Result<bool> read_fields(std::span<const std::uint64_t> numbers, ReadResult& result) {
+        const std::vector<std::uint64_t> first = first_cells();
+        std::vector<std::vector<std::uint64_t>> cells(all_.size()); // by piece, in it
+        std::vector<std::uint64_t> place(all_.size()), kept(all_.size());
+        std::uint64_t next = 0;
+        for (const std::size_t p : all_.order_of_file()) {
+            const std::uint64_t count = all_.pieces[p].cell_count();
+            kept[p] = kept_cells_of(all_.pieces[p]);
+            for (place[p] = next; next < numbers.size() && numbers[next] - first[p] < count; ++next)
+                cells[p].push_back(numbers[next] - first[p]);
+        }
+        std::vector<Piece> pieces(all_.size());
+        FirstError failed;
+        core::parallel_each(all_.size(), 1, [&](std::size_t p) {
+            for (const UnreadField& field : all_.pieces[p].unread_fields) {
+                if (failed) return;
+                auto values = cells[p].empty() ? Array(field.type, nullptr, 0, field.components, nullptr)
+                                               : field.values->read(cells[p]);
+                if (!values) return failed.add(p, values.error());
+                pieces[p].grid.cell_fields.push_back({field.name, *std::move(values)});
+            }
+        });
+        if (const auto done = failed.result(); !done)
+            return done.error().code == ErrorCode::invalid_data ? Result<bool>(false) : done.error();
+        auto fields = join_cell_fields(pieces, place, kept, numbers.size(), result, progress_);
+        if (!fields) return fields.error();
+        result.grid.cell_fields = *std::move(fields);
+        return true;
     }
 
     template <class PassAgain>
@@ -309,13 +369,16 @@ private:
             if (may_free_ && all_.size() > 1) piece.point_ids = Array();
         if (auto enough = core::require_memory("joining the points of pieces", bytes_of_points()); !enough)
             return enough.error();
-        const std::size_t notes = result.notes.size();
+        const std::size_t notes = result.notes.size(), left_out = result.info.left_out.size();
         points_.clear();
         for (const Piece& piece : all_.pieces) points_.push_back(piece.grid.points.tuples());
         if (auto done = join_points_of(*joined, result); !done) return done.error();
         std::vector<std::string> of_fields(result.notes.begin() + static_cast<std::ptrdiff_t>(notes),
                                            result.notes.end());
         result.notes.resize(notes);
+        const auto first_left_out = result.info.left_out.begin() + static_cast<std::ptrdiff_t>(left_out);
+        const std::vector<LeftOut> fields_left_out(first_left_out, result.info.left_out.end());
+        result.info.left_out.resize(left_out);
 
         auto taker = make_taker(result.grid);
         if (!taker) needs_all_ = true;
@@ -337,22 +400,31 @@ private:
         const auto marks = hashes.repeated(cell_counts());
         if (!marks) return marks.error();
         RepeatedCells repeated;
+        SharedCells shared;
+        const auto share = [&] {
+            for (std::size_t p = 0; p < all_.size() && !marks->empty(); ++p)
+                targets[p].shared = &shared, targets[p].repeated = (*marks)[p];
+        };
+        dropped_.clear();
         if (!marks->empty()) { // cells were kept that may be those of other pieces
-            if (counted_ || search) needs_all_ = true;
+            if (counted_) needs_all_ = true;
             if (needs_all_) return std::optional<ReadResult>();
             taker.reset(); // its memory is needed again
             taker = make_taker(result.grid);
+            if (search) {
+                for_boundary.reset();
+                search.emplace(result.grid.points);
+                for_boundary.emplace(*search, type_, BoundaryTaker::Round::add);
+                static_cast<ActiveTaker&>(*taker).set_also(&*for_boundary);
+            }
             targets = targets_for(*taker);
-            SharedCells shared;
-            for (std::size_t p = 0; p < all_.size(); ++p)
-                targets[p].shared = &shared, targets[p].repeated = (*marks)[p];
+            share();
             do {
+                dropped_.clear();
                 if (auto done = pass_all(joined->numbers, targets, again); !done) return done.error();
                 if (needs_all_ || again) return std::optional<ReadResult>();
-                repeated = shared.settle(*taker, typed_);
+                repeated = shared.settle(*taker, typed_, dropped_);
             } while (goes_another_round(*taker));
-            if (repeated.left_out > 0 && numbers_cells()) needs_all_ = true;
-            if (needs_all_) return std::optional<ReadResult>();
         }
         if (goes_another_round(*taker)) {
             for (ActivePass::Target& target : targets) target.hashes = nullptr;
@@ -360,7 +432,16 @@ private:
             if (needs_all_ || again) return std::optional<ReadResult>();
         }
         if (search) {
-            const auto found = find_boundary(joined->numbers, result.grid.points, *search);
+            BoundaryTaker keeper(*search, type_, BoundaryTaker::Round::keep);
+            targets = targets_for(keeper);
+            share();
+            needs_all_ = !search->look();
+            if (!needs_all_)
+                if (auto done = pass_all(joined->numbers, targets, again); !done) return done.error();
+            if (needs_all_) return std::optional<ReadResult>();
+            std::vector<std::uint64_t> told;
+            shared.settle(keeper, typed_, told);
+            const auto found = find_boundary(result.grid.points, *search);
             if (!found) return found.error();
             if (!*found) return std::optional<ReadResult>();
         }
@@ -371,7 +452,9 @@ private:
             for (ActivePass::Target& target : targets) target = {.taker = &all, .typed = true, .points = target.points};
             return pass_all(joined->numbers, targets, again);
         });
-        if (found && *found) std::ranges::move(of_fields, std::back_inserter((*found)->notes));
+        if (!found || !*found) return found;
+        for (const LeftOut& item : fields_left_out) leave_out((*found)->info, item); // behind those of cells
+        std::ranges::move(of_fields, std::back_inserter((*found)->notes));
         return found;
     }
 
@@ -384,13 +467,7 @@ private:
     }
 
     /// False where all cells are needed.
-    Result<bool> find_boundary(const PointNumbers& numbers, const Array& points, core::BoundarySearch& search) {
-        BoundaryTaker keeper(search, type_, BoundaryTaker::Round::keep);
-        needs_all_ = !search.look();
-        bool again = false;
-        if (!needs_all_)
-            if (auto done = pass_all(numbers, targets_for(keeper), again); !done) return done.error();
-        if (needs_all_) return false;
+    Result<bool> find_boundary(const Array& points, core::BoundarySearch& search) {
         StreamedBoundary& boundary = *options_.active_cells->boundary;
         boundary.print = {};
         return take_boundary(std::move(search), points, boundary, progress_);
@@ -538,13 +615,14 @@ private:
     const ReadOptions& options_;
     const Progress& progress_;
     OrderedPieces all_;
-    bool may_free_, freed_ = false; ///< points and fields of the pieces
-    bool typed_ = false;           ///< not all cells are of one type
-    std::optional<CellType> type_; ///< of all
+    bool may_free_, freed_ = false;     ///< points and fields of the pieces
+    bool typed_ = false;                ///< not all cells are of one type
+    std::optional<CellType> type_;      ///< of all
     std::vector<std::uint64_t> points_; ///< of each piece
     std::vector<std::vector<std::uint64_t>> kept_before_;
-    std::vector<double> isovalues_; ///< for which cells are kept
-    std::vector<PointUse> used_;   ///< of the joined points, where their bounds are asked for
+    std::vector<double> isovalues_;      ///< for which cells are kept
+    std::vector<PointUse> used_;         ///< of the joined points, where their bounds are asked for
+    std::vector<std::uint64_t> dropped_; ///< numbers of cells that earlier pieces have
     std::atomic<bool> needs_all_ = false;
 };
 

@@ -16,6 +16,7 @@
 #include <isotet/result.hpp>
 
 #include "io/pieces/cell_source.hpp"
+#include "io/pieces/field_source.hpp"
 
 namespace isotet::io {
 
@@ -23,13 +24,14 @@ namespace isotet::io {
 struct Piece {
     std::string name; ///< for messages
     Grid grid;
-    Array point_ids;                                 ///< empty, or a global number for each point
-    Array cell_ids;                                  ///< empty, or a global number for each cell
-    std::vector<std::uint8_t> left_out;              ///< empty, or nonzero for each ghost or blanked cell
+    Array point_ids;                    ///< empty, or a global number for each point
+    Array cell_ids;                     ///< empty, or a global number for each cell
+    std::vector<std::uint8_t> left_out; ///< empty, or nonzero for each ghost or blanked cell
     /// Of a structured grid: first and last point along each axis, as the file numbers them.
     std::optional<std::array<std::int64_t, 6>> extent = {};
     std::string flat = {}; ///< of a structured grid without cells that have a volume: "a plane of 3 x 4 points"
     std::shared_ptr<const CellSource> unread = {}; ///< the cells, where `grid` does not have them yet
+    std::vector<UnreadField> unread_fields = {};   ///< then, in place of its cell fields
 
     std::uint64_t cell_count() const { return unread ? unread->count() : grid.cells.count(); }
 };

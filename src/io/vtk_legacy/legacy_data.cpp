@@ -292,7 +292,10 @@ Result<void> LegacyData::read_array(const Header& header) {
     const std::string name = decoded_name(header.name);
     const bool of_file = data_ == Data::none && !wants_.file_arrays.empty() && name.starts_with(wants_.file_arrays);
     const bool is_wanted = of_file || (data_ != Data::none && !name.empty() && wants_.field(association(), name));
-    auto values = values_.read_values(*type, header.tuples, header.components, in_quotes(header.name), is_wanted);
+    const bool stays = is_wanted && may_stay(name, *type, header);
+    const std::size_t before = scanner_.position();
+    auto values =
+        values_.read_values(*type, header.tuples, header.components, in_quotes(header.name), is_wanted && !stays);
     if (!values) {
         if (!may_go_on(values.error())) return values.error();
         leave_out_array(header, values.error().message);
@@ -310,6 +313,11 @@ Result<void> LegacyData::read_array(const Header& header) {
                       stored,
                       header.components,
                       header.tuples});
+    if (stays) {
+        const std::uint64_t bytes = header.tuples * header.components * size_of(type->type);
+        found_.back().in_file = {before, scanner_.position() - static_cast<std::size_t>(bytes), *type, header.tuples,
+                                 header.components};
+    }
     last_is_found_ = true;
     return {};
 }
@@ -367,7 +375,9 @@ Result<void> LegacyData::skip_unknown_type(const Header& header) {
 void LegacyData::order_as_named(std::span<const std::string> names) {
     if (!last_is_found_ || !found_.back().wanted || found_.back().components != names.size()) return;
     Array& values = found_.back().attribute.values;
-    if (const auto order = order_of_names(names)) values = ordered_as_vtk(values, *order);
+    const auto order = order_of_names(names);
+    if (found_.back().in_file) found_.back().in_file->order = order;
+    else if (order) values = ordered_as_vtk(values, *order);
     last_is_found_ = false;
 }
 
@@ -441,6 +451,12 @@ bool LegacyData::has_geometry() const {
     return !file_.dataset.empty() && file_.points_announced() > 0;
 }
 
+/// Whether the values of a cell field may be read when it is known of which cells.
+bool LegacyData::may_stay(const std::string& name, const LegacyType& type, const Header& header) const {
+    return wants_.leave && wants_.leave(name) && data_ == Data::cells && file_.cells.in_file && values_.binary() &&
+           !type.bits && header.tuples > 0;
+}
+
 bool LegacyData::may_go_on(const Error& error) const {
     return error.code == ErrorCode::invalid_data && !scanner_.error();
 }
@@ -500,11 +516,13 @@ void LegacyData::finish() {
                                               kind_of(found.association), in_quotes(name)));
             file_.info.fields.erase(same);
             std::erase_if(attributes, [&](const Attribute& attribute) { return attribute.name == name; });
+            if (!point) file_.cell_values_in_file.erase(name);
         }
         const std::pair one(found.association, name);
         const bool marked = std::ranges::find(scalars_, one) != scalars_.end() && // VTK writes one so, others as FIELD
                             std::ranges::count(scalars_, one.first, &std::pair<Association, std::string>::first) == 1;
         announce(file_.info, {name, found.association, found.type, static_cast<std::size_t>(found.components), marked});
+        if (found.in_file) file_.cell_values_in_file.emplace(name, *found.in_file);
         if (found.wanted) attributes.push_back(std::move(found.attribute));
     }
     found_.clear();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -60,6 +61,7 @@ private:
         bool wanted;
         ScalarType type;
         std::uint64_t components, tuples;
+        std::optional<ValuesInFile> in_file = {};
     };
 
     Result<void> read_section(const std::string& keyword);
@@ -88,6 +90,7 @@ private:
     bool has_geometry() const;
 
     Association association() const { return data_ == Data::cells ? Association::cell : Association::point; }
+    bool may_stay(const std::string& name, const LegacyType& type, const Header& header) const;
     bool may_go_on(const Error& error) const;
     void leave_out_array(const Header& header, std::string reason);
     Result<void> go_on_behind(std::uint64_t left_in_field, const Error& error);
@@ -102,7 +105,7 @@ private:
     std::size_t faults_ = 0;
     bool unread_ = false; ///< the rest of the file
     std::vector<Found> found_;
-    bool last_is_found_ = false; ///< METADATA is of the last one
+    bool last_is_found_ = false;                               ///< METADATA is of the last one
     std::vector<std::pair<Association, std::string>> scalars_; ///< names of SCALARS
 };
 

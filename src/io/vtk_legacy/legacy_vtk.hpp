@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,6 +16,7 @@
 #include <isotet/read.hpp>
 
 #include "io/files/byte_source.hpp"
+#include "io/pieces/tensor_order.hpp"
 #include "io/surfaces/surface_parts.hpp"
 #include "io/vtk_legacy/legacy_values.hpp"
 
@@ -26,6 +28,17 @@ struct CornersInFile {
     LegacyType type = legacy_integers;    ///< of 4 bytes, or of 8 with a sign
     std::uint64_t count = 0, corners = 0; ///< numbers there; corners of each cell
     bool interleaved = false;             ///< before the corners of each cell stands how many there are
+};
+
+/// Values of a field that were left in a binary file.
+struct ValuesInFile {
+    std::size_t position = 0, begin = 0; ///< of the scanner before them; of the first one
+    LegacyType type = legacy_floats;
+    std::uint64_t tuples = 0, components = 1;
+    std::optional<TensorOrder> order = {}; ///< of the components, where it is another one than VTK's
+
+    /// In which they are read.
+    ScalarType read_type() const { return type.widened ? ScalarType::int64 : type.type; }
 };
 
 /// A list of cells (CELLS, POLYGONS and so on).
@@ -44,7 +57,7 @@ struct LegacyCells {
 struct LegacyFile {
     std::string dataset; ///< "polydata", "unstructured_grid" and so on
     bool has_points = false;
-    bool has_cells = false; ///< CELLS or CELL_TYPES, of 0 perhaps
+    bool has_cells = false;        ///< CELLS or CELL_TYPES, of 0 perhaps
     std::uint64_t point_count = 0; ///< that POINTS announces
     Array points;                  ///< float32 or float64
     LegacyCells vertices, lines, polygons, strips, cells;
@@ -52,12 +65,13 @@ struct LegacyFile {
     std::optional<std::uint8_t> one_type; ///< of all cells
     std::uint64_t cell_type_count = 0;
     std::array<std::uint64_t, 3> dimensions{};
-    std::array<std::int64_t, 3> first_index{}; ///< of EXTENT: the origin has the index 0
+    std::array<std::int64_t, 3> first_index{};    ///< of EXTENT: the origin has the index 0
     std::string_view size_keyword = "DIMENSIONS"; ///< or EXTENT, whose points `dimensions` counts
     std::array<double, 3> origin{0, 0, 0}, spacing{1, 1, 1};
     std::array<Array, 3> coordinates; ///< of a rectilinear grid
     std::vector<Attribute> point_data, cell_data;
-    std::vector<Field> field_data; ///< of the whole file
+    std::map<std::string, ValuesInFile> cell_values_in_file; ///< of those of `cell_data` that LegacyWants::leave says
+    std::vector<Field> field_data;                           ///< of the whole file
     FileInfo info; ///< of fields that were not asked for, too; with what is left out
     std::vector<std::string> notes;
 
@@ -70,8 +84,9 @@ struct LegacyFile {
 struct LegacyWants {
     std::function<bool(std::string_view dataset)> dataset; ///< others are an error, before anything is read
     std::function<bool(Association association, std::string_view name)> field;
-    bool geometry = true;       ///< points and cells
-    bool leave_corners = false; ///< corners of CELLS may stay in the file
+    bool geometry = true;                                  ///< points and cells
+    bool leave_corners = false;                            ///< corners of CELLS may stay in the file
+    std::function<bool(std::string_view name)> leave = {}; ///< then: cell fields that may, too; empty: none
     std::string_view file_arrays = {}; ///< of arrays of the whole file those whose names begin so; empty: none
 };
 

@@ -15,6 +15,7 @@
 #include "base/parallel.hpp"
 #include "grid/cells.hpp"
 #include "io/files/escape.hpp"
+#include "io/files/read_tuples.hpp"
 #include "io/files/text_scanner.hpp"
 #include "io/pieces/join.hpp"
 #include "io/pieces/survey_unread.hpp"
@@ -25,6 +26,8 @@
 #include "io/vtk_legacy/old_hexahedra.hpp"
 #include "io/vtk_xml/columns.hpp"
 #include "io/vtk_xml/load.hpp"
+#include "io/vtk_xml/stored_array.hpp"
+#include "io/write/write_stream.hpp"
 
 namespace isotet::io {
 namespace {
@@ -116,20 +119,75 @@ Result<void> take_structured(const LegacyFile& file, Piece& piece, std::vector<s
     return {};
 }
 
+/// A file that is opened again.
+struct LegacyPath {
+    std::string path;
+    std::size_t size;
+
+    /// Errors   file: it was changed meanwhile
+    Result<ByteSource> open() const {
+        auto source = ByteSource::open(path);
+        if (source && source->size() != size)
+            return Error{ErrorCode::file, fmt::format("{} was changed while it was read", escaped(path))};
+        return source;
+    }
+};
+
+/// A cell field that was left in the file.
+class LegacyFieldSource final : public FieldSource {
+public:
+    /// `progress`   borrowed
+    LegacyFieldSource(LegacyPath path, const ValuesInFile& values, const Progress& progress)
+        : path_(std::move(path)), values_(values), progress_(progress) {}
+
+    Result<Array> read(const std::vector<std::uint64_t>& cells) const override {
+        const auto source = path_.open();
+        if (!source) return source.error();
+        const auto components = static_cast<std::size_t>(values_.components);
+        const std::size_t size = size_of(values_.type.type);
+        auto values =
+            vtk_xml::filled_array(values_.type.type, cells.size(), components, [&](std::byte* to) -> Result<void> {
+                auto read = read_tuples(*source, values_.begin, components * size, cells, to, progress_);
+                if (read && std::endian::native != std::endian::big) swap_bytes(to, cells.size() * components, size);
+                return read;
+            });
+        if (values && values_.type.widened)
+            values = mapped<std::int64_t>(*values, [](auto value) { return static_cast<std::int64_t>(value); });
+        return ordered(std::move(values));
+    }
+
+    Result<Array> read() const override {
+        const auto source = path_.open();
+        if (!source) return source.error();
+        LegacyValues values(*source, progress_);
+        values.set_binary(true);
+        values.scanner().seek(values_.position);
+        return ordered(values.read_values(values_.type, values_.tuples, values_.components, "the field", true));
+    }
+
+private:
+    Result<Array> ordered(Result<Array> values) const {
+        return values && values_.order ? ordered_as_vtk(*values, *values_.order) : std::move(values);
+    }
+
+    LegacyPath path_;
+    ValuesInFile values_;
+    const Progress& progress_;
+};
+
 /// Cells of one type whose corners were left in the file.
 class LegacyCellSource final : public CellSource {
 public:
     /// `file`       without points and fields
     /// `progress`   borrowed
-    LegacyCellSource(std::string path, std::size_t size, LegacyFile file, const Progress& progress)
+    LegacyCellSource(LegacyPath path, LegacyFile file, const Progress& progress)
         : CellSource(CellPlaces(static_cast<CellType>(*file.one_type), file.cells.count), {}),
           path_(std::move(path)),
-          size_(size),
           file_(std::move(file)),
           progress_(progress) {}
 
     Result<void> each_block(const Visit& visit) const override {
-        const auto source = open();
+        const auto source = path_.open();
         if (!source) return source.error();
         LegacyValues values(*source, progress_);
         values.set_binary(true);
@@ -142,40 +200,32 @@ public:
     }
 
     Result<Cells> read() const override {
-        const auto source = open();
+        const auto source = path_.open();
         if (!source) return source.error();
         LegacyValues values(*source, progress_);
         values.set_binary(true);
         LegacyFile file = file_;
-        if (auto done = read_corners(values, file.cells); !done) return in_file(path_, done.error());
+        if (auto done = read_corners(values, file.cells); !done) return in_file(path_.path, done.error());
         auto cells = cells_of(file);
-        return cells ? std::move(cells) : in_file(path_, cells.error());
+        return cells ? std::move(cells) : in_file(path_.path, cells.error());
     }
 
 private:
-    Result<ByteSource> open() const {
-        auto source = ByteSource::open(path_);
-        if (source && source->size() != size_)
-            return Error{ErrorCode::file, fmt::format("{} was changed while it was read", escaped(path_))};
-        return source;
-    }
-
-    std::string path_;
-    std::size_t size_;
+    LegacyPath path_;
     LegacyFile file_;
     const Progress& progress_;
 };
 
 /// `piece`   has points and point fields
-Result<void> take_cells(const ByteSource& source, const std::string& path, LegacyFile& file, const ReadOptions& options,
-                        const Progress& progress, Piece& piece) {
-    if (file.cells.in_file && !path.empty() && says_nothing(file) && file.cell_type_count == file.cells.count &&
-        (are_counted(options) || file.cell_data.empty())) {
+Result<void> take_cells(const ByteSource& source, const std::string& path, LegacyFile& file, const Progress& progress,
+                        Piece& piece) {
+    if (file.cells.in_file && !path.empty() && says_nothing(file) && file.cell_type_count == file.cells.count) {
         LegacyFile cells;
         cells.cells = file.cells;
         cells.cell_type_count = file.cell_type_count;
         cells.one_type = file.one_type;
-        piece.unread = std::make_shared<const LegacyCellSource>(path, source.size(), std::move(cells), progress);
+        piece.unread =
+            std::make_shared<const LegacyCellSource>(LegacyPath{path, source.size()}, std::move(cells), progress);
         return {};
     }
     if (file.cells.in_file) {
@@ -186,6 +236,31 @@ Result<void> take_cells(const ByteSource& source, const std::string& path, Legac
     auto cells = cells_of(file);
     if (!cells) return cells.error();
     piece.grid.cells = *std::move(cells);
+    return {};
+}
+
+/// Gives a cell field to the piece: for later where its cells are read later.
+Result<void> take_field(const LegacyPath& path, LegacyFile& file, Attribute& field, bool later,
+                        const Progress& progress, Loaded& loaded, Piece& piece) {
+    const auto left = file.cell_values_in_file.find(field.name);
+    if (left == file.cell_values_in_file.end()) {
+        if (later)
+            piece.unread_fields.push_back({field.name, field.values.type(), field.values.components(),
+                                           std::make_shared<const FieldInMemory>(field.values)});
+        else piece.grid.cell_fields.push_back({field.name, std::move(field.values)});
+        return {};
+    }
+    const ValuesInFile& in_file = left->second;
+    auto source = std::make_shared<const LegacyFieldSource>(path, in_file, progress);
+    if (later) {
+        piece.unread_fields.push_back(
+            {field.name, in_file.read_type(), static_cast<std::size_t>(in_file.components), std::move(source)});
+        return {};
+    }
+    auto values = source->read();
+    if (!values && values.error().code != ErrorCode::invalid_data) return values.error();
+    if (!values) leave_out(loaded.info, {"cell field", field.name, values.error().message});
+    else piece.grid.cell_fields.push_back({field.name, *std::move(values)});
     return {};
 }
 
@@ -208,6 +283,10 @@ Result<Loaded> load_legacy(const ByteSource& source, const ReadOptions& options,
     LegacyWants wants;
     wants.geometry = depth == Depth::arrays;
     wants.leave_corners = options.active_cells.has_value();
+    if (wants.leave_corners && !are_counted(options) && !path.empty())
+        wants.leave = [](std::string_view name) {
+            return name != vtk_xml::ghost_rank_name && !vtk_xml::is_ghost_array(name);
+        };
     wants.dataset = [&](std::string_view name) { return is_grid(kind = name); };
     wants.field = [&](Association association, std::string_view name) {
         return wants.geometry && ((association == Association::cell && vtk_xml::is_ghost_array(name)) ||
@@ -241,15 +320,18 @@ Result<Loaded> load_legacy(const ByteSource& source, const ReadOptions& options,
     if (piece.grid.points.empty()) piece.grid.points = Array(ScalarType::float32, nullptr, 0, 3, nullptr);
     for (Attribute& field : file->point_data) piece.grid.point_fields.push_back({field.name, std::move(field.values)});
     if (!structured)
-        if (auto taken = take_cells(source, path, *file, options, progress, piece); !taken) return taken.error();
+        if (auto taken = take_cells(source, path, *file, progress, piece); !taken) return taken.error();
     const bool flat = structured && piece.cell_count() == 0; // a line or a point
     for (Attribute& field : file->cell_data) {
         if (flat) continue;
         if (field.name == vtk_xml::ghost_rank_name && field.values.tuples() == piece.cell_count())
             vtk_xml::mark_left_out(field.values, field.name, piece.left_out);
-        if (!vtk_xml::is_ghost_array(field.name))
-            piece.grid.cell_fields.push_back({field.name, std::move(field.values)});
-        else if (field.values.tuples() == piece.cell_count())
+        if (!vtk_xml::is_ghost_array(field.name)) {
+            if (auto taken = take_field({path, source.size()}, *file, field, piece.unread && !are_counted(options),
+                                        progress, loaded, piece);
+                !taken)
+                return taken.error();
+        } else if (field.values.tuples() == piece.cell_count())
             vtk_xml::mark_left_out(field.values, field.name, piece.left_out);
     }
     loaded.pieces.push_back(std::move(piece));

@@ -16,6 +16,7 @@
 #include "io/files/time_values.hpp"
 #include "io/pieces/common_type.hpp"
 #include "io/reader.hpp"
+#include "io/vtk_xml/unread_values.hpp"
 #include "io/vtk_xml/vtk_attributes.hpp"
 
 namespace isotet::io::vtk_xml {
@@ -28,12 +29,6 @@ const DataArray* find_array(const std::vector<DataArray>& arrays, std::string_vi
 
 const char* field_of(Association association) {
     return association == Association::point ? "point field" : "cell field";
-}
-
-/// Without the name of the array, which the sentence has already.
-std::string reason_of(const Error& error, std::string_view name) {
-    const std::string prefix = fmt::format("the array {}: ", in_quotes(name));
-    return error.message.starts_with(prefix) ? error.message.substr(prefix.size()) : error.message;
 }
 
 /// An array of point data or cell data over all pieces.
@@ -233,6 +228,7 @@ struct Job {
     const Layout* layout;
     bool is_field = false, is_ghost = false, is_ids = false;
     bool has_more = false; ///< values than there are points or cells
+    bool stays = false;    ///< in the file
     Array values;
     std::optional<Error> error;
 };
@@ -251,7 +247,7 @@ void add_jobs(const Document& document, Association association, const Layout& l
     const Column* const ids =
         !wanted.ids ? nullptr : global_ids(columns, of_points ? std::span(point_id_names) : std::span(cell_id_names));
     for (Column& column : columns.columns) {
-        Job job{{}, association, &layout, false, false, &column == ids, false, {}, {}};
+        Job job{{}, association, &layout, false, false, &column == ids, false, false, {}, {}};
         job.is_ghost = is_ghost_array(column.name);
         job.is_field = !job.is_ghost && io::wanted(wanted.options, association, column.name);
         job.is_ghost = !of_points && (job.is_ghost || column.name == ghost_rank_name);
@@ -289,6 +285,33 @@ void give(Job& job, Piece& piece) {
     if (job.is_ghost) mark_left_out(job.values, job.column.name, piece.left_out);
     if (job.is_field)
         (of_points ? piece.grid.point_fields : piece.grid.cell_fields).push_back({job.column.name, job.values});
+}
+
+/// Where the array can be read in parts, of every piece.
+bool may_stay(const Job& job) {
+    return job.association == Association::cell && job.is_field && !job.is_ids && !job.is_ghost &&
+           std::ranges::all_of(job.column.stored, [](const auto& part) { return !part || part->has_tuples(); });
+}
+
+/// A cell field of each piece, read or not.
+void give_later(const Job& job, const Wanted& wanted, LaterFields& later) {
+    const Column& column = job.column;
+    const std::size_t tuple = column.components * size_of(column.type);
+    const std::byte* values = static_cast<const std::byte*>(job.values.data());
+    for (std::size_t piece = 0; piece < later.of_pieces.size(); ++piece) {
+        const auto tuples = static_cast<std::size_t>(job.layout->tuples[piece]);
+        UnreadField field{column.name, column.type, column.components};
+        if (job.stays) {
+            std::optional<ArrayInFile> stored;
+            if (column.stored[piece]) stored.emplace(wanted.path, later.document, *column.stored[piece]);
+            field.values = std::make_shared<const UnreadValues>(field, tuples, std::move(stored));
+        } else {
+            field.values = std::make_shared<const FieldInMemory>(
+                Array(column.type, values, tuples, column.components, job.values.owner().lock()));
+            values += tuples * tuple;
+        }
+        later.of_pieces[piece].push_back(std::move(field));
+    }
 }
 
 } // namespace
@@ -442,25 +465,32 @@ Result<Array> load_points(Document& document, const std::vector<pugi::xml_node>&
 }
 
 Result<void> load_fields(Document& document, const Layouts& layouts, const Wanted& wanted, const Progress& progress,
-                         Loaded& loaded, Piece& piece) {
+                         Loaded& loaded, Piece& piece, LaterFields* later) {
+    if (later) later->of_pieces.resize(layouts.cells.tuples.size());
     std::vector<Job> jobs;
     add_jobs(document, Association::point, layouts.points, wanted, jobs);
     add_jobs(document, Association::cell, layouts.cells, wanted, jobs);
     for (Job& job : jobs)
         if (auto found = find_values(document, *job.layout, progress, job.column); !found) job.error = found.error();
+    for (Job& job : jobs) job.stays = later && !job.error && may_stay(job);
     core::parallel_each(jobs.size(), 1, [&](std::size_t i) {
-        if (jobs[i].error) return;
+        if (jobs[i].error || jobs[i].stays) return;
         auto values = load_values(jobs[i].column, *jobs[i].layout, jobs[i].has_more);
         if (values) jobs[i].values = std::move(*values);
         else jobs[i].error = values.error();
     });
     for (Job& job : jobs) {
         if (!job.error) {
-            if (const auto count = job.is_field ? count_too_large(document, job, progress) : 0; count > 0)
+            if (const auto count = job.is_field && !job.stays ? count_too_large(document, job, progress) : 0; count > 0)
                 loaded.notes.push_back(
                     fmt::format("{} value{} of {} {} beyond float32, the type of the array: infinite", count,
                                 count == 1 ? "" : "s", in_quotes(job.column.name), count == 1 ? "is" : "are"));
+            for (const auto& part : job.column.stored) job.has_more |= job.stays && part && part->has_more();
             if (job.has_more) document.longer.push_back(in_quotes(job.column.name));
+            if (later && job.is_field && job.association == Association::cell) {
+                give_later(job, wanted, *later);
+                job.is_field = false;
+            }
             give(job, piece);
             continue;
         }

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -64,14 +65,22 @@ Result<Array> load_points(Document& document, const std::vector<pugi::xml_node>&
 struct Wanted {
     const ReadOptions& options;
     std::size_t step = 0;
-    bool ids = false; ///< global numbers, to join files by
+    bool ids = false;      ///< global numbers, to join files by
     std::string path = {}; ///< where the file can be opened again; empty: nowhere
+};
+
+/// Cell fields that stay in the file.
+struct LaterFields {
+    std::shared_ptr<const Document> document;             ///< that load_fields() takes
+    std::vector<std::vector<UnreadField>> of_pieces = {}; ///< gets them
 };
 
 /// Reads point data and cell data into `piece`: fields that are wanted, ghost marks, global numbers. All arrays side by
 /// side. A field that cannot be read is left out, unless the options name it.
+///
+/// `later`   gets the cell fields, and `piece` has none; null: they are read
 Result<void> load_fields(Document& document, const Layouts& layouts, const Wanted& wanted, const Progress& progress,
-                         Loaded& loaded, Piece& piece);
+                         Loaded& loaded, Piece& piece, LaterFields* later = nullptr);
 
 /// The field by which GEOS marks ghost cells.
 inline constexpr std::string_view ghost_rank_name = "ghostRank";

@@ -16,6 +16,7 @@
 #include "io/files/first_error.hpp"
 #include "io/files/number_text.hpp"
 #include "io/files/pace.hpp"
+#include "io/files/read_tuples.hpp"
 #include "io/files/scalars.hpp"
 #include "io/vtk_xml/base64.hpp"
 #include "io/write/write_stream.hpp"
@@ -53,8 +54,8 @@ Result<Stream> open_stream(const Document& document, const DataArray& array) {
     const std::size_t tail = std::min<std::size_t>(stream.place.size(), 4096);
     const auto end = stream.source.view(stream.place.end - tail, tail, scratch);
     if (!end) return end.error();
-    stream.place.end -= static_cast<std::size_t>(
-        std::find_if_not(end->rbegin(), end->rend(), is_space) - end->rbegin());
+    stream.place.end -=
+        static_cast<std::size_t>(std::find_if_not(end->rbegin(), end->rend(), is_space) - end->rbegin());
     auto text = without_breaks(stream.source, stream.place);
     if (!text) return text.error();
     if (*text) {
@@ -281,7 +282,9 @@ Result<void> StoredArray::read_first(std::span<std::byte> to) const {
 }
 
 /// False when a call of work() needed no others.
-Result<bool> StoredArray::for_blocks(const BlockWork& work) const {
+Result<bool> StoredArray::for_blocks(const BlockWork& work,
+                                     const std::function<bool(std::size_t number)>& is_needed) const {
+    const auto needs = [&](std::size_t number) { return !is_needed || is_needed(number); };
     FirstError failed;
     std::atomic<bool> needed = true;
     const auto goes_on = [&] { return !failed && needed.load(std::memory_order_relaxed); };
@@ -291,9 +294,13 @@ Result<bool> StoredArray::for_blocks(const BlockWork& work) const {
         const ScopeEnd trim([] { stored.trim(); });
         std::string_view packed; // of blocks from `first` to before `read`
         for (std::size_t block = begin, first = begin, read = begin; block < end && goes_on(); ++block) {
-            if (block == read) {
-                first = read++;
-                while (read < end && !packed_.empty() && packed_[read + 1] - packed_[first] <= bytes_at_once) ++read;
+            if (!needs(block)) continue;
+            if (block >= read) {
+                first = block;
+                read = block + 1;
+                while (read < end && !packed_.empty() && needs(read) &&
+                       packed_[read + 1] - packed_[first] <= bytes_at_once)
+                    ++read;
                 const auto bytes = packed_bytes(first, read, stored);
                 if (!bytes) return failed.add(block, bytes.error());
                 packed = *bytes;
@@ -327,8 +334,8 @@ Result<void> StoredArray::decode(std::byte* to, bool* more) const {
 Result<void> StoredArray::decode_stored(std::byte* to, bool* more) const {
     if (scalars_ == 0) return {};
     if (array_.form == DataArray::Form::ascii) {
-        const auto end = read_numbers(array_.source(*document_), array_.place.begin, array_.place.end, array_.type, scalars_,
-                                      fmt::format("the array {}", in_quotes(array_.name)), to, *progress_);
+        const auto end = read_numbers(array_.source(*document_), array_.place.begin, array_.place.end, array_.type,
+                                      scalars_, fmt::format("the array {}", in_quotes(array_.name)), to, *progress_);
         if (!end) return end.error();
         for (std::uint64_t i = 0; array_.bits && i < scalars_; ++i) to[i] = std::byte{to[i] != std::byte{0}};
         if (!more) return {};
@@ -356,6 +363,48 @@ Result<void> StoredArray::decode_stored(std::byte* to, bool* more) const {
     return {};
 }
 
+Result<void> StoredArray::decode_some(std::span<const std::uint64_t> tuples, std::byte* to) const {
+    const std::size_t size = size_of(array_.type), components = array_.components;
+    const bool is_raw = packed_.empty() && !stream_.base64;
+    if (auto done =
+            is_raw ? read_tuples(stream_.source, stream_.place.begin + data_, components * size, tuples, to, *progress_)
+                   : decode_tuples(tuples, components * size, to);
+        !done)
+        return done;
+    if (document_->order != std::endian::native) swap_bytes(to, tuples.size() * components, size);
+    if (array_.order) order_as_vtk(to, tuples.size(), size, *array_.order);
+    return {};
+}
+
+/// In the order of the file, of `bytes` each. A tuple may lie in two blocks.
+Result<void> StoredArray::decode_tuples(std::span<const std::uint64_t> tuples, std::size_t bytes, std::byte* to) const {
+    const auto first_in = [&](std::uint64_t at) { // the first tuple that ends behind it
+        return std::ranges::partition_point(tuples, [&](std::uint64_t tuple) { return (tuple + 1) * bytes <= at; });
+    };
+    const auto is_needed = [&](std::size_t number) {
+        const std::uint64_t at = std::uint64_t{number} * block_bytes_;
+        const auto first = first_in(at);
+        return first != tuples.end() && *first * bytes < at + block_bytes_;
+    };
+    const auto done = for_blocks(
+        [&](const Block& block) -> Result<bool> {
+            thread_local Scratch values;
+            const auto read = values.take(block.size);
+            if (auto ok = read_block(block, read); !ok) return ok.error();
+            const std::uint64_t end = block.at + block.size;
+            for (auto tuple = first_in(block.at); tuple != tuples.end() && *tuple * bytes < end; ++tuple) {
+                const std::uint64_t from = std::max<std::uint64_t>(*tuple * bytes, block.at);
+                const std::uint64_t behind = std::min<std::uint64_t>((*tuple + 1) * bytes, end);
+                std::memcpy(to + static_cast<std::size_t>(tuple - tuples.begin()) * bytes + (from - *tuple * bytes),
+                            read.data() + (from - block.at), static_cast<std::size_t>(behind - from));
+            }
+            values.trim();
+            return true;
+        },
+        is_needed);
+    return done ? Result<void>() : done.error();
+}
+
 Result<void> StoredArray::decode_all(std::byte* to) const {
     bool more = false;
     if (auto done = decode(to, &more); !done) return done;
@@ -363,7 +412,6 @@ Result<void> StoredArray::decode_all(std::byte* to) const {
     return {};
 }
 
-/// Of what is not text.
 bool StoredArray::has_more() const {
     return array_.form != DataArray::Form::ascii && !array_.bits && stored_ >= needed_ + size_of(array_.type);
 }

@@ -53,11 +53,20 @@ public:
     /// Cost     parallel by blocks; a thread takes 256 KB or, where that is more, a block as it is stored and as it becomes
     Result<void> decode(std::byte* to, bool* more = nullptr) const;
 
-    /// The same. More values than were looked for are an error.
+    /// The same of some tuples, in ascending order. Blocks that have none of them are not read.
+    Result<void> decode_some(std::span<const std::uint64_t> tuples, std::byte* to) const;
+
+    /// True where decode_some() can be called.
+    bool has_tuples() const { return array_.form != DataArray::Form::ascii && !array_.bits; }
+
+    /// The same of all. More values than were looked for are an error.
     Result<void> decode_all(std::byte* to) const;
 
     /// Errors   invalid_data: more values are stored than were looked for. Of text only decode() tells
     Result<void> check_stored() const;
+
+    /// Whether others stand behind them, of what is not text.
+    bool has_more() const;
 
     /// True where each_block() can be called: values are stored as they are read, whole ones in each block.
     bool has_blocks() const;
@@ -97,15 +106,15 @@ private:
         std::size_t size;
         std::string_view packed; ///< what becomes its values, of a compressed one
     };
-    /// False: no other block is needed.
+    /// False: no other block is needed. Blocks of which `is_needed` says so are passed over.
     using BlockWork = std::function<Result<bool>(const Block& block)>;
-    Result<bool> for_blocks(const BlockWork& work) const;
+    Result<bool> for_blocks(const BlockWork& work, const std::function<bool(std::size_t number)>& is_needed = {}) const;
+    Result<void> decode_tuples(std::span<const std::uint64_t> tuples, std::size_t bytes, std::byte* to) const;
     std::size_t blocks() const;
     std::size_t bytes_of_block(std::size_t block) const;
     Result<std::string_view> packed_bytes(std::size_t begin, std::size_t end, Scratch& scratch) const;
     Result<void> read_block(const Block& block, std::span<std::byte> to) const;
     bool is_told_by_checksum(const Block& block, const Expect& expect) const;
-    bool has_more() const;
 
     const Document* document_;
     DataArray array_;

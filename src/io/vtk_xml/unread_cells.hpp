@@ -2,38 +2,25 @@
 // Cells that were left in their file.
 #pragma once
 
-#include <cstddef>
-#include <memory>
-#include <string>
+#include <utility>
 
 #include "io/pieces/cell_source.hpp"
-#include "io/vtk_xml/stored_array.hpp"
+#include "io/vtk_xml/array_in_file.hpp"
 
 namespace isotet::io::vtk_xml {
 
-struct CellsInFile {
-    std::string path;
-    std::shared_ptr<const Document> document; ///< how the file is written; its source is not used
-    CellPlaces places;
-    Array types; ///< which these borrow; empty: all of one
-};
-
-/// Opens the file whenever it is asked: the pieces of a grid may be more files than a process may have open.
 class UnreadCells final : public CellSource {
 public:
+    /// `types`     which `places` borrow; empty: all of one
     /// `corners`   of which each_block() can be called
-    UnreadCells(CellsInFile cells, const StoredArray& corners);
+    UnreadCells(CellPlaces places, Array types, ArrayInFile corners)
+        : CellSource(std::move(places), std::move(types)), corners_(std::move(corners)) {}
 
     Result<void> each_block(const Visit& visit) const override;
     Result<Cells> read() const override;
 
 private:
-    Result<StoredArray> open() const;
-
-    std::string path_;
-    std::shared_ptr<const Document> document_;
-    std::size_t size_; ///< of the file
-    StoredArray corners_;
+    ArrayInFile corners_;
 };
 
 } // namespace isotet::io::vtk_xml

@@ -103,20 +103,32 @@ Result<std::vector<Piece>> load_unstructured(const std::shared_ptr<Document>& do
     if (!places) return places.error();
     whole.grid.points = std::move(*places);
     const Wanted of_pieces{wanted.options, wanted.step, wanted.ids || !alone, wanted.path};
-    if (auto read = load_fields(*document, layouts, of_pieces, progress, loaded, whole); !read) return read.error();
-    const bool later = wanted.options.active_cells && !wanted.path.empty() &&
-                       (are_counted(wanted.options) || whole.grid.cell_fields.empty());
+    const bool may_wait = wanted.options.active_cells && !wanted.path.empty();
+    std::vector<CellsRead> of_elements;
+    bool all_wait = true, some_wait = false;
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+        auto part = read_cells(*document, {elements[i], cells.tuples[i], wanted.step}, may_wait, progress);
+        if (!part) return part.error();
+        all_wait = all_wait && (part->corners || cells.tuples[i] == 0);
+        some_wait = some_wait || part->corners;
+        of_elements.push_back(*std::move(part));
+    }
+    LaterFields later{document};
+    const bool fields_wait = all_wait && some_wait && !are_counted(wanted.options);
+    if (auto read = load_fields(*document, layouts, of_pieces, progress, loaded, whole, fields_wait ? &later : nullptr);
+        !read)
+        return read.error();
     std::vector<Piece> pieces;
     for (std::size_t i = 0; i < elements.size(); ++i) {
-        auto part = read_cells(*document, {elements[i], cells.tuples[i], wanted.step}, later, progress);
-        if (!part) return part.error();
         Piece& piece = pieces.emplace_back(alone ? whole : part_of(whole, points, cells, i));
         if (piece.grid.points.type() == ScalarType::float64 && stores_float32(*document, elements[i], wanted.step))
             piece.grid.points = as_float32(piece.grid.points);
-        if (part->corners)
-            piece.unread = std::make_shared<const UnreadCells>(
-                CellsInFile{wanted.path, document, *std::move(part->places), part->cells.types}, *part->corners);
-        else piece.grid.cells = std::move(part->cells);
+        CellsRead& part = of_elements[i];
+        if (fields_wait) piece.unread_fields = std::move(later.of_pieces[i]);
+        if (part.corners)
+            piece.unread = std::make_shared<const UnreadCells>(*std::move(part.places), std::move(part.cells.types),
+                                                               ArrayInFile(wanted.path, document, *part.corners));
+        else piece.grid.cells = std::move(part.cells);
     }
     return pieces;
 }

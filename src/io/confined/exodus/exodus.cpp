@@ -79,8 +79,50 @@ void note_unwritten(Association association, const std::string& name, const Exod
                                            kind_of_variable(association), escaped(name), gaps.values, all));
 }
 
-Result<void> read_fields(OpenPart& part, const ReadOptions& options, Loaded& loaded, Grid& grid) {
+/// A variable that is left in the file.
+class ExodusValues final : public FieldSource {
+public:
+    ExodusValues(std::shared_ptr<const OpenPart> part, ExodusFile::CellVariable variable)
+        : part_(std::move(part)), variable_(std::move(variable)) {}
+
+    Result<Array> read(const std::vector<std::uint64_t>& cells) const override {
+        return part_->file.values_of(variable_, cells);
+    }
+    Result<Array> read() const override { return part_->file.values_of(variable_); }
+
+private:
+    std::shared_ptr<const OpenPart> part_;
+    ExodusFile::CellVariable variable_;
+};
+
+/// A cell field, with its gaps: left in the file where the cells of the piece are.
+Result<ExodusFile::Gaps> read_cell_field(const std::shared_ptr<OpenPart>& opened, std::size_t variable,
+                                         const ReadOptions& options, Loaded& loaded, Piece& piece) {
+    ExodusFile& file = opened->file;
+    const std::string& name = file.cell_variables()[variable];
+    ExodusFile::Gaps gaps;
+    if (piece.unread && !are_counted(options)) {
+        auto found = file.find_cell_variable(variable, loaded.step);
+        auto counted = file.gaps_of(found);
+        if (counted) {
+            piece.unread_fields.push_back(
+                {name, file.type(), 1, std::make_shared<const ExodusValues>(opened, std::move(found))});
+            return counted;
+        }
+        if (counted.error().code != ErrorCode::invalid_data) return counted;
+        leave_out(loaded.info, {kind_of_variable(Association::cell), name, counted.error().message});
+        return gaps;
+    }
+    auto values = file.cell_variable(variable, loaded.step, gaps);
+    auto taken = take_variable(Association::cell, name, std::move(values), loaded.info, piece.grid.cell_fields);
+    return taken ? Result<ExodusFile::Gaps>(gaps) : taken.error();
+}
+
+Result<void> read_fields(const std::shared_ptr<OpenPart>& opened, const ReadOptions& options, Loaded& loaded,
+                         Piece& piece) {
+    OpenPart& part = *opened;
     ExodusFile& file = part.file;
+    Grid& grid = piece.grid;
     const auto is_read = [&](Association association, const std::string& name, std::size_t variable) {
         return wanted(options, association, name) && !part.why_without(association, variable);
     };
@@ -98,12 +140,10 @@ Result<void> read_fields(OpenPart& part, const ReadOptions& options, Loaded& loa
     for (std::size_t i = 0; i < file.cell_variables().size(); ++i) {
         const std::string& name = file.cell_variables()[i];
         if (!is_read(Association::cell, name, i)) continue;
-        ExodusFile::Gaps gaps;
-        auto values = file.cell_variable(i, loaded.step, gaps);
-        if (values) note_unwritten(Association::cell, name, gaps, file.cells(), loaded);
-        if (values && gaps.blocks > 0) undefined[gaps.blocks].push_back(fmt::format("\"{}\"", escaped(name)));
-        auto taken = take_variable(Association::cell, name, std::move(values), loaded.info, grid.cell_fields);
-        if (!taken) return taken;
+        const auto gaps = read_cell_field(opened, i, options, loaded, piece);
+        if (!gaps) return gaps.error();
+        note_unwritten(Association::cell, name, *gaps, file.cells(), loaded);
+        if (gaps->blocks > 0) undefined[gaps->blocks].push_back(fmt::format("\"{}\"", escaped(name)));
     }
     for (const auto& [blocks, names] : undefined)
         loaded.notes.push_back(fmt::format("cell field{} {} {} not defined in {} of {} element blocks: NaN there",
@@ -234,11 +274,8 @@ Result<void> leave_out_others(const ExodusFile& file, const std::vector<bool>& c
 }
 
 /// Whether active cells may do.
-bool may_be_left(const ExodusFile& file, const ReadOptions& options) {
-    return options.active_cells && options.blocks.empty() && !options.patches &&
-           (are_counted(options) || std::ranges::none_of(file.cell_variables(), [&](const std::string& name) {
-                return !file.times().empty() && wanted(options, Association::cell, name);
-            }));
+bool may_be_left(const ReadOptions& options) {
+    return options.active_cells && options.blocks.empty() && !options.patches;
 }
 
 struct PartRead {
@@ -255,7 +292,7 @@ Result<Piece> read_piece(const std::shared_ptr<OpenPart>& opened, const PartRead
     auto points = file.coordinates();
     if (!points) return points.error();
     piece.grid.points = std::move(*points);
-    if (part.stays_open && may_be_left(file, options)) piece.unread = unread_exodus_cells({opened, &file}, part.path);
+    if (part.stays_open && may_be_left(options)) piece.unread = unread_exodus_cells({opened, &file}, part.path);
     if (!piece.unread) {
         auto cells = read_exodus_cells(file, part.path);
         if (!cells) return cells.error();
@@ -263,7 +300,7 @@ Result<Piece> read_piece(const std::shared_ptr<OpenPart>& opened, const PartRead
     }
     say_what_is_read(file, loaded);
     if (auto read = read_side_sets(file, options, loaded, piece.grid); !read) return read.error();
-    if (auto read = read_fields(*opened, options, loaded, piece.grid); !read) return read.error();
+    if (auto read = read_fields(opened, options, loaded, piece); !read) return read.error();
     if (!part.with_ids) return piece;
     auto point_ids = file.point_ids();
     if (!point_ids) return point_ids.error();

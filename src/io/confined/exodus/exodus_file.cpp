@@ -47,6 +47,15 @@ std::string upper_case(std::string text) {
 
 } // namespace
 
+namespace {
+
+/// HDF5 has as many rows as were written.
+bool has_row(const std::optional<std::vector<std::uint64_t>>& shape, std::size_t step, std::uint64_t size) {
+    return !shape || shape->size() < 2 || step < shape->front() || shape->back() != size;
+}
+
+} // namespace
+
 ScalarType ExodusFile::type() const noexcept { return is_single_ ? ScalarType::float32 : ScalarType::float64; }
 
 Error ExodusFile::failed(std::string_view what) const {
@@ -127,10 +136,11 @@ Result<void> ExodusFile::read_sets() {
     const EntryMarks marks(*file_, "els_status");
     for (std::size_t i = 0; i < count; ++i) {
         const bool filled = marks.has_entries(i);
-        const auto cells = filled ? file_->dimension(fmt::format("num_ele_els{}", i + 1)) : std::optional<std::uint64_t>(0);
+        const auto cells =
+            filled ? file_->dimension(fmt::format("num_ele_els{}", i + 1)) : std::optional<std::uint64_t>(0);
         if (!cells || *cells > max_plausible) return failed(fmt::format("element set {}", ids[i]));
-        sets_.push_back({ids[i], i + 1,
-                         i < names.size() && !names[i].empty() ? names[i] : fmt::format("set {}", ids[i]), *cells});
+        sets_.push_back(
+            {ids[i], i + 1, i < names.size() && !names[i].empty() ? names[i] : fmt::format("set {}", ids[i]), *cells});
     }
     return {};
 }
@@ -160,7 +170,8 @@ Result<std::vector<ExodusFile::SideSet>> ExodusFile::side_sets() const {
         if (!marks.has_entries(i) || ids[i] < 0) continue;
         auto cells = file_->numbers<std::int64_t>(fmt::format("elem_ss{}", i + 1));
         auto sides = file_->numbers<std::int64_t>(fmt::format("side_ss{}", i + 1));
-        if (!cells || !sides || cells->size() != sides->size()) return failed(fmt::format("the sides of side set {}", ids[i]));
+        if (!cells || !sides || cells->size() != sides->size())
+            return failed(fmt::format("the sides of side set {}", ids[i]));
         const bool named = i < names.size() && !names[i].empty();
         sets.push_back({ids[i], i + 1, named ? names[i] : fmt::format("side set {}", ids[i]), *std::move(cells),
                         *std::move(sides)});
@@ -193,10 +204,7 @@ void ExodusFile::choose(const std::vector<bool>& chosen) {
     blocks_ = std::move(kept);
 }
 
-std::optional<Array> ExodusFile::rows(const std::string& variable, std::uint64_t first, std::uint64_t size) const {
-    const auto shape = file_->shape(variable);
-    const bool is_flat = shape && shape->size() == 1; // one place is one value
-    auto found = file_->rows(variable, is_flat ? 0 : first, is_flat ? size : 1);
+std::optional<Array> ExodusFile::as_own_type(Result<Array> found, std::uint64_t size) const {
     if (!found || found->size() != size) return std::nullopt;
     if (found->type() == type()) return *std::move(found);
     return Array(type(), nullptr, 0, 1, nullptr).visit([&]<class T>(std::span<const T>) -> std::optional<Array> {
@@ -206,16 +214,20 @@ std::optional<Array> ExodusFile::rows(const std::string& variable, std::uint64_t
     });
 }
 
+std::optional<Array> ExodusFile::rows(const std::string& variable, std::uint64_t first, std::uint64_t size) const {
+    const auto shape = file_->shape(variable);
+    const bool is_flat = shape && shape->size() == 1; // one place is one value
+    return as_own_type(file_->rows(variable, is_flat ? 0 : first, is_flat ? size : 1), size);
+}
+
 double ExodusFile::fill_value_of(const std::string& variable) const {
     constexpr double of_netcdf = 9.9692099683868690e+36; // float32, too
     return file_->number_attribute(variable, "_FillValue").value_or(of_netcdf);
 }
 
 std::optional<Array> ExodusFile::rows_of_step(const std::string& variable, std::size_t step, std::uint64_t size) const {
-    const auto shape = file_->shape(variable);
-    if (!shape || shape->size() < 2 || step < shape->front() || shape->back() != size)
-        return rows(variable, step, size);
-    const double fill = fill_value_of(variable); // HDF5 has as many rows as were written
+    if (has_row(file_->shape(variable), step, size)) return rows(variable, step, size);
+    const double fill = fill_value_of(variable);
     if (is_single_) return Array::own(std::vector<float>(size, static_cast<float>(fill)));
     return Array::own(std::vector<double>(size, fill));
 }
@@ -272,33 +284,92 @@ Result<Array> ExodusFile::point_variable(std::size_t variable, std::size_t step,
                       : read_point_variable<double>(variable, step, gaps);
 }
 
-template <class T>
-Result<Array> ExodusFile::read_cell_variable(std::size_t variable, std::size_t step, Gaps& gaps) const {
-    std::vector<T> values(cells_, std::numeric_limits<T>::quiet_NaN());
+ExodusFile::CellVariable ExodusFile::find_cell_variable(std::size_t variable, std::size_t step) const {
+    CellVariable found{cell_variables_[variable], step, {}};
     const auto table = file_->numbers<std::int32_t>("elem_var_tab");
-    std::uint64_t first = 0;
     for (const Block& block : blocks_) {
         if (block.cells == 0) continue;
+        CellVariable::Part& part = found.parts.emplace_back();
+        part.cells = block.cells;
         const std::string name = fmt::format("vals_elem_var{}eb{}", variable + 1, block.number);
         const std::size_t at = (block.number - 1) * cell_variables_.size() + variable;
-        if (table && at < table->size() ? (*table)[at] == 0 : !file_->has(name)) {
-            ++gaps.blocks;
-        } else {
-            const auto own = rows_of_step(name, step, block.cells);
-            if (!own) return failed(fmt::format("element variable \"{}\"", escaped(cell_variables_[variable])));
-            const T fill = static_cast<T>(fill_value_of(name));
-            gaps.values += static_cast<std::uint64_t>(std::ranges::count(own->as<T>(), fill));
-            std::ranges::replace_copy(own->as<T>(), values.begin() + static_cast<std::ptrdiff_t>(first), fill,
-                                      std::numeric_limits<T>::quiet_NaN());
-        }
-        first += block.cells;
+        if (table && at < table->size() ? (*table)[at] == 0 : !file_->has(name)) continue;
+        part.name = name;
+        const auto shape = file_->shape(name);
+        part.is_flat = shape && shape->size() == 1;
+        part.is_written = has_row(shape, step, block.cells);
+        part.fill = fill_value_of(name);
     }
-    return Array::own(std::move(values));
+    return found;
+}
+
+template <class Visit>
+Result<void> ExodusFile::each_part(const CellVariable& variable, const Visit& visit) const {
+    std::uint64_t first = 0;
+    for (const CellVariable::Part& part : variable.parts) {
+        if (!part.name.empty() && part.is_written) {
+            auto values = file_->rows(part.name, part.is_flat ? 0 : variable.step, part.is_flat ? part.cells : 1);
+            const auto own = as_own_type(std::move(values), part.cells);
+            if (!own) return failed(fmt::format("element variable \"{}\"", escaped(variable.name)));
+            visit(first, part, *own);
+        }
+        first += part.cells;
+    }
+    return {};
+}
+
+Result<ExodusFile::Gaps> ExodusFile::gaps_of(const CellVariable& variable) const {
+    Gaps gaps;
+    for (const CellVariable::Part& part : variable.parts) {
+        if (part.name.empty()) ++gaps.blocks;
+        else if (!part.is_written) gaps.values += part.cells;
+    }
+    const auto done = each_part(variable, [&](std::uint64_t, const CellVariable::Part& part, const Array& values) {
+        values.visit([&]<class T>(std::span<const T> all) {
+            gaps.values += static_cast<std::uint64_t>(std::ranges::count(all, static_cast<T>(part.fill)));
+        });
+    });
+    return done ? Result<Gaps>(gaps) : done.error();
+}
+
+Result<Array> ExodusFile::values_of(const CellVariable& variable, const std::vector<std::uint64_t>& cells) const {
+    const auto some = [&]<class T>(T nan) -> Result<Array> {
+        std::vector<T> taken(cells.size(), nan);
+        const auto done =
+            each_part(variable, [&](std::uint64_t first, const CellVariable::Part& part, const Array& values) {
+                const auto all = values.as<T>();
+                const T fill = static_cast<T>(part.fill);
+                for (auto cell = std::ranges::lower_bound(cells, first);
+                     cell != cells.end() && *cell < first + part.cells; ++cell)
+                    if (const T value = all[*cell - first]; value != fill)
+                        taken[static_cast<std::size_t>(cell - cells.begin())] = value;
+            });
+        if (!done) return done.error();
+        return Array::own(std::move(taken));
+    };
+    return is_single_ ? some(std::numeric_limits<float>::quiet_NaN()) : some(std::numeric_limits<double>::quiet_NaN());
+}
+
+Result<Array> ExodusFile::values_of(const CellVariable& variable) const {
+    const auto all = [&]<class T>(T nan) -> Result<Array> {
+        std::vector<T> taken(cells_, nan);
+        const auto done =
+            each_part(variable, [&](std::uint64_t first, const CellVariable::Part& part, const Array& values) {
+                std::ranges::replace_copy(values.as<T>(), taken.begin() + static_cast<std::ptrdiff_t>(first),
+                                          static_cast<T>(part.fill), nan);
+            });
+        if (!done) return done.error();
+        return Array::own(std::move(taken));
+    };
+    return is_single_ ? all(std::numeric_limits<float>::quiet_NaN()) : all(std::numeric_limits<double>::quiet_NaN());
 }
 
 Result<Array> ExodusFile::cell_variable(std::size_t variable, std::size_t step, Gaps& gaps) {
-    return is_single_ ? read_cell_variable<float>(variable, step, gaps)
-                      : read_cell_variable<double>(variable, step, gaps);
+    const CellVariable found = find_cell_variable(variable, step);
+    auto counted = gaps_of(found);
+    if (!counted) return counted.error();
+    gaps = *counted;
+    return values_of(found);
 }
 
 /// A node or element has its place as its number where the file has no map.
@@ -349,9 +420,9 @@ ExodusElement exodus_element(std::string_view topology, std::uint64_t nodes) {
         ExodusElement element;
     };
     static constexpr Longer longer[] = {
-        {"TET", 8, {10, 4}},    {"TET", 11, {24, 10}},  {"TET", 14, {24, 10}},  {"TET", 15, {24, 10}},
-        {"HEX", 9, {12, 8}},    {"HEX", 21, {25, 20}},  {"WED", 16, {26, 15}},  {"WED", 20, {26, 15}},
-        {"WED", 21, {26, 15}},  {"PRISM", 6, {13, 6}},  {"PRISM", 15, {26, 15}}, {"PRISM", 16, {26, 15}},
+        {"TET", 8, {10, 4}},     {"TET", 11, {24, 10}},   {"TET", 14, {24, 10}},   {"TET", 15, {24, 10}},
+        {"HEX", 9, {12, 8}},     {"HEX", 21, {25, 20}},   {"WED", 16, {26, 15}},   {"WED", 20, {26, 15}},
+        {"WED", 21, {26, 15}},   {"PRISM", 6, {13, 6}},   {"PRISM", 15, {26, 15}}, {"PRISM", 16, {26, 15}},
         {"PRISM", 18, {32, 18}}, {"PRISM", 20, {26, 15}}, {"PRISM", 21, {26, 15}}, {"PYR", 18, {27, 13}},
         {"PYR", 19, {27, 13}},
     };

@@ -22,8 +22,8 @@ public:
     struct Block {
         std::int64_t id = 0;
         std::size_t number = 0; ///< in the names of its variables: 1 for the first block of the file
-        std::string name;     ///< empty: it has none
-        std::string topology; ///< upper case
+        std::string name;       ///< empty: it has none
+        std::string topology;   ///< upper case
         std::uint64_t cells = 0;
         std::uint64_t corners = 0; ///< of each cell; 0 where cells differ (polyhedra, polygons)
         std::uint64_t faces = 0;   ///< of polyhedra: of all cells together
@@ -35,15 +35,15 @@ public:
     struct Set {
         std::int64_t id = 0;
         std::size_t number = 0; ///< as that of blocks
-        std::string name; ///< "set 3" where it has none
+        std::string name;       ///< "set 3" where it has none
         std::uint64_t cells = 0;
     };
 
     /// Sides of elements of any blocks.
     struct SideSet {
         std::int64_t id = 0;
-        std::size_t number = 0; ///< as that of blocks
-        std::string name; ///< "side set 3" where it has none
+        std::size_t number = 0;                      ///< as that of blocks
+        std::string name;                            ///< "side set 3" where it has none
         std::vector<std::int64_t> cells, sides = {}; ///< from 1, cells through all blocks of the file
     };
 
@@ -94,6 +94,26 @@ public:
     Result<Array> point_variable(std::size_t variable, std::size_t step, Gaps& gaps);
     /// One value a cell of all blocks.
     Result<Array> cell_variable(std::size_t variable, std::size_t step, Gaps& gaps);
+    /// Where the values of each block with cells are.
+    struct CellVariable {
+        struct Part {
+            std::string name; ///< of the variable of the block; empty: the block does not have it
+            std::uint64_t cells = 0;
+            bool is_flat = false;    ///< one place is one value
+            bool is_written = false; ///< else all are the fill value
+            double fill = 0;
+        };
+        std::string name;
+        std::size_t step = 0;
+        std::vector<Part> parts;
+    };
+    CellVariable find_cell_variable(std::size_t variable, std::size_t step) const;
+    /// Its gaps, or why it cannot be read.
+    Result<Gaps> gaps_of(const CellVariable& variable) const;
+    /// Of some cells, which ascend. Takes the values of one block at a time. Safe from many threads.
+    Result<Array> values_of(const CellVariable& variable, const std::vector<std::uint64_t>& cells) const;
+    /// Of all. Safe from many threads.
+    Result<Array> values_of(const CellVariable& variable) const;
     Result<Array> point_ids();
     Result<Array> cell_ids();
 
@@ -106,7 +126,9 @@ private:
     Result<void> read_sets();
     Result<Ragged> read_ragged(const std::string& numbers, const std::string& counts, std::uint64_t count,
                                std::uint64_t size, const std::string& owner) const;
-    /// Some rows of a variable, in the type of the file's coordinates and variables, if it has so many values.
+    /// So many values in the type of the file's coordinates and variables.
+    std::optional<Array> as_own_type(Result<Array> found, std::uint64_t size) const;
+    /// Some rows of a variable in that type, if it has so many values.
     std::optional<Array> rows(const std::string& variable, std::uint64_t first, std::uint64_t size) const;
     /// The fill value in rows that a file in HDF5 lacks.
     std::optional<Array> rows_of_step(const std::string& variable, std::size_t step, std::uint64_t size) const;
@@ -115,8 +137,9 @@ private:
     Result<Array> read_coordinates() const;
     template <class T>
     Result<Array> read_point_variable(std::size_t variable, std::size_t step, Gaps& gaps) const;
-    template <class T>
-    Result<Array> read_cell_variable(std::size_t variable, std::size_t step, Gaps& gaps) const;
+    /// Calls visit(first cell, part, values) for each part that has some, in the type of the file, not looked at.
+    template <class Visit>
+    Result<void> each_part(const CellVariable& variable, const Visit& visit) const;
     Result<Array> id_map(const std::string& map, std::uint64_t count) const;
 
     std::string path_;

@@ -1,13 +1,15 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Cells that were left in an HDF5 file.
+// Cells and fields of cells that were left in an HDF5 file.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "io/confined/hdf5/hdf5_rows.hpp"
 #include "io/pieces/cell_source.hpp"
+#include "io/pieces/field_source.hpp"
 
 namespace isotet::io::confined {
 
@@ -34,6 +36,23 @@ private:
     Hdf5Rows rows_;
     std::string name_;
     std::uint64_t first_;
+};
+
+class Hdf5Values final : public FieldSource {
+public:
+    /// Rows [first, first + rows) of a data set, which has them.
+    Hdf5Values(Hdf5Rows rows, std::string name, std::uint64_t first, std::uint64_t count)
+        : rows_(std::move(rows)), name_(std::move(name)), first_(first), count_(count) {}
+
+    Result<Array> read(const std::vector<std::uint64_t>& cells) const override {
+        return rows_.read_some(name_, first_, count_, cells);
+    }
+    Result<Array> read() const override { return rows_.read(name_, first_, count_); }
+
+private:
+    Hdf5Rows rows_;
+    std::string name_;
+    std::uint64_t first_, count_;
 };
 
 } // namespace isotet::io::confined

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
+#include <iterator>
 #include <mutex>
 #include <span>
 #include <utility>
@@ -278,6 +280,58 @@ Result<void> Hdf5Rows::each_block(const std::string& name, std::uint64_t first, 
             if (!done) return done;
         }
         return {};
+    });
+}
+
+Result<Array> Hdf5Rows::read_some(const std::string& name, std::uint64_t first, std::uint64_t rows,
+                                  const std::vector<std::uint64_t>& numbers) const {
+    const auto set = file_->open(name, first, rows);
+    if (!set) return set.error();
+    const RowsShape& shape = (*set)->shape;
+    const std::size_t row_bytes = shape.columns * size_of(shape.type);
+    return Array(shape.type, nullptr, 0, 1, nullptr).visit([&]<class T>(std::span<const T>) -> Result<Array> {
+        core::Buffer<T> values(numbers.size() * shape.columns);
+        auto* const to = reinterpret_cast<std::byte*>(values.data());
+        // Of rows [begin, end) of the data set; `fill` reads some of these.
+        const auto take = [&](std::uint64_t begin, std::uint64_t end, const auto& fill) -> Result<void> {
+            const auto number = std::ranges::lower_bound(numbers, begin - first);
+            const auto behind = std::lower_bound(number, numbers.end(), end - first);
+            if (number == behind) return {};
+            thread_local Scratch scratch;
+            const std::uint64_t least = first + *number, most = first + *std::prev(behind);
+            const auto bytes = scratch.take((most + 1 - least) * row_bytes);
+            if (auto filled = fill(least, most + 1, bytes.data()); !filled) return filled;
+            for (auto at = number; at != behind; ++at)
+                std::memcpy(to + static_cast<std::size_t>(at - numbers.begin()) * row_bytes,
+                            bytes.data() + (first + *at - least) * row_bytes, row_bytes);
+            scratch.trim();
+            return {};
+        };
+        const auto done = each_window(**set, first, rows, [&](const RowRange& window) -> Result<void> {
+            const auto has_some = std::ranges::lower_bound(numbers, window.first - first);
+            if (has_some == numbers.end() || *has_some >= window.end() - first) return {};
+            if (const auto stored = file_->find(**set, window)) {
+                auto read = stored->each_stretch(block_bytes, [&](std::uint64_t begin, std::uint64_t end) {
+                    return take(begin, end, [&](std::uint64_t least, std::uint64_t most, std::byte* some) {
+                        return stored->read(least, most, some);
+                    });
+                });
+                return read ? read : file_->wrong(name, read.error().message);
+            }
+            for (std::uint64_t begin = window.first; begin < window.end(); begin += library_rows) {
+                auto read = take(begin, std::min(begin + library_rows, window.end()),
+                                 [&](std::uint64_t least, std::uint64_t most, std::byte* some) {
+                                     RowRange part = window;
+                                     part.first = least;
+                                     part.rows = most - least;
+                                     return file_->by_library(name, **set, part, some);
+                                 });
+                if (!read) return read;
+            }
+            return {};
+        });
+        if (!done) return done.error();
+        return std::move(values).to_array(shape.columns);
     });
 }
 

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <isotet/array.hpp>
 #include <isotet/result.hpp>
@@ -41,6 +42,13 @@ public:
     /// Cost     chunks that are stored as they are, deflated or shuffled are read side by side; others by HDF5, one after
     ///          another
     Result<Array> read(const std::string& name, std::uint64_t first, std::uint64_t rows) const;
+
+    /// Of rows [first, first + rows) those with some numbers, counted from `first`, ascending. Of chunks without any nothing
+    /// is read.
+    ///
+    /// Errors   as read()
+    Result<Array> read_some(const std::string& name, std::uint64_t first, std::uint64_t rows,
+                            const std::vector<std::uint64_t>& numbers) const;
 
     /// Some values of a data set with one column, of integers of 64 bits as int32 where all fit.
     ///

@@ -254,13 +254,11 @@ Result<bool> HdfGrid::are_offsets_told(const HdfPartition& part, const CellPlace
 }
 
 /// Whether the corners may wait until points and fields are there.
-bool HdfGrid::may_be_left(const HdfPartition& part, const ReadOptions& options, const HdfCells& cells,
-                          const Piece& piece) const {
+bool HdfGrid::may_be_left(const HdfPartition& part, const ReadOptions& options, const HdfCells& cells) const {
     const auto shape = rows_.shape(group_ + "Connectivity");
-    return options.active_cells && (are_counted(options) || piece.grid.cell_fields.empty()) && cells.places &&
-           cells.places->corners() == part.corners && shape && shape->columns == 1 && !is_floating(shape->type) &&
-           size_of(shape->type) >= 4 && part.first_corner <= shape->rows &&
-           part.corners <= shape->rows - part.first_corner;
+    return options.active_cells && part.cells > 0 && cells.places && cells.places->corners() == part.corners && shape &&
+           shape->columns == 1 && !is_floating(shape->type) && size_of(shape->type) >= 4 &&
+           part.first_corner <= shape->rows && part.corners <= shape->rows - part.first_corner;
 }
 
 Result<void> HdfGrid::load_corners(const HdfPartition& part, const ReadOptions& options, HdfCells cells,
@@ -270,7 +268,7 @@ Result<void> HdfGrid::load_corners(const HdfPartition& part, const ReadOptions& 
         piece.grid.cells.connectivity = Array(ScalarType::int32, nullptr, 0, 1, nullptr);
         return {};
     }
-    if (may_be_left(part, options, cells, piece)) {
+    if (may_be_left(part, options, cells)) {
         piece.unread = std::make_shared<const Hdf5Cells>(*std::move(cells.places), std::move(cells.types), rows_, name,
                                                          part.first_corner);
         return {};
@@ -311,7 +309,7 @@ Result<void> HdfGrid::load_faces(const HdfPartition& part, Cells& cells) const {
 }
 
 Result<void> HdfGrid::load_fields(const HdfPartition& part, const HdfStepPlace& place, std::size_t step,
-                                  Association association, const ReadOptions& options, Piece& piece,
+                                  Association association, const ReadOptions& options, bool later, Piece& piece,
                                   FileInfo& info) const {
     const bool of_points = association == Association::point;
     const std::string group = data_group_of(association);
@@ -320,27 +318,39 @@ Result<void> HdfGrid::load_fields(const HdfPartition& part, const HdfStepPlace& 
         const bool is_field = !ghost && wanted(options, association, name);
         const bool marks = !of_points && (ghost || name == vtk_xml::ghost_rank_name);
         if (!is_field && !marks) continue;
-        if (const auto shape = rows_.shape(group_ + group + "/" + name); !shape || shape->is_single) continue;
-        auto values = read_field(part, place, step, association, name);
+        const auto shape = rows_.shape(group_ + group + "/" + name);
+        if (!shape || shape->is_single) continue;
+        const auto first = first_row(part, place, step, association, name);
+        if (later && is_field && !marks && first && rows_.check(group_ + group + "/" + name, *first, part.cells)) {
+            piece.unread_fields.push_back(
+                {name, shape->type, shape->columns,
+                 std::make_shared<const Hdf5Values>(rows_, group_ + group + "/" + name, *first, part.cells)});
+            continue;
+        }
+        auto values = first ? rows_.read(group_ + group + "/" + name, *first, of_points ? part.points : part.cells)
+                            : Result<Array>(first.error());
         if (!values && (ghost || values.error().code != ErrorCode::invalid_data)) return values.error();
         if (!values) leave_out(info, {kind_of_field(association), name, values.error().message});
         else if (marks) vtk_xml::mark_left_out(*values, name, piece.left_out);
-        if (values && is_field)
-            (of_points ? piece.grid.point_fields : piece.grid.cell_fields).push_back({name, *std::move(values)});
+        if (!values || !is_field) continue;
+        if (later)
+            piece.unread_fields.push_back({name, values->type(), values->components(),
+                                           std::make_shared<const FieldInMemory>(*std::move(values))});
+        else (of_points ? piece.grid.point_fields : piece.grid.cell_fields).push_back({name, *std::move(values)});
     }
     return {};
 }
 
-Result<Array> HdfGrid::read_field(const HdfPartition& part, const HdfStepPlace& place, std::size_t step,
-                                  Association association, const std::string& name) const {
+/// Of the values of a field.
+Result<std::uint64_t> HdfGrid::first_row(const HdfPartition& part, const HdfStepPlace& place, std::size_t step,
+                                         Association association, const std::string& name) const {
     const bool of_points = association == Association::point;
     const std::string group = data_group_of(association);
     const std::uint64_t in_step = of_points ? part.first_point - place.first_point : part.first_cell - place.first_cell;
     const std::uint64_t otherwise = of_points ? place.first_point : place.first_cell;
     const std::string offsets = "Steps/" + group + "Offsets/" + name;
     const auto first = has_steps() ? number_or(offsets, step, otherwise) : Result<std::uint64_t>(otherwise);
-    if (!first) return first.error();
-    return rows_.read(group_ + group + "/" + name, *first + in_step, of_points ? part.points : part.cells);
+    return first ? Result<std::uint64_t>(*first + in_step) : first.error();
 }
 
 Result<std::uint64_t> HdfGrid::count_cells(std::size_t step) const {
@@ -368,8 +378,11 @@ Result<void> HdfGrid::load(const ReadOptions& options, std::size_t step, const s
         piece.grid.points = *std::move(points);
         HdfCells cells;
         if (auto done = load_types(part, cells); !done) return done;
+        const bool later = !are_counted(options) && may_be_left(part, options, cells);
         for (const auto association : {Association::point, Association::cell})
-            if (auto done = load_fields(part, *place, step, association, options, piece, loaded.info); !done)
+            if (auto done = load_fields(part, *place, step, association, options,
+                                        later && association == Association::cell, piece, loaded.info);
+                !done)
                 return done;
         if (auto done = load_corners(part, options, std::move(cells), piece); !done) return done;
     }

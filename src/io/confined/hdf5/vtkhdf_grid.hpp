@@ -36,7 +36,7 @@ struct HdfStepPlace {
 
 /// The cells of a partition but for their corners.
 struct HdfCells {
-    Array types, offsets;                    ///< offsets: empty where there are places
+    Array types, offsets;                  ///< offsets: empty where there are places
     std::optional<CellPlaces> places = {}; ///< of linear cells one after another; borrow the types
 };
 
@@ -71,14 +71,15 @@ private:
     Result<void> find_faces(const HdfStepPlace& place, std::size_t step, std::vector<HdfPartition>& parts) const;
     Result<void> load_types(const HdfPartition& part, HdfCells& cells) const;
     Result<bool> are_offsets_told(const HdfPartition& part, const CellPlaces& places) const;
-    bool may_be_left(const HdfPartition& part, const ReadOptions& options, const HdfCells& cells,
-                     const Piece& piece) const;
+    bool may_be_left(const HdfPartition& part, const ReadOptions& options, const HdfCells& cells) const;
     Result<void> load_corners(const HdfPartition& part, const ReadOptions& options, HdfCells cells, Piece& piece) const;
     Result<void> load_faces(const HdfPartition& part, Cells& cells) const;
+    /// `later`   the values may stay in the file
     Result<void> load_fields(const HdfPartition& part, const HdfStepPlace& place, std::size_t step,
-                             Association association, const ReadOptions& options, Piece& piece, FileInfo& info) const;
-    Result<Array> read_field(const HdfPartition& part, const HdfStepPlace& place, std::size_t step,
-                             Association association, const std::string& name) const;
+                             Association association, const ReadOptions& options, bool later, Piece& piece,
+                             FileInfo& info) const;
+    Result<std::uint64_t> first_row(const HdfPartition& part, const HdfStepPlace& place, std::size_t step,
+                                    Association association, const std::string& name) const;
 
     std::string path_;
     const Hdf5Rows& rows_;
