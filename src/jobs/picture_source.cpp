@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <isotet/active_cells.hpp>
+#include <isotet/range_levels.hpp>
 #include <isotet/boundary.hpp>
 #include <isotet/fields.hpp>
 #include <isotet/scene.hpp>
@@ -35,14 +36,10 @@ bool names_isovalues(const DrawJob& job) {
 /// Whether isovalues were asked for, or a volume, which is one of a field as well.
 bool asks_for_field(const DrawJob& job) { return names_isovalues(job) || draws_volume(job) || job.solid || job.keep; }
 
-Result<std::vector<double>> choose_levels(const DrawJob& job, const PointField& field, const ValueRange& range) {
-    std::vector<double> levels = job.levels > 0
-                                     ? evenly_spaced_levels(range.lower, range.upper, job.levels)
-                                     : evenly_spaced_levels(range.lower, range.upper, job.solid ? 1 : default_levels,
-                                                            LevelRounding::short_decimals);
-    if (!levels.empty()) return levels;
-    return Error{ErrorCode::invalid_data,
-                 fmt::format("field '{}' has no finite value: there is nothing to contour", field.name)};
+/// Isovalues that follow from the values.
+RangeLevels levels_of(const DrawJob& job) {
+    if (job.levels > 0) return {job.levels};
+    return {job.solid ? 1 : default_levels, LevelRounding::short_decimals};
 }
 
 /// A field of `from`, a grid or a surface, that colours.
@@ -367,10 +364,7 @@ std::optional<ReadActiveCells> PictureSource::active_cells(const Contents& conte
     active.options.extract.normals = options.normals;
     active.bounds = job_.boundary == 0.0;
     if (!active.bounds) active.boundary = streamed_boundary_;
-    if (chosen)
-        active.choose = [this](const PointField& values) {
-            return choose_levels(job_, values, typical_range(values.values));
-        };
+    if (chosen) active.choose = levels_of(job_);
     return active;
 }
 
@@ -617,7 +611,7 @@ Result<void> PictureSource::choose_isovalues(const Contents& contents, DrawInput
     if (job_.isovalues.empty() && job_.shares.empty()) {
         const Result<ValueRange> range = typical_range_of_steps(*contents.field, caller);
         if (!range) return range.error();
-        Result<std::vector<double>> levels = choose_levels(job_, *contents.field, *range);
+        Result<std::vector<double>> levels = levels_of(job_).within(*range, *contents.field);
         if (!levels) return levels.error();
         input.isovalues = *std::move(levels);
         if (steps_.size() > 1) job_.isovalues = input.isovalues;

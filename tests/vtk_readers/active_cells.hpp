@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstring>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include <isotet/boundary.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/read.hpp>
 
@@ -18,13 +20,15 @@ inline bool are_same(const Array& a, const Array& b) {
            (a.bytes() == 0 || std::memcmp(a.data(), b.data(), a.bytes()) == 0);
 }
 
-/// Points, their bounds, fields, notes and surfaces of the file with active cells are those with all.
+/// Points, their bounds, the boundary, fields, notes and surfaces with cell fields of the file with active cells are those with all.
 inline void expect_same_of_active_cells(const std::string& file, const std::string& field_name,
                                         const std::vector<double>& isovalues, ReadOptions options = {}) {
-    options.cell_fields = std::vector<std::string>{};
     const auto all = read(file, options);
     options.active_cells = ReadActiveCells{field_name, isovalues, {}};
     options.active_cells->bounds = true;
+    const auto boundary = std::make_shared<StreamedBoundary>();
+    boundary->of_steps = true;
+    options.active_cells->boundary = boundary;
     const auto some = read(file, options);
     ASSERT_TRUE(some) << some.error().message;
     ASSERT_TRUE(all) << all.error().message;
@@ -41,6 +45,18 @@ inline void expect_same_of_active_cells(const std::string& file, const std::stri
     ASSERT_EQ(some->grid.point_fields.size(), all->grid.point_fields.size());
     for (std::size_t i = 0; i < all->grid.point_fields.size(); ++i)
         EXPECT_TRUE(are_same(some->grid.point_fields[i].values, all->grid.point_fields[i].values));
+    const Surface walls = boundary_of(all->grid).value();
+    for (const bool again : {false, true}) { // the next step has the same cells
+        if (again) {
+            ASSERT_TRUE(read(file, options));
+        }
+        ASSERT_TRUE(boundary->is_there);
+        EXPECT_GT(walls.triangle_count(), 0u);
+        EXPECT_TRUE(are_same(boundary->surface.positions, walls.positions));
+        EXPECT_TRUE(are_same(boundary->surface.triangles, walls.triangles));
+        EXPECT_TRUE(are_same(boundary->surface.edge_ends, walls.edge_ends));
+    }
+    options.active_cells->boundary.reset();
     options.active_cells->options.extract.normals = Normals::gradient;
     const auto around = read(file, options);
     ASSERT_TRUE(around) << around.error().message;
@@ -49,11 +65,14 @@ inline void expect_same_of_active_cells(const std::string& file, const std::stri
     const auto field = find_field(all->grid, field_name).value();
     DirectOptions direct;
     direct.extract.normals = Normals::gradient;
+    direct.extract.cell_fields = all->grid.cell_fields;
     const auto expected = extract_direct(all->grid, field, isovalues, direct).value();
     direct.active_cells_only = true;
+    direct.extract.cell_fields = around->grid.cell_fields;
     const auto with_normals = extract_direct(around->grid, field, isovalues, direct).value();
     ASSERT_FALSE(with_normals.needs_all_cells);
     direct.extract.normals = Normals::none;
+    direct.extract.cell_fields = some->grid.cell_fields;
     const auto found = extract_direct(some->grid, field, isovalues, direct).value();
     ASSERT_FALSE(found.needs_all_cells);
     for (std::size_t i = 0; i < isovalues.size(); ++i) {
@@ -61,6 +80,13 @@ inline void expect_same_of_active_cells(const std::string& file, const std::stri
         EXPECT_TRUE(are_same(found.surfaces[i].surface.positions, expected.surfaces[i].surface.positions));
         EXPECT_TRUE(are_same(found.surfaces[i].surface.triangles, expected.surfaces[i].surface.triangles));
         EXPECT_TRUE(are_same(with_normals.surfaces[i].surface.normals, expected.surfaces[i].surface.normals));
+        const auto& fields = expected.surfaces[i].surface.cell_fields;
+        ASSERT_EQ(found.surfaces[i].surface.cell_fields.size(), fields.size());
+        for (std::size_t f = 0; f < fields.size(); ++f) {
+            EXPECT_EQ(found.surfaces[i].surface.cell_fields[f].name, fields[f].name);
+            EXPECT_TRUE(are_same(found.surfaces[i].surface.cell_fields[f].values, fields[f].values));
+            EXPECT_TRUE(are_same(with_normals.surfaces[i].surface.cell_fields[f].values, fields[f].values));
+        }
     }
 }
 

@@ -30,6 +30,16 @@ ReadResult made_result() {
     return result;
 }
 
+GridReply made_reply() {
+    GridReply reply{made_result()};
+    reply.boundary.is_there = true;
+    reply.boundary.print = {5, 6};
+    reply.boundary.surface.positions = Array::own(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}, 3);
+    reply.boundary.surface.triangles = Array::own(std::vector<std::uint32_t>{0, 1, 2}, 3);
+    reply.boundary.surface.edge_ends = Array::own(std::vector<std::int64_t>{0, 0, 1, 1, 2, 2}, 2);
+    return reply;
+}
+
 SurveyedGrid made_survey() {
     SurveyedGrid surveyed;
     surveyed.read = made_result();
@@ -68,23 +78,33 @@ std::size_t touch(const Reply& reply) {
         for (std::size_t i = 0; i < array.bytes(); ++i) sum += static_cast<const unsigned char*>(array.data())[i];
     };
     const auto* surveyed = std::get_if<SurveyedGrid>(&reply);
-    if (const auto* result = surveyed ? &surveyed->read : std::get_if<ReadResult>(&reply)) {
+    const auto* grid = std::get_if<GridReply>(&reply);
+    if (const auto* result = surveyed ? &surveyed->read : grid ? &grid->read : nullptr) {
         for (const Array* array : {&result->grid.points, &result->grid.cells.connectivity, &result->grid.cells.offsets,
                                    &result->grid.cells.types})
             add(*array);
         for (const auto* fields : {&result->grid.point_fields, &result->grid.cell_fields})
             for (const Field& field : *fields) add(field.values);
     }
+    for (std::size_t i = 0; grid && i < grid->boundary.surface.triangles.tuples(); ++i) // of vertices that are there
+        sum +=
+            static_cast<std::size_t>(std::abs(grid->boundary.surface.positions.at(
+                                         static_cast<std::size_t>(grid->boundary.surface.triangles.at(i, 0)), 0)) < 2);
     return sum;
 }
 
 TEST(Reply, ComesBackAsItWasWritten) {
     const MemoryFile file;
-    ASSERT_TRUE(write_reply(file.number, made_result()));
+    ASSERT_TRUE(write_reply(file.number, made_reply()));
     const auto reply = map_reply(file.number);
     ASSERT_TRUE(reply) << reply.error().message;
-    const auto* result = std::get_if<ReadResult>(&*reply);
-    ASSERT_TRUE(result);
+    const auto* grid = std::get_if<GridReply>(&*reply);
+    ASSERT_TRUE(grid);
+    EXPECT_TRUE(grid->boundary.is_there);
+    EXPECT_EQ(grid->boundary.print[1], 6u);
+    EXPECT_EQ(grid->boundary.surface.triangles.at(0, 2), 2);
+    EXPECT_EQ(grid->boundary.surface.positions.at(2, 1), 1);
+    const ReadResult* const result = &grid->read;
     EXPECT_EQ(result->info.fields.at(0).name, "p");
     EXPECT_EQ(result->info.times, (std::vector<double>{0.5, 1.5}));
     ASSERT_EQ(result->info.left_out.size(), 1u);
@@ -98,6 +118,14 @@ TEST(Reply, ComesBackAsItWasWritten) {
     ASSERT_EQ(result->info.regions.size(), 1U);
     EXPECT_EQ(result->info.regions[0].field + result->info.regions[0].name, "materialsteel");
     EXPECT_EQ(result->info.regions[0].number, 10);
+}
+
+TEST(Reply, WithABoundaryThatHasOtherVerticesIsAnError) {
+    GridReply reply = made_reply();
+    reply.boundary.surface.triangles = Array::own(std::vector<std::uint32_t>{0, 1, 3}, 3);
+    const MemoryFile file;
+    ASSERT_TRUE(write_reply(file.number, std::move(reply)));
+    EXPECT_FALSE(map_reply(file.number));
 }
 
 TEST(Reply, OfCountsComesBackAsItWasWritten) {
@@ -136,7 +164,7 @@ TEST(Reply, OfCountsWithASampleThatDoesNotFitIsAnError) {
 
 TEST(Reply, CannotBeChangedOnceItIsMapped) {
     const MemoryFile file;
-    ASSERT_TRUE(write_reply(file.number, made_result()));
+    ASSERT_TRUE(write_reply(file.number, made_reply()));
     const auto reply = map_reply(file.number);
     ASSERT_TRUE(reply);
     EXPECT_EQ(::pwrite(file.number, "x", 1, 64), -1);
@@ -145,7 +173,7 @@ TEST(Reply, CannotBeChangedOnceItIsMapped) {
 
 TEST(Reply, ThatItsWriterStillMapsForWritingIsRefused) {
     const MemoryFile file;
-    ASSERT_TRUE(write_reply(file.number, made_result()));
+    ASSERT_TRUE(write_reply(file.number, made_reply()));
     void* window = ::mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED, file.number, 0);
     ASSERT_NE(window, MAP_FAILED);
     const auto reply = map_reply(file.number);
@@ -155,7 +183,7 @@ TEST(Reply, ThatItsWriterStillMapsForWritingIsRefused) {
 
 TEST(Reply, IsAnErrorForEveryTruncation) {
     const MemoryFile whole;
-    ASSERT_TRUE(write_reply(whole.number, made_result()));
+    ASSERT_TRUE(write_reply(whole.number, made_reply()));
     const std::string content = whole.content();
     for (std::size_t length = 0; length < content.size(); ++length)
         EXPECT_FALSE(map_reply(MemoryFile(content.substr(0, length)).number)) << length;
@@ -163,7 +191,7 @@ TEST(Reply, IsAnErrorForEveryTruncation) {
 
 TEST(Reply, WithAnyBytesChangedIsAnErrorOrStaysInsideTheMapping) {
     const MemoryFile read, counted;
-    ASSERT_TRUE(write_reply(read.number, made_result()));
+    ASSERT_TRUE(write_reply(read.number, made_reply()));
     ASSERT_TRUE(write_reply(counted.number, made_survey()));
     const std::array contents{read.content(), counted.content()};
     std::mt19937 random(1);

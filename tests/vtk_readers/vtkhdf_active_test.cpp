@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <isotet/make.hpp>
+#include <isotet/range_levels.hpp>
 #include <isotet/read.hpp>
 
 #include "pieces/partition.hpp"
@@ -108,6 +109,12 @@ void write_partitions(Hdf5Writer& file, const PartsOf& what, const PartArrays& a
     std::vector<float> values = all.values;
     values.insert(values.end(), all.values.rbegin(), all.values.rend());
     file.stored(name("PointData/gyroid"), values, {values.size()}, what.storage);
+    std::vector<double> numbers(all.types.size());
+    std::vector<std::int32_t> vectors(3 * all.types.size());
+    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = 0.5 * static_cast<double>(i);
+    for (std::size_t i = 0; i < vectors.size(); ++i) vectors[i] = static_cast<std::int32_t>(i);
+    file.stored(name("CellData/number"), numbers, {numbers.size()}, what.storage);
+    file.stored(name("CellData/vector"), vectors, {numbers.size(), 3}, of_points);
     if (what.marked) file.stored(name("CellData/vtkGhostType"), all.ghosts, {all.ghosts.size()}, what.storage);
     const auto parts = static_cast<std::int64_t>(all.points.size());
     file.data<double>(name("Steps/Values"), {0, 1}, {2});
@@ -182,6 +189,42 @@ TEST(ActiveCellsOfVtkhdf, MayBeOfAFileLargerThanMemory) {
     const auto result = read(path, options);
     ASSERT_TRUE(result) << result.error().message;
     EXPECT_TRUE(result->cells_in_file);
+}
+
+TEST(ActiveCellsOfVtkhdf, AreOfIsovaluesThatFollowFromTheValues) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("a.vtkhdf");
+    {
+        Hdf5Writer file(path);
+        write_partitions(file, {.marked = true}, parts_of({.marked = true}, 3));
+    }
+    const Grid all = read(path).value().grid;
+    const PointField field = find_field(all, "gyroid").value();
+    const RangeLevels levels{2, LevelRounding::short_decimals};
+    ReadOptions options;
+    options.active_cells = ReadActiveCells{"gyroid", {}, {}};
+    options.active_cells->options.extract.source_cells = true;
+    options.active_cells->choose = levels;
+    const ReadResult some = read(path, options).value();
+    ASSERT_TRUE(some.cells_in_file);
+    DirectOptions direct;
+    direct.extract.source_cells = true;
+    const std::vector<double> isovalues = levels(field).value();
+    ASSERT_EQ(isovalues.size(), 2u);
+    const auto expected = extract_direct(all, field, isovalues, direct).value();
+    direct.active_cells_only = true;
+    const auto found = extract_direct(some.grid, field, isovalues, direct).value();
+    const auto numbers = some.cell_numbers.as<std::uint64_t>();
+    for (std::size_t i = 0; i < isovalues.size(); ++i) {
+        const Surface &a = found.surfaces[i].surface, &b = expected.surfaces[i].surface;
+        EXPECT_TRUE(are_same(a.positions, b.positions));
+        ASSERT_EQ(a.source_cells.tuples(), b.source_cells.tuples());
+        for (std::size_t k = 0; k < a.source_cells.tuples(); ++k)
+            ASSERT_EQ(static_cast<double>(numbers[static_cast<std::size_t>(a.source_cells.at(k))]),
+                      b.source_cells.at(k));
+    }
+    options.active_cells->choose = [&](const PointField& values) { return levels(values); }; // which is no such type
+    EXPECT_FALSE(read(path, options).value().cells_in_file);
 }
 
 TEST(ActiveCellsOfVtkhdf, TellWhichPartIsBroken) {

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <memory>
 #include <utility>
 #include <fcntl.h>
 #include <malloc.h>
@@ -92,8 +93,17 @@ Reply do_task(Request request) {
         auto surveyed = join_counted(*std::move(loaded), request.options);
         return surveyed ? Reply(std::move(*surveyed)) : Reply(surveyed.error());
     }
+    const std::shared_ptr<StreamedBoundary> boundary =
+        request.options.active_cells ? request.options.active_cells->boundary : nullptr;
+    const StreamedBoundary before = boundary ? *boundary : StreamedBoundary{};
     auto joined = load_and_join(load_all, request.options);
-    return joined ? Reply(std::move(*joined)) : Reply(joined.error());
+    if (!joined) return joined.error();
+    GridReply reply{*std::move(joined)};
+    if (!boundary) return reply;
+    reply.is_same = before.is_there && boundary->is_there && before.of_steps && boundary->print == before.print &&
+                    before.print != decltype(before.print){};
+    reply.boundary = std::move(*boundary);
+    return reply;
 }
 
 Reply answer(const Request& request) {

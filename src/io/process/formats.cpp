@@ -64,6 +64,20 @@ Result<T> ask(Task task, std::string format, const std::string& path, const Read
     return Error{ErrorCode::internal, path + ": the reader process answered another question"};
 }
 
+Result<ReadResult> read_grid(std::string format, const std::string& path, const ReadOptions& options,
+                             const Progress& progress) {
+    auto reply = ask<confined::GridReply>(Task::read, std::move(format), path, options, progress);
+    if (!reply) return reply.error();
+    if (options.active_cells && options.active_cells->boundary) {
+        StreamedBoundary& boundary = *options.active_cells->boundary;
+        StreamedBoundary& found = reply->boundary;
+        if (reply->is_same) found.surface = std::move(boundary.surface);
+        found.of_steps = boundary.of_steps;
+        boundary = std::move(found);
+    }
+    return std::move(reply->read);
+}
+
 struct Named {
     std::string_view name;
     int (*recognizes)(Head head, std::string_view extension);
@@ -94,7 +108,7 @@ GridReader reader() {
         return ask<FileInfo>(Task::inspect, std::string(table()[row].name), path, options, progress);
     };
     result.read = [](const std::string& path, const ReadOptions& options, const Progress& progress) {
-        return ask<ReadResult>(Task::read, std::string(table()[row].name), path, options, progress);
+        return read_grid(std::string(table()[row].name), path, options, progress);
     };
     result.survey = [](const std::string& path, const ReadOptions& options, const Progress& progress) {
         return ask<SurveyedGrid>(Task::survey, std::string(table()[row].name), path, options, progress);

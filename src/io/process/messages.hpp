@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include <isotet/boundary.hpp>
 #include <isotet/export.hpp>
 #include <isotet/read.hpp>
 #include <isotet/read_surveyed.hpp>
@@ -25,7 +26,14 @@ struct Request {
     std::vector<std::string> readable; ///< folders and files that reading may look at, absolute
 };
 
-using Reply = std::variant<Error, FileInfo, ReadResult, SurveyedGrid>;
+/// A grid, and the boundary that was asked for (ReadActiveCells::boundary).
+struct GridReply {
+    ReadResult read;
+    StreamedBoundary boundary = {};
+    bool is_same = false; ///< it is that of the request, whose surface the reply does not have
+};
+
+using Reply = std::variant<Error, FileInfo, GridReply, SurveyedGrid>;
 
 std::string encode(const Request& request);
 

@@ -6,6 +6,7 @@
 // Arrays start at multiples of 64 bytes. The description (plain bytes: sentences, names, and for each array its type,
 // place and size) comes last, and the header after everything else, so an unfinished reply has no valid header.
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <span>
@@ -13,6 +14,7 @@
 
 #include <fmt/core.h>
 
+#include "base/parallel.hpp"
 #include "io/process/messages.hpp"
 #include "io/process/sealed_mapping.hpp"
 #include "io/process/wire.hpp"
@@ -20,7 +22,7 @@
 namespace isotet::io::confined {
 namespace {
 
-constexpr std::uint64_t magic = 0x3630795f74657469; // "itet_y06", and the byte order with it
+constexpr std::uint64_t magic = 0x3730795f74657469; // "itet_y07", and the byte order with it
 constexpr std::uint64_t alignment = 64;
 
 struct Header {
@@ -118,7 +120,8 @@ public:
     void describe(ReadResult& result) {
         [[maybe_unused]] const auto& [whole, info, step, cells_in_file, bounds, notes, cell_numbers] = result;
         [[maybe_unused]] const auto& [points, cells, point_fields, cell_fields, point_numbers, patches] = result.grid;
-        [[maybe_unused]] const auto& [connectivity, offsets, types, uniform_type, faces, face_offsets] = result.grid.cells;
+        [[maybe_unused]] const auto& [connectivity, offsets, types, uniform_type, faces, face_offsets] =
+            result.grid.cells;
         describe(result.info);
         out_.number<std::uint64_t>(result.step);
         out_.number<std::uint8_t>(result.cells_in_file.has_value());
@@ -145,6 +148,16 @@ public:
             out_.text(patch.name);
         });
         array(result.cell_numbers);
+    }
+    void describe(GridReply& reply) {
+        describe(reply.read);
+        StreamedBoundary& boundary = reply.boundary;
+        out_.number<std::uint8_t>(boundary.is_there);
+        out_.number<std::uint8_t>(reply.is_same);
+        for (const std::uint64_t print : boundary.print) out_.number(print);
+        array(boundary.surface.positions); // a boundary has nothing else
+        array(boundary.surface.triangles);
+        array(boundary.surface.edge_ends);
     }
     void describe(const GridReport& report) {
         [[maybe_unused]] const auto& [points, cells, by_type, left_out, tets, collapsed, negative, inverted, flat,
@@ -271,6 +284,19 @@ public:
         result.cell_numbers = array();
         return result;
     }
+    GridReply grid_reply() {
+        GridReply reply;
+        reply.read = result();
+        StreamedBoundary& boundary = reply.boundary;
+        boundary.is_there = in_.number<std::uint8_t>() != 0;
+        reply.is_same = in_.number<std::uint8_t>() != 0;
+        for (std::uint64_t& print : boundary.print) print = in_.number<std::uint64_t>();
+        boundary.surface.positions = array();
+        boundary.surface.triangles = array();
+        boundary.surface.edge_ends = array();
+        if (!is_sound(boundary.surface, reply.read.grid.points.tuples())) in_.fail();
+        return reply;
+    }
     SurveyedGrid surveyed() {
         SurveyedGrid surveyed;
         surveyed.read = result();
@@ -299,6 +325,26 @@ private:
         for (double& bound : report.lower) bound = in_.number<double>();
         for (double& bound : report.upper) bound = in_.number<double>();
         return report;
+    }
+    /// Whether it is none, or one with vertices that are there, at points that are.
+    static bool is_sound(const Surface& surface, std::uint64_t points) {
+        const Array &positions = surface.positions, &triangles = surface.triangles, &ends = surface.edge_ends;
+        if (positions.empty() && triangles.empty() && ends.empty()) return true;
+        if (!is_floating(positions.type()) || positions.components() != 3 || triangles.components() != 3) return false;
+        if (ends.type() != ScalarType::int64 || ends.components() != 2 || ends.tuples() != positions.tuples())
+            return false;
+        if (triangles.type() != ScalarType::uint32 && triangles.type() != ScalarType::uint64) return false;
+        const auto are_below = [](const Array& numbers, std::uint64_t count) {
+            return numbers.visit([&](auto values) {
+                std::atomic<bool> all = true;
+                core::parallel_ranges(values.size(), std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
+                    for (std::size_t i = begin; i < end; ++i)
+                        if (static_cast<std::uint64_t>(values[i]) >= count) all = false;
+                });
+                return all.load();
+            });
+        };
+        return are_below(triangles, positions.tuples()) && are_below(ends, points);
     }
     /// Whether the numbers are of cells of the file, one for each cell that is there, and cell fields of all cells.
     static bool is_sample(const SurveyedGrid& surveyed) {
@@ -350,7 +396,7 @@ Result<Reply> map_reply(int descriptor) {
     switch (in.number<std::uint8_t>()) {
     case 0: reply = undescriber.error(); break;
     case 1: reply = undescriber.info(); break;
-    case 2: reply = undescriber.result(); break;
+    case 2: reply = undescriber.grid_reply(); break;
     case 3: reply = undescriber.surveyed(); break;
     default: in.fail();
     }

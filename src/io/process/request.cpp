@@ -1,8 +1,11 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Requests as bytes and back.
 #include <array>
+#include <memory>
 #include <variant>
 
+#include <isotet/active_cells.hpp>
+#include <isotet/range_levels.hpp>
 #include <isotet/slice.hpp>
 
 #include "io/process/messages.hpp"
@@ -11,7 +14,7 @@
 namespace isotet::io::confined {
 namespace {
 
-constexpr std::uint32_t request_version = 0x69730009;
+constexpr std::uint32_t request_version = 0x6973000a;
 
 using Names = std::optional<std::vector<std::string>>;
 
@@ -64,19 +67,54 @@ std::optional<SliceShape> decode_shape(Decoder& in) {
     return Cylinder{first, point, in.number<double>()};
 }
 
+/// Of what is known of the boundary all but the surface.
+void encode_boundary(Encoder& out, const std::shared_ptr<StreamedBoundary>& boundary) {
+    out.number<std::uint8_t>(boundary != nullptr);
+    if (!boundary) return;
+    out.number<std::uint8_t>(boundary->of_steps);
+    out.number<std::uint8_t>(boundary->is_there);
+    for (const std::uint64_t print : boundary->print) out.number(print);
+}
+
+std::shared_ptr<StreamedBoundary> decode_boundary(Decoder& in) {
+    if (in.number<std::uint8_t>() == 0) return nullptr;
+    auto boundary = std::make_shared<StreamedBoundary>();
+    boundary->of_steps = in.number<std::uint8_t>() != 0;
+    boundary->is_there = in.number<std::uint8_t>() != 0;
+    for (std::uint64_t& print : boundary->print) print = in.number<std::uint64_t>();
+    return boundary;
+}
+
+void encode_choice(Encoder& out, const RangeLevels* levels) {
+    out.number<std::uint64_t>(levels ? levels->count : 0);
+    out.number(levels ? levels->rounding : LevelRounding::none);
+}
+
+void decode_choice(Decoder& in, ReadActiveCells& active) {
+    RangeLevels levels;
+    levels.count = in.number<std::uint64_t>();
+    levels.rounding = in.enumerator(LevelRounding::short_decimals);
+    if (levels.count > ActiveCellFilter::max_isovalues) return in.fail();
+    if (levels.count > 0) active.choose = levels;
+}
+
 /// Of the options of extraction those that tell which cells are active.
 void encode_active(Encoder& out, const std::optional<ReadActiveCells>& active) {
-    const bool can_be_told = active && !active->boundary && !active->choose && !active->options.extract.source_cells &&
-                             active->options.extract.cell_fields.empty() && !active->options.frame;
+    const RangeLevels* const levels = active ? active->choose.target<RangeLevels>() : nullptr;
+    const bool can_be_told =
+        active && (!active->choose || levels) && active->options.extract.cell_fields.empty() && !active->options.frame;
     out.number<std::uint8_t>(can_be_told);
     if (!can_be_told) return;
     out.text(active->field);
     out.list(active->isovalues, [&](double isovalue) { out.number(isovalue); });
     out.number<std::uint8_t>(active->options.extract.ties == Ties::keep);
+    out.number<std::uint8_t>(active->options.extract.source_cells);
     out.number<std::uint8_t>(active->options.precision == Precision::float64);
     out.number<std::uint8_t>(active->options.extract.normals == Normals::gradient);
     out.number<std::uint8_t>(active->bounds);
     encode_shape(out, active->shape);
+    encode_boundary(out, active->boundary);
+    encode_choice(out, levels);
 }
 
 std::optional<ReadActiveCells> decode_active(Decoder& in) {
@@ -85,10 +123,13 @@ std::optional<ReadActiveCells> decode_active(Decoder& in) {
     active.field = in.text();
     in.list([&] { active.isovalues.push_back(in.number<double>()); });
     if (in.number<std::uint8_t>() != 0) active.options.extract.ties = Ties::keep;
+    active.options.extract.source_cells = in.number<std::uint8_t>() != 0;
     if (in.number<std::uint8_t>() != 0) active.options.precision = Precision::float64;
     if (in.number<std::uint8_t>() != 0) active.options.extract.normals = Normals::gradient;
     active.bounds = in.number<std::uint8_t>() != 0;
     active.shape = decode_shape(in);
+    active.boundary = decode_boundary(in);
+    decode_choice(in, active);
     return active;
 }
 

@@ -1,0 +1,20 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/range_levels.hpp>
+
+#include <fmt/format.h>
+
+#include "base/errors.hpp"
+
+namespace isotet {
+
+Result<std::vector<double>> RangeLevels::operator()(const PointField& field) const {
+    return within(typical_range(field.values), field);
+}
+
+Result<std::vector<double>> RangeLevels::within(const ValueRange& range, const PointField& field) const {
+    std::vector<double> levels = evenly_spaced_levels(range.lower, range.upper, count, rounding);
+    if (!levels.empty()) return levels;
+    return invalid_data(fmt::format("field '{}' has no finite value: there is nothing to contour", field.name));
+}
+
+} // namespace isotet
