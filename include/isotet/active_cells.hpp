@@ -39,7 +39,7 @@ public:
     /// `isovalues`   at least one, at most max_isovalues; those that will be extracted
     /// `type`        of all cells, for add(); nothing where cells have types of their own, for add_cells()
     /// `options`     those of the extraction. For gradient normals cells that share a point with one that is cut are kept,
-    ///               too. Cell fields and frames need all cells
+    ///               too. Frames need all cells
     ///
     /// Cost     two passes over points and values for each isovalue
     /// Errors   invalid_argument: no isovalue, one that is not finite, options that need all cells, arrays that do not fit
@@ -66,8 +66,9 @@ public:
     ///          are not finite or 2^91 or more; survey() tells which; invalid_argument before the last round
     Result<Cells> finish();
 
-    /// After finish(), where `options` ask for source cells: of the cells that were kept the numbers in the whole grid,
-    /// uint64. Surfaces of these cells have the places of theirs in it as source cells.
+    /// After finish(), where `options` have source cells or cell fields: of the cells that were kept the numbers in the
+    /// whole grid, uint64. Surfaces of these cells have the places of theirs in it as source cells, and cell fields of these
+    /// cells alone are what they carry.
     Array numbers() const;
 
     static constexpr std::size_t max_isovalues = 255;

@@ -110,7 +110,8 @@ struct ContourInput {
     std::vector<Field> point_fields; ///< carried onto surfaces, as ExtractOptions::point_fields
     std::vector<Field> cell_fields;  ///< as ExtractOptions::cell_fields
     /// Set where the grid has only the cells that an ActiveCellFilter kept (active_cells.hpp) for the expected isovalues:
-    /// gives the same input with all cells, and is called when something needs them.
+    /// gives the same input with all cells, and is called when something needs them. `cell_fields` are of the cells that
+    /// are there.
     std::function<Result<ContourInput>(const Run& run)> all_cells = {};
     Array cell_numbers = {}; ///< then, of the cells in the whole grid, uint64: for source cells
     bool has_cells_around = false; ///< then: the filter kept those that gradient normals need, too

@@ -86,9 +86,10 @@ struct ReadActiveCells {
     DirectOptions options; ///< of the extraction; the point fields that are read count as carried ones
     std::optional<SliceShape> shape = {}; ///< slice_field() in place of `field`
     bool bounds = false;                  ///< ReadResult::bounds are wanted
-    /// Gets the boundary, if it is wanted. Of formats but VTK's XML ones and binary legacy VTK all cells are read then.
+    /// Gets the boundary, if it is wanted.
     std::shared_ptr<StreamedBoundary> boundary = {};
-    /// Where there are no isovalues: gives them once the values of all points are known. As `boundary`.
+    /// Where there are no isovalues: gives them once the values of all points are known. VTKHDF and Exodus read all cells
+    /// unless it is a RangeLevels (range_levels.hpp).
     std::function<Result<std::vector<double>>(const PointField& field)> choose = {};
 };
 
@@ -117,8 +118,9 @@ struct ReadOptions {
     std::vector<std::string> more_files; ///< of the steps behind that of the path; times are then numbers of the files
     bool patches = false; ///< Grid::patches: of Gmsh, MED, OpenFOAM, Exodus and CGNS
     std::optional<ReadActiveCells> active_cells = {}; ///< where that can be done while reading (VTU, PVTU, VTM, PVD,
-                                                      ///< VTKHDF, Exodus, binary legacy VTK; linear cells, no cell
-                                                      ///< fields, points that do not coincide); else all are read
+                                                      ///< VTKHDF, Exodus, binary legacy VTK; linear cells, points that
+                                                      ///< do not coincide); else all are read. Cell fields have
+                                                      ///< values of the cells that were kept
     std::uint64_t some_cells = 0; ///< not 0: about so many cells will do, spread evenly; packed files then read no more than
                                   ///< these, all other formats all
     std::shared_ptr<KeptFiles> kept = {}; ///< keep_files(); the same for inspect() and the read() behind it
