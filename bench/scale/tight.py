@@ -152,7 +152,7 @@ def main():
                     row.append(said)
                 for limit in limits(options.most or 2 * peak, options.steps):
                     status, said, kill, _ = group.run(words, limit)
-                    word = "KILLED" if status == -9 else "reader killed" if kill else {0: "ok", 4: "said"}.get(status, f"status {status}")
+                    word = "KILLED" if status == -9 else {0: "ok", 4: "said"}.get(status, f"status {status}") + " (reader killed)" * kill
                     killed += kill
                     row.append(f"{limit / 1e6:.0f} {word},")
                     if options.say and word != "ok":

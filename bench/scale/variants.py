@@ -5,7 +5,7 @@
     python bench/scale/variants.py zlib GRID.vtu OUT.vtu FIELD
     python bench/scale/variants.py legacy GRID.vtu OUT.vtk FIELD     binary
     python bench/scale/variants.py vtkhdf GRID.vtu OUT.vtkhdf FIELD  not compressed; needs VTK 9.4 or later
-    python bench/scale/variants.py exodus GRID.vtu OUT.e FIELD       one block
+    python bench/scale/variants.py exodus GRID.vtu OUT.e FIELD       by meshio
     python bench/scale/variants.py foam SIDE FOLDER FIELD [PARTS]    hexahedra, binary, a volScalarField; PARTS: decomposed
 """
 import pathlib
@@ -76,12 +76,9 @@ def vtkhdf(source, out, field):
 
 
 def exodus(source, out, field):
-    import vtk
+    import meshio
 
-    writer = vtk.vtkExodusIIWriter()
-    writer.SetInputData(read(source))
-    writer.SetFileName(str(out))
-    writer.Write()
+    meshio.write(out, meshio.read(source))
 
 
 def header(kind, name, note=""):

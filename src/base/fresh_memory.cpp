@@ -25,6 +25,11 @@ bool FreshMemory::take(std::size_t bytes) {
     return true;
 }
 
+void FreshMemory::forget() {
+    const std::lock_guard lock(mutex_);
+    known_ = 0;
+}
+
 FreshMemory::Refusal FreshMemory::take_refusal() {
     const std::lock_guard lock(mutex_);
     return std::exchange(refusal_, {});

@@ -26,6 +26,9 @@ public:
     /// False where so many bytes, and what the heap may need beside them, are not there.
     bool take(std::size_t bytes);
 
+    /// Asks anew next time: another process of the control group has taken some.
+    void forget();
+
     /// What take() refused last: bytes, and how many were left. Each is told once.
     struct Refusal {
         std::uint64_t bytes = 0, left = 0;

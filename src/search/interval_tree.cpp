@@ -27,17 +27,19 @@ struct IntervalTree::Node {
     std::unique_ptr<Node> left, right;
 };
 
-IntervalTree::IntervalTree(const core::TetTable& table) {
+IntervalTree::IntervalTree(const core::TetTable& table, const Progress& progress) {
     core::Buffer<std::uint32_t> all(table.tets.size());
     std::iota(all.begin(), all.end(), 0);
-    build(table, {all.data(), all.size()});
+    build(table, {all.data(), all.size()}, progress);
 }
 
-IntervalTree::IntervalTree(const core::TetTable& table, std::span<const std::uint32_t> tets) { build(table, tets); }
+IntervalTree::IntervalTree(const core::TetTable& table, std::span<const std::uint32_t> tets, const Progress& progress) {
+    build(table, tets, progress);
+}
 
 IntervalTree::~IntervalTree() = default;
 
-void IntervalTree::build(const core::TetTable& table, std::span<const std::uint32_t> tets) {
+void IntervalTree::build(const core::TetTable& table, std::span<const std::uint32_t> tets, const Progress& progress) {
     core::Buffer<Item> items(tets.size());
     std::size_t count = 0;
     for (const std::uint32_t tet : tets)
@@ -46,13 +48,14 @@ void IntervalTree::build(const core::TetTable& table, std::span<const std::uint3
         list->ends = core::Buffer<float>(count);
         list->tets = core::Buffer<std::uint32_t>(count);
     }
-    root_ = make_node({items.data(), count}, 0);
+    root_ = make_node({items.data(), count}, 0, progress);
     nodes_ = root_ ? root_->below + 1 : 0;
 }
 
 /// The tree of `items`, whose places in the lists begin at `first`.
-std::unique_ptr<IntervalTree::Node> IntervalTree::make_node(std::span<Item> items, std::size_t first) {
-    if (items.empty()) return nullptr;
+std::unique_ptr<IntervalTree::Node> IntervalTree::make_node(std::span<Item> items, std::size_t first,
+                                                            const Progress& progress) {
+    if (items.empty() || (items.size() >= worth_a_task && progress.cancelled())) return nullptr;
     auto node = std::make_unique<Node>();
     const auto put = [](List& list, std::size_t at, std::span<const Item> sorted, float core::CutRange::* end) {
         for (std::size_t i = 0; i < sorted.size(); ++i) {
@@ -89,8 +92,8 @@ std::unique_ptr<IntervalTree::Node> IntervalTree::make_node(std::span<Item> item
         std::sort(own.begin(), own.end(), by([](const Item& item) { return -item.range.upper; }));
         put(by_upper_, begin, own, &core::CutRange::upper);
     };
-    const auto left_part = [&] { node->left = make_node({items.begin(), here}, first); };
-    const auto right_part = [&] { node->right = make_node({right, items.end()}, begin + own.size()); };
+    const auto left_part = [&] { node->left = make_node({items.begin(), here}, first, progress); };
+    const auto right_part = [&] { node->right = make_node({right, items.end()}, begin + own.size(), progress); };
     if (items.size() >= worth_a_task) {
         tbb::parallel_invoke(own_part, left_part, right_part);
     } else {

@@ -5,6 +5,8 @@
 #include <memory>
 #include <span>
 
+#include <isotet/progress.hpp>
+
 #include "base/buffer.hpp"
 #include "packed/tet_table.hpp"
 #include "search/search.hpp"
@@ -20,9 +22,10 @@ namespace isotet::search {
 /// Cost   O(n log n) to build, 12 bytes a tet meanwhile; O(log n + found) to ask; 16 bytes a tet that can be cut
 class IntervalTree final : public Search {
 public:
-    explicit IntervalTree(const core::TetTable& table);
+    /// Where it is cancelled it holds nothing of use.
+    explicit IntervalTree(const core::TetTable& table, const Progress& progress = {});
     /// Of some tets alone.
-    IntervalTree(const core::TetTable& table, std::span<const std::uint32_t> tets);
+    IntervalTree(const core::TetTable& table, std::span<const std::uint32_t> tets, const Progress& progress = {});
     ~IntervalTree() override;
 
     std::uint64_t bytes() const override;
@@ -37,8 +40,8 @@ private:
         core::Buffer<std::uint32_t> tets;
     };
 
-    void build(const core::TetTable& table, std::span<const std::uint32_t> tets);
-    std::unique_ptr<Node> make_node(std::span<Item> items, std::size_t first);
+    void build(const core::TetTable& table, std::span<const std::uint32_t> tets, const Progress& progress);
+    std::unique_ptr<Node> make_node(std::span<Item> items, std::size_t first, const Progress& progress);
 
     List by_lower_, by_upper_;
     std::unique_ptr<Node> root_;

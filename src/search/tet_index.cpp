@@ -40,10 +40,10 @@ namespace {
 
 using search::IndexedTets;
 
-std::unique_ptr<search::Search> make_search(SearchIndex index, const core::TetTable& table) {
+std::unique_ptr<search::Search> make_search(SearchIndex index, const core::TetTable& table, const Progress& progress) {
     switch (index) {
     case SearchIndex::none: return std::make_unique<search::AllTets>(table);
-    case SearchIndex::interval_tree: return std::make_unique<search::IntervalTree>(table);
+    case SearchIndex::interval_tree: return std::make_unique<search::IntervalTree>(table, progress);
     case SearchIndex::octree: return std::make_unique<search::Octree>(table);
     case SearchIndex::seed_set: return std::make_unique<search::SeedSet>(table);
     case SearchIndex::span_space: return std::make_unique<search::SpanSpace>(table);
@@ -79,7 +79,7 @@ Result<std::unique_ptr<IndexedTets>> build_tets(const core::Packed& packed, Sear
     if (progress.cancelled()) return cancelled();
     progress("index", 0.2);
     const core::Stopwatch index_clock;
-    tets->search = make_search(index, tets->table);
+    tets->search = make_search(index, tets->table, progress);
     tets->report.index_seconds = index_clock.seconds();
     if (progress.cancelled()) return cancelled();
     progress("index", 1);

@@ -39,6 +39,13 @@ TEST(FreshMemory, IsRefusedBeforeMoreIsTakenThanThereIs) {
     left = 0;
     EXPECT_TRUE(fresh.take(4 * megabyte)) << "known to be there";
     EXPECT_FALSE(fresh.take(8 * megabyte));
+    left = 300 * megabyte;
+    EXPECT_TRUE(fresh.take(8 * megabyte));
+    left = 0;
+    fresh.forget();
+    EXPECT_FALSE(fresh.take(8 * megabyte)) << "another process took it";
+    EXPECT_EQ(fresh.take_refusal().bytes, 8 * megabyte);
+    EXPECT_EQ(fresh.take_refusal().bytes, 0u) << "told once";
 }
 
 TEST(Block, OfAnySizeCanBeWrittenToItsEnd) {

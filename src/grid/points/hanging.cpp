@@ -25,7 +25,7 @@ namespace isotet::core {
 namespace {
 
 constexpr double smaller_share = 0.75; // of the area; two triangles on a quadrilateral are as large
-constexpr double most_cosine = -0.5;      // cosine between normals
+constexpr double most_cosine = -0.5;   // cosine between normals
 constexpr double rim = 0.05;           // of barycentric coordinates outside
 constexpr double in_plane = 1e-5;      // of the longest edge
 constexpr double beside_plane = 0.2;   // likewise, of curved shapes
@@ -52,11 +52,13 @@ struct PlacedFace {
 
 class HangingFinder {
 public:
-    HangingFinder(const Array& points, const std::vector<BoundaryFace>& faces) : given_(faces) {
+    /// Where it is cancelled, what is found is of no use.
+    HangingFinder(const Array& points, const std::vector<BoundaryFace>& faces, const Progress& progress)
+        : given_(faces), progress_(progress) {
         number_places(points);
-        place_faces();
-        drop_matched();
-        connect();
+        if (!progress_.cancelled()) place_faces();
+        if (!progress_.cancelled()) drop_matched();
+        if (!progress_.cancelled()) connect();
     }
 
     HangingFaces find() {
@@ -64,7 +66,8 @@ public:
         const auto mark = [](std::uint8_t& flag) {
             std::atomic_ref<std::uint8_t>(flag).store(1, std::memory_order_relaxed);
         };
-        parallel_ranges(faces_.size(), 1 << 10, [&](std::size_t begin, std::size_t end) {
+        if (progress_.cancelled()) return {};
+        parallel_pieces(faces_.size(), 1 << 10, progress_, [&](std::size_t begin, std::size_t end) {
             std::vector<std::uint32_t> on;
             for (std::size_t face = begin; face < end; ++face) {
                 find_smaller(static_cast<std::uint32_t>(face), on);
@@ -77,6 +80,7 @@ public:
             }
         });
         HangingFaces out;
+        if (progress_.cancelled()) return out;
         out.points = static_cast<std::uint64_t>(std::ranges::count(hangs, 1));
         for (std::size_t i = 0; i < given_.size(); ++i)
             if (lies[i]) out.faces.push_back(given_[i].points);
@@ -91,6 +95,7 @@ private:
         used_.reserve(3 * given_.size());
         for (const BoundaryFace& face : given_) used_.insert(used_.end(), face.points.begin(), face.points.end());
         tbb::parallel_sort(used_.begin(), used_.end());
+        if (progress_.cancelled()) return;
         used_.erase(std::unique(used_.begin(), used_.end()), used_.end());
         places_.resize(used_.size());
         const PointReader reader(points);
@@ -212,6 +217,7 @@ private:
     }
 
     const std::vector<BoundaryFace>& given_;
+    const Progress& progress_;
     std::vector<std::uint64_t> used_, lowest_; ///< points of faces, ascending; the first of them at the same place
     std::vector<Point> places_;
     std::vector<PlacedFace> faces_;
@@ -221,8 +227,11 @@ private:
 
 } // namespace
 
-HangingFaces find_hanging(const Array& points, const std::vector<BoundaryFace>& faces) {
-    return HangingFinder(points, faces).find();
+Result<HangingFaces> find_hanging(const Array& points, const std::vector<BoundaryFace>& faces,
+                                  const Progress& progress) {
+    HangingFaces found = HangingFinder(points, faces, progress).find();
+    if (progress.cancelled()) return Error{ErrorCode::cancelled, "looking for hanging points was cancelled"};
+    return found;
 }
 
 Result<HangingFaces> find_hanging(const Grid& grid, const CellReader& cells, const Progress& progress) {
@@ -234,7 +243,7 @@ Result<HangingFaces> find_hanging(const Grid& grid, const CellReader& cells, con
     options.most_faces = std::max(tets.tets, most_faces); // more are cells that do not meet at all
     const auto faces = survey_faces(grid, cells, tets, options, progress);
     if (!faces) return faces.error();
-    return find_hanging(grid.points, faces->faces);
+    return find_hanging(grid.points, faces->faces, progress);
 }
 
 namespace {

@@ -29,7 +29,9 @@ struct HangingFaces {
 /// `points`     of the grid
 /// Guarantees   the same for any number of threads
 /// Cost         O(faces log faces)
-HangingFaces find_hanging(const Array& points, const std::vector<BoundaryFace>& faces);
+/// Errors       cancelled
+Result<HangingFaces> find_hanging(const Array& points, const std::vector<BoundaryFace>& faces,
+                                  const Progress& progress);
 
 /// The same of a checked grid of linear cells. None where more than 4 million faces, and more than there are tets, are
 /// boundary: these are cells that do not meet.

@@ -140,6 +140,7 @@ void serve_one(const Parcel& parcel) {
         reply = request.error();
     } else {
         confine_to(*request);
+        core::fresh_memory().forget();
         take_opened_files();
         on_progress([last = 0](double fraction) mutable {
             const int percent = static_cast<int>(std::clamp(fraction, 0.0, 1.0) * 100);
@@ -159,6 +160,14 @@ void serve_one(const Parcel& parcel) {
         ::_exit(written ? EXIT_SUCCESS : EXIT_FAILURE); // what a broken file left behind is not used again
 }
 
+/// Where the system ends a process for lack of memory, it shall be this one: isotet then says so.
+void be_the_first_to_end() {
+    if (std::FILE* file = std::fopen("/proc/self/oom_score_adj", "w")) {
+        std::fputs("1000", file);
+        std::fclose(file);
+    }
+}
+
 } // namespace
 
 int serve() {
@@ -168,6 +177,7 @@ int serve() {
         std::fputs("isotet-reader reads grids for isotet, which starts it: there is nothing to call it for\n", stderr);
         return EXIT_FAILURE;
     }
+    be_the_first_to_end();
     const rlimit none{0, 0};
     ::setrlimit(RLIMIT_CORE, &none);
     ::mallopt(M_MMAP_THRESHOLD, 1 << 20); // large blocks are given back to the system when freed

@@ -14,6 +14,8 @@
 
 #include <fmt/core.h>
 
+#include "base/block.hpp"
+#include "base/fresh_memory.hpp"
 #include "base/parallel.hpp"
 #include "io/process/messages.hpp"
 #include "io/process/sealed_mapping.hpp"
@@ -45,8 +47,12 @@ public:
     void put(const void* data, std::uint64_t size, std::uint64_t at) {
         const char* bytes = static_cast<const char*>(data);
         while (size > 0 && error_ == 0) {
-            const ssize_t written =
-                ::pwrite(descriptor_, bytes, std::min<std::uint64_t>(size, 1 << 26), static_cast<off_t>(at));
+            const std::uint64_t part = std::min<std::uint64_t>(size, 1 << 26);
+            if (!has_room(part)) {
+                error_ = ENOMEM;
+                return;
+            }
+            const ssize_t written = ::pwrite(descriptor_, bytes, part, static_cast<off_t>(at));
             if (written < 0 && errno == EINTR) continue;
             if (written <= 0) {
                 error_ = written < 0 ? errno : ENOSPC;
@@ -60,6 +66,12 @@ public:
     int error() const noexcept { return error_; }
 
 private:
+    /// The file is memory of the control group, too.
+    static bool has_room(std::uint64_t bytes) {
+        core::FreshMemory& fresh = core::fresh_memory();
+        return fresh.take(bytes) || (core::drop_kept_blocks() > 0 && fresh.take(bytes));
+    }
+
     int descriptor_;
     std::uint64_t end_;
     int error_ = 0;
@@ -379,6 +391,7 @@ Result<void> write_reply(int descriptor, Reply reply) {
 }
 
 Result<Reply> map_reply(int descriptor) {
+    core::fresh_memory().forget();
     const Error incomplete{ErrorCode::internal, "the reader process ended without a complete reply"};
     const auto mapping = map_sealed(descriptor);
     if (!mapping) return mapping.error();

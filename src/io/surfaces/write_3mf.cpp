@@ -22,8 +22,8 @@
 namespace isotet::io {
 namespace {
 
-using checking::TriangleGroup;
 using checking::triangle_groups;
+using checking::TriangleGroup;
 
 constexpr std::array<std::string_view, 1> object_fields{"isovalue"};
 constexpr std::uint64_t text_of_vertex = 70, text_of_triangle = 50; // at most, about
@@ -84,15 +84,24 @@ void append_vertex(std::string& out, const Array& positions, std::uint64_t verte
     out += "/>\n";
 }
 
-void append_object(std::string& out, const Surface& surface, const TriangleGroup& group, std::size_t id) {
+/// The last part of it is missing where that is cancelled.
+void append_object(std::string& out, const Surface& surface, const TriangleGroup& group, std::size_t id,
+                   const Progress& progress) {
+    constexpr std::size_t lines_at_once = 1 << 12;
+    std::size_t lines = 0;
+    const auto stops = [&] { return ++lines % lines_at_once == 0 && progress.cancelled(); };
     constexpr std::array<std::string_view, 3> corners_of_triangle{"v1", "v2", "v3"};
     const std::vector<std::uint64_t> vertices = vertices_of(surface.triangles, group.triangles);
     out += fmt::format("<object id=\"{}\" type=\"{}\" name=\"{}\"><mesh><vertices>\n", id,
                        closes(surface.triangles, group.triangles) ? "model" : "surface", xml_name(group.name));
-    for (const std::uint64_t vertex : vertices) append_vertex(out, surface.positions, vertex);
+    for (const std::uint64_t vertex : vertices) {
+        if (stops()) return;
+        append_vertex(out, surface.positions, vertex);
+    }
     out += "</vertices><triangles>\n";
     surface.triangles.visit([&](auto corners) {
         for (const std::uint64_t triangle : group.triangles) {
+            if (stops()) return;
             out += "<triangle";
             for (std::size_t k = 0; k < 3; ++k) {
                 const auto vertex = static_cast<std::uint64_t>(corners[3 * triangle + k]);
@@ -111,12 +120,12 @@ bool has_infinite_positions(const Surface& surface) {
     });
 }
 
-std::string model_of(const Surface& surface, const std::vector<TriangleGroup>& groups) {
+std::string model_of(const Surface& surface, const std::vector<TriangleGroup>& groups, const Progress& progress) {
     std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"millimeter\" xml:lang=\"en-US\" "
                       "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">\n<resources>\n";
     std::string items;
     for (std::size_t i = 0; i < groups.size(); ++i) {
-        append_object(out, surface, groups[i], i + 1);
+        append_object(out, surface, groups[i], i + 1, progress);
         items += fmt::format("<item objectid=\"{}\"/>", i + 1);
     }
     return out + "</resources>\n<build>" + items + "</build>\n</model>\n";
@@ -139,7 +148,7 @@ Result<WriteReport> write_3mf(const SurfaceToWrite& input) {
     ZipWriter archive;
     if (auto ok = archive.add("[Content_Types].xml", content_types); !ok) return ok.error();
     if (auto ok = archive.add("_rels/.rels", relationships); !ok) return ok.error();
-    const std::string model = model_of(surface, triangle_groups(surface, object_fields));
+    const std::string model = model_of(surface, triangle_groups(surface, object_fields), input.progress);
     if (input.progress.cancelled()) return Error{ErrorCode::cancelled, "writing was cancelled"};
     if (auto ok = archive.add("3D/3dmodel.model", model); !ok) return ok.error();
     const std::string bytes = std::move(archive).finish();
