@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <cstdlib>
 #include <mutex>
 #include <new>
 #include <vector>
@@ -77,8 +78,24 @@ Block map_block(std::size_t bytes) {
 /// No data also where the pages could not all be used.
 Block map_fresh(std::size_t bytes) { return fresh_memory().take(bytes) ? map_block(bytes) : Block{}; }
 
+/// Memory of malloc(): a list that grows under a lock must not come back to it by an operator new that asks how much memory
+/// is left (checked_new.cpp).
+template <class T>
+struct PlainHeap {
+    using value_type = T;
+
+    T* allocate(std::size_t count) {
+        if (void* const memory = std::malloc(count * sizeof(T))) return static_cast<T*>(memory);
+        throw std::bad_alloc();
+    }
+    void deallocate(T* memory, std::size_t) noexcept { std::free(memory); }
+    friend bool operator==(PlainHeap, PlainHeap) { return true; }
+};
+
 /// Blocks given back, waiting for the next one who wants about as much; and what is in use.
 class KeptBlocks {
+    using Blocks = std::vector<Block, PlainHeap<Block>>;
+
 public:
     /// The smallest block that is large enough and not more than a quarter too large, else a piece of one that is so much
     /// larger that it was made for something else; with reuse, a piece of any.
@@ -177,7 +194,7 @@ private:
 
     /// Takes `bytes` and little more off a kept block. What is left begins at a huge page if the block does, but for what
     /// lies between the piece and the next huge page.
-    Block cut_off(std::vector<Block>::iterator block, std::size_t bytes) {
+    Block cut_off(Blocks::iterator block, std::size_t bytes) {
         const Block whole = *block;
         std::size_t piece = round_up(bytes, page_size());
         if (whole.bytes <= piece + std::max(large_block, bytes / 4)) {
@@ -216,8 +233,8 @@ private:
     }
 
     std::mutex mutex_;
-    std::vector<Block> blocks_; ///< oldest first
-    std::size_t bytes_ = 0;     ///< of them
+    Blocks blocks_;         ///< oldest first
+    std::size_t bytes_ = 0; ///< of them
     std::size_t in_use_ = 0;
     std::size_t peak_ = 0; ///< of both, since reuse began
     int reuses_ = 0;       ///< BlockReuse that live
