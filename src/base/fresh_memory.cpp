@@ -22,6 +22,7 @@ bool FreshMemory::take(std::size_t bytes) {
         known_ = std::min<std::uint64_t>(room, bytes + known_at_most);
     }
     known_ -= bytes;
+    refusal_ = {}; // what was refused was not needed, or has been found
     return true;
 }
 

@@ -80,8 +80,8 @@ void cancel(std::vector<Face<Point>>& faces) {
 using LocalFace = Face<std::uint8_t>;
 using PackedFace = Face<std::uint64_t>;
 
-/// Calls f(a, b, c) for the outer faces of the tets into which a stored cell is split, counter-clockwise seen from outside: what
-/// the others have within the cell cancels.
+/// Calls f(a, b, c) for the outer faces of the tets into which a stored cell is split, counter-clockwise seen from
+/// outside: the others cancel within the cell.
 template <class F>
 void for_outer_faces(const Packed& packed, const std::uint64_t* locals, const StoredCell& cell, const F& f) {
     const WholeCell whole = ranked_cell(packed, locals, cell);
