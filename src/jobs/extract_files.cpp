@@ -321,11 +321,12 @@ Result<bool> ExtractRun::load(std::size_t step) {
     if (*cells_in_file) {
         input.all_cells = [this, step, all = input](const Run& run) mutable -> Result<ContourInput> {
             caller_.detail(fmt::format("reading all cells of step {}", step));
-            Result<Grid> grid = source_->read_the_rest(plan_.read, step, run);
-            if (!grid) return grid.error();
-            Result<StepFields> of_all = carried_fields(plan_, *grid, run);
+            Result<ReadResult> read = source_->read_the_rest(plan_.read, step, run);
+            if (!read) return read.error();
+            Result<StepFields> of_all = carried_fields(plan_, read->grid, run);
             if (!of_all) return of_all.error();
-            all.grid = *std::move(grid);
+            all.grid = std::move(read->grid);
+            cell_numbers_ = std::move(read->cell_numbers);
             all.cell_fields = std::move(of_all->cell);
             return all;
         };

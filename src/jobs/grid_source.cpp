@@ -613,13 +613,13 @@ Result<ReadResult> GridSource::read_active(const FieldsToRead& fields, std::size
     return result;
 }
 
-Result<Grid> GridSource::read_the_rest(const FieldsToRead& fields, std::size_t step, const Run& run) const {
+Result<ReadResult> GridSource::read_the_rest(const FieldsToRead& fields, std::size_t step, const Run& run) const {
     Result<ReadResult> result = read_file(fields, step, read_options_, run);
-    if (!result) return result.error();
-    if (options_.hanging_points == HangingChoice::leave) return std::move(result->grid);
+    if (!result || options_.hanging_points == HangingChoice::leave) return result;
     Result<ClosedGrid> all = close_hanging_points(result->grid, run);
     if (!all) return all.error();
-    return std::move(all->grid);
+    result->grid = std::move(all->grid);
+    return result;
 }
 
 Result<Grid> GridSource::read_block(const BlockInfo& block, std::size_t step, Caller& caller) const {

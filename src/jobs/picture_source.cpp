@@ -379,8 +379,10 @@ Result<void> PictureSource::read_cells(const FieldsToRead& fields, std::size_t s
         contents.cells = some->cells_in_file.value_or(contents.grid.cells.count());
         needs_all_cells_ = !some->cells_in_file; // of the next steps, too, most likely
         if (needs_all_cells_) return {};
-        const auto all = [source = *source_, fields, step](const Run& run) {
-            return source.read_the_rest(fields, step, run);
+        const auto all = [source = *source_, fields, step](const Run& run) -> Result<Grid> {
+            Result<ReadResult> read = source.read_the_rest(fields, step, run);
+            if (!read) return read.error();
+            return std::move(read->grid);
         };
         const bool has_boundary = active->boundary && active->boundary->is_there;
         if (some->bounds || has_boundary) {

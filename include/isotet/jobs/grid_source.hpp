@@ -126,7 +126,7 @@ public:
     Result<ReadResult> read_active(const FieldsToRead& fields, std::size_t step, const ReadActiveCells& active,
                                    Caller& caller) const;
     /// The grid of which read_active() gave some cells. Nothing is noted again.
-    Result<Grid> read_the_rest(const FieldsToRead& fields, std::size_t step, const Run& run) const;
+    Result<ReadResult> read_the_rest(const FieldsToRead& fields, std::size_t step, const Run& run) const;
 
     /// A grid that was read, with empty cells in place of all but these.
     /// `cells`     as GridOptions::cells, all of which must hold

@@ -208,6 +208,7 @@ void ActivePass::pass(std::uint64_t first_cell, std::uint64_t cells, const Index
         n = corners_of(cell);
         if (has_left_out && is_left_out(cell)) {
             for (std::size_t k = 0; k < n; ++k) broken |= core::widened(corners[k]) >= points;
+            if (target_.kept_before.empty()) send_them(); // it has a number: those behind it do not follow those before
             continue;
         }
         std::uint32_t all = shared_bit | used_bit;

@@ -242,12 +242,13 @@ private:
         const Result<bool> hang = may_have_hanging_points(result.grid, pass_again);
         if (!hang && hang.error().code != ErrorCode::invalid_data) return hang.error();
         if (!hang || *hang) return std::optional<ReadResult>();
-        if (const Array numbers = filter.numbers(); !numbers.empty()) {
-            const auto read = read_fields(numbers.as<std::uint64_t>(), result);
+        if (wants_numbers()) {
+            const Array all = filter.numbers(); // empty where there is no cell
+            const auto numbers = all.empty() ? std::span<const std::uint64_t>() : all.as<std::uint64_t>();
+            const auto read = read_fields(numbers, result);
             if (!read) return read.error();
             if (!*read) return std::optional<ReadResult>();
-            if (options_.active_cells->options.extract.source_cells)
-                result.cell_numbers = numbers_in_grid(numbers.as<std::uint64_t>());
+            if (options_.active_cells->options.extract.source_cells) result.cell_numbers = numbers_in_grid(numbers);
         }
         if (!used_.empty()) {
             const Box box = box_of(result.grid.points, used_);
