@@ -230,7 +230,7 @@ Result<std::optional<std::uint64_t>> ExtractRun::read_grid(std::size_t step) {
         return read->cells_in_file;
     }
     Result<ReadResult> read = source_->read_numbered(plan_.read, step, caller_);
-    if (!read) return with_way_out(read.error(), job_, plan_);
+    if (!read) return with_cheaper_plan(read.error(), job_, plan_);
     grid_ = std::move(read->grid);
     cell_numbers_ = std::move(read->cell_numbers);
     return std::optional<std::uint64_t>{};

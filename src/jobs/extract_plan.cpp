@@ -122,7 +122,7 @@ Result<void> check_solid(const ExtractJob& job) {
 
 } // namespace
 
-Error with_way_out(Error error, const ExtractJob& job, const ExtractPlan& plan) {
+Error with_cheaper_plan(Error error, const ExtractJob& job, const ExtractPlan& plan) {
     if (error.code != ErrorCode::out_of_memory || plan.active_cells) return error;
     ExtractPlan cheaper = plan;
     const auto try_it = [&](std::string_view way) {

@@ -79,7 +79,7 @@ Estimate predict(const ExtractJob& job, const ExtractPlan& plan, const FieldSamp
                  std::size_t together);
 
 /// An error of reading all cells; where memory ran out, with what would make active ones do.
-Error with_way_out(Error error, const ExtractJob& job, const ExtractPlan& plan);
+Error with_cheaper_plan(Error error, const ExtractJob& job, const ExtractPlan& plan);
 
 /// The values that a solid has, of one isovalue.
 SolidRange range_for(const SolidChoice& choice, double isovalue);
