@@ -42,7 +42,7 @@ private:
     Refusal refusal_;
 };
 
-/// What the system and the control group have, less what this process has taken and not written to yet.
+/// What the system, its swap and the control group have, less what this process has taken and not written to yet.
 ISOTET_API std::uint64_t unclaimed_memory();
 
 /// Of the process.

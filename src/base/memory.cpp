@@ -87,9 +87,23 @@ std::uint64_t unwritten(std::uint64_t heap, const Pages& pages) {
     return own == 0 ? 0 : taken - std::min(taken, own);
 }
 
-std::uint64_t free_of_system() {
-    return std::min(proc_bytes("/proc/meminfo", "MemAvailable:").value_or(unlimited),
-                    control_group_free("/proc/self/cgroup", "/sys/fs/cgroup"));
+enum class Swap : std::uint8_t { counts, does_not };
+
+std::uint64_t free_of_system(Swap swap) {
+    std::uint64_t machine = proc_bytes("/proc/meminfo", "MemAvailable:").value_or(unlimited);
+    if (swap == Swap::counts && machine != unlimited) machine += proc_bytes("/proc/meminfo", "SwapFree:").value_or(0);
+    return std::min(machine, control_group_free("/proc/self/cgroup", "/sys/fs/cgroup"));
+}
+
+/// What there is, less what was taken and not written to yet.
+std::uint64_t unclaimed(Swap swap) {
+    const Heap heap = heap_of_process();
+    std::uint64_t system = free_of_system(swap);
+    const std::uint64_t least = system - std::min(system, unwritten(heap.used + heap.free, pages_of_process()));
+    if (heap.free <= least / 4) return least;
+    trim_heap(); // what was free of the heap may have been there, or not
+    system = free_of_system(swap);
+    return system - std::min(system, unwritten(heap.used, pages_of_process()));
 }
 
 } // namespace
@@ -122,18 +136,10 @@ std::uint64_t control_group_free(const std::string& membership, const std::strin
     return least;
 }
 
-std::uint64_t unclaimed_memory() {
-    const Heap heap = heap_of_process();
-    std::uint64_t system = free_of_system();
-    const std::uint64_t least = system - std::min(system, unwritten(heap.used + heap.free, pages_of_process()));
-    if (heap.free <= least / 4) return least;
-    trim_heap(); // what was free of the heap may have been there, or not
-    system = free_of_system();
-    return system - std::min(system, unwritten(heap.used, pages_of_process()));
-}
+std::uint64_t unclaimed_memory() { return unclaimed(Swap::counts); }
 
 std::uint64_t free_memory() {
-    const std::uint64_t least = unclaimed_memory();
+    const std::uint64_t least = unclaimed(Swap::does_not);
     rlimit limit{};
     if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return least;
     return std::min<std::uint64_t>(least,
