@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <numeric>
 
 #include <gtest/gtest.h>
 
@@ -323,6 +324,69 @@ TEST(ActiveCellsOfFiles, AreReadTwiceWithTheCellFieldsOfAll) {
     ASSERT_TRUE(extract_files(job, listener));
     EXPECT_TRUE(was_read_twice(listener));
     EXPECT_TRUE(test::content_of(job.out) == reference_file(job, folder));
+}
+
+/// Cells by number: which a file has in another piece, too, so that they are left out.
+template <class IsGhost>
+void add_ghosts(Grid& grid, const IsGhost& is_ghost) {
+    std::vector<std::uint8_t> ghosts(grid.cells.count());
+    for (std::size_t i = 0; i < ghosts.size(); ++i) ghosts[i] = is_ghost(i) ? 1 : 0;
+    grid.cell_fields.push_back({"vtkGhostType", Array::own(std::move(ghosts))});
+}
+
+/// Tets in a row that share no points; two of three are cut at 0.1.
+Grid row_of_tets(bool last_is_flat) {
+    constexpr std::size_t count = 200;
+    std::vector<float> points, values;
+    std::vector<std::int32_t> corners(4 * count);
+    for (std::size_t tet = 0; tet < count; ++tet) {
+        const auto x = static_cast<float>(2 * tet);
+        const float top = last_is_flat && tet + 1 == count ? 0.0f : 1.0f;
+        points.insert(points.end(), {x, 0, 0, x + 1, 0, 0, x, 1, 0, x + 1 - top, 1 - top, top});
+        values.insert(values.end(), {tet % 3 == 0 ? 2.0f : -1.0f, 1, 1, 0.5f + 0.001f * x});
+    }
+    std::iota(corners.begin(), corners.end(), 0);
+    Grid grid;
+    grid.points = Array::own(std::move(points), 3);
+    grid.cells.connectivity = Array::own(std::move(corners));
+    grid.point_fields = {{"gyroid", Array::own(std::move(values))}};
+    return grid;
+}
+
+TEST(ActiveCellsOfFiles, HaveTheirNumbersBehindCellsThatAreLeftOut) {
+    const test::TemporaryFolder folder;
+    const std::string file = folder.file("grid.vtu");
+    for (const bool twice : {false, true}) { // a flat tet that is cut has the direction of most
+        Grid grid = row_of_tets(twice);
+        add_cell_fields(grid);
+        add_ghosts(grid, [](std::size_t cell) { return cell % 5 == 1; });
+        ASSERT_TRUE(write_grid(grid, file));
+        EXPECT_TRUE(read(file, active_options({0.1})).value().cells_in_file);
+        ExtractJob job = active_job(file, folder.file("active.vtp"));
+        job.isovalues = {0.1};
+        job.with = {"number", "vector"};
+        job.source_cells = true;
+        Listener listener;
+        ASSERT_TRUE(extract_files(job, listener));
+        EXPECT_EQ(was_read_twice(listener), twice);
+        EXPECT_TRUE(test::content_of(job.out) == reference_file(job, folder)) << (twice ? "twice" : "once");
+    }
+}
+
+TEST(ActiveCellsOfFiles, WithoutAnyCellSayThatNoneCanBeContoured) {
+    const test::TemporaryFolder folder;
+    const std::string file = folder.file("grid.vtu");
+    Grid grid = made("kuhn", 4);
+    add_cell_fields(grid);
+    add_ghosts(grid, [](std::size_t) { return true; });
+    ASSERT_TRUE(write_grid(grid, file));
+    ExtractJob job = active_job(file, folder.file("active.vtp"));
+    job.with = {"number"};
+    Listener listener;
+    const auto result = extract_files(job, listener);
+    ASSERT_FALSE(result);
+    EXPECT_EQ(result.error().code, ErrorCode::invalid_data);
+    EXPECT_NE(result.error().message.find("no cell that can be contoured"), std::string::npos) << result.error().message;
 }
 
 TEST(ActiveCellsOfFiles, AreNotReadAloneWhereOthersMatter) {
