@@ -59,6 +59,39 @@ FALLBACK = BEGIN + '''
   return [first[0] && second[0], Math.max(first[1], second[1]) <= 1, had, by.device !== null, by.whyNoDevice.includes(WHY) || by.whyNoDevice];
 })()'''
 
+# What does not fit in the module's memory is for the processor, and so are all other surfaces of the grid; a module that stops is closed.
+STOPPED = BEGIN + '''
+  const by = await fromArrays(grid, {device}), right = await fromArrays(grid), {card} = by.grid, {exports} = card;
+  let asked = 0;
+  card.exports = {...exports, card_room: () => { ++asked; card.take({room: null}); }};
+  for (const value of [0.1, 0.2, 0.3]) if (!compare(await by.contour(value), right.contour(value))[0]) return value;
+  const seen = [asked, by.device !== null], other = await fromArrays(grid, {device});
+  other.grid.card.exports = {...other.grid.card.exports, card_room: () => { throw new WebAssembly.RuntimeError('unreachable'); }};
+  await other.contour(0.1);
+  for (const value of [0.2, 0.3]) seen.push(await other.contour(value).then(() => 'made', ({message}) => message));
+  return seen;
+})()'''
+
+# A module that can hardly grow has no room for what would go to the card.
+CROWDED = BEGIN + '''
+  /** The module, whose memory may have so many pages of 64 kB. */
+  const limited = (module, pages) => {
+    const number = (value) => (value > 127 ? [value % 128 + 128, ...number(Math.floor(value / 128))] : [value]);
+    const read = (at) => { const [rest, end] = module[at] > 127 ? read(at + 1) : [0, at + 1]; return [rest * 128 + module[at] % 128, end]; };
+    for (let at = 8; ;) {
+      const [bytes, begin] = read(at + 1), memory = [1, 1, ...number(512), ...number(pages)];
+      if (module[at] === 5) return new Uint8Array([...module.subarray(0, at), 5, memory.length, ...memory, ...module.subarray(begin + bytes)]);
+      at = begin + bytes;
+    }
+  };
+  const {useModule} = await import('./isotet/isotet.js'), data = await (await fetch('./crowded.isotet')).arrayBuffer();
+  const right = await open(data), surfaces = [0.1, 0.2].map((value) => { const {positions, triangles} = right.contour(value); return {positions: positions.slice(), triangles: triangles.slice(), fields: {}}; });
+  await useModule(limited(new Uint8Array(await (await fetch('./isotet/isotet_engine.wasm')).arrayBuffer()), right.memory.buffer.byteLength / 65536 + 16));
+  const by = await open(data, {device}), seen = [];
+  for (const [i, value] of [0.1, 0.2].entries()) seen.push(compare(await by.contour(value), surfaces[i])[0]);
+  return [...seen, by.device !== null];
+})()'''
+
 # Memory that threads share.
 THREADS = BEGIN + '''
   const by = await fromArrays(grid, {device, threads: 2}), right = await fromArrays(grid, {threads: 1});
@@ -73,12 +106,23 @@ BROKEN = WRONG.replace("'return a - rounded'", "'return a + rounded rounded'")
 LOST = '''const request = GPUAdapter.prototype.requestDevice;
   GPUAdapter.prototype.requestDevice = async function (...words) { return window.lent = await request.apply(this, words); };'''
 SMALL = "Object.defineProperty(GPUSupportedLimits.prototype, 'maxStorageBufferBindingSize', {get: () => LIMIT});"
+# Buffers are as small as the limits say.
+BUFFERS = """for (const name of ['maxStorageBufferBindingSize', 'maxBufferSize']) Object.defineProperty(GPUSupportedLimits.prototype, name, {get: () => 1200000});
+  const make = GPUDevice.prototype.createBuffer;
+  GPUDevice.prototype.createBuffer = function (told) { if (told.size > 1200000) throw new Error(told.label); return make.call(this, told); };"""
+# A card that takes denormals for zero and knows no infinities, of values that have both: stored ones have none.
+FLUSHING = WRONG.replace("'return a + rounded', 'return a - rounded'", "'return page[push.values + point];', `var bits = page[push.values + point];"
+                         " if ((bits & 0x7f800000u) == 0u || (bits & 0x7fffffffu) == 0x7f800000u) { bits = 0u; } return bits;`")
+TINY = FLUSHING + '''
+  grid.values.gyroid = grid.values.gyroid.map((value, i) => (i % 97 === 0 ? Infinity * value : 1e-40 * value));'''
 
 CASES = [
     ('no adapter', "navigator.gpu.requestAdapter = async () => null;", '', 'no WebGPU', [False, False]),
     ('a wrong card', WRONG, '', 'another surface', [False, False]),
     ('kernels that are not taken', BROKEN, '', '', [False, False]),
     ('a lost card', LOST, 'window.lent.destroy();', 'lost', [True, False]),
+    ('buffers that are small', BUFFERS, '', '', [True, True]),
+    ('denormals and infinities', TINY, '', '', [True, True]),
     ('a grid that is too large', SMALL.replace('LIMIT', '150000'), '', '', [True, True]),
 ]
 
@@ -91,7 +135,7 @@ def main():
         with open(os.path.join(folder, 'page.html'), 'w', encoding='ascii') as file:
             file.write('<!doctype html><link rel="icon" href="data:,"><title>page</title>')
         os.symlink(folder, os.path.join(folder, 'isolated'))
-        for name, grid in GRIDS.items():
+        for name, grid in {**GRIDS, 'crowded': 'make:kuhn:80:gyroid'}.items():
             subprocess.run([program, 'pack', grid, os.path.join(folder, name + '.isotet'), '--quiet'], check=True)
 
         class Handler(http.server.SimpleHTTPRequestHandler):
@@ -122,6 +166,8 @@ def main():
                 script = SURFACES.replace('FILE', json.dumps(f'./{name}.isotet')).replace('OPEN', 'openInWorker' if name == 'mixed' else 'open')
                 expect(name, script, ['swiftshader', '', True, True, True])
             expect('threads', THREADS, [True, 2, 'swiftshader', '', True, True], 'isolated/page.html')
+            expect('no memory for a surface', STOPPED, [1, True, 'isotet stopped, for lack of memory perhaps (unreachable)', 'the grid was closed'])
+            expect('no memory for a grid', CROWDED, [True, True, True])
             for name, before, between, why, [had, has] in CASES:
                 expect(name, FALLBACK.replace('BEFORE', before).replace('BETWEEN', between).replace('WHY', json.dumps(why)), [True, True, had, has, True])
         finally:

@@ -23,7 +23,7 @@ export async function startEngine({engine, grid, files, told}, say) {
   const page = {
     text: (at, count) => {
       const text = JSON.parse(new TextDecoder().decode(bytes(at, count)));
-      if (!card?.hears(text)) say({text});
+      if (!card?.take(text)) say({text});
     },
     frame: (at, count) => say({frame: bytes(at, count).buffer, spent: card.spent}),
     surface: (places, placeBytes, corners, cornerBytes) => say({positions: bytes(places, placeBytes).buffer, triangles: bytes(corners, cornerBytes).buffer}),

@@ -20,13 +20,16 @@ class GraphicsCard {
     card.lost = new Promise((_, fail) => { device.lost.then(({message}) => fail(new Error(`the graphics card was lost: ${message}`))); });
     card.lost.catch(() => {}); // who waits is told
     const {vendor, architecture, device: model, description} = adapter.info ?? {};
-    card.info = {vendor, architecture, device: model, description, bindingBytes: device.limits.maxStorageBufferBindingSize};
+    const {maxBufferSize, maxStorageBufferBindingSize} = device.limits;
+    card.info = {vendor, architecture, device: model, description, bindingBytes: Math.min(maxBufferSize, maxStorageBufferBindingSize)};
+    card.most = Math.floor(Math.min(card.info.bindingBytes, (maxBufferSize - headBytes) / 2) / 12); // the answer has both
     return card;
   }
 
   buffers = {};
   grid = 0;                               // that is there
-  most = null;                            // {vertices, triangles} that there is room for
+  most = 0;                               // vertices or triangles that it can make
+  room = null;                            // {vertices, triangles} that there is room for
   last = {vertices: 0, triangles: 0};     // of the surface before
 
   /** @param texts  of the kernels, by their names */
@@ -63,7 +66,7 @@ class GraphicsCard {
   }
 
   makeRoom() {
-    const {storage, to, from, read} = bufferUses, {vertices, triangles} = this.most;
+    const {storage, to, from, read} = bufferUses, {vertices, triangles} = this.room;
     if (this.buffers.positions?.size === 12 * vertices && this.buffers.triangles?.size === 12 * triangles) return;
     this.buffer('positions', 12 * vertices, storage | from);
     this.buffer('triangles', 12 * triangles, storage | from);
@@ -134,14 +137,14 @@ class GraphicsCard {
   /**
    * Makes a surface.
    * @param wanted  as the module says it
-   * @param room    takes (vertices, triangles, tied points, selected clusters), gives where {positions, triangles} go in the memory
+   * @param roomFor takes (vertices, triangles, tied points, selected clusters), gives where {positions, triangles} go in the memory, or null
    * @returns       false: it is too large
    */
-  async surface(wanted, memory, room) {
+  async surface(wanted, memory, roomFor) {
     const {device} = this;
     for (const kind of ['validation', 'out-of-memory', 'internal']) device.pushErrorScope(kind);
     try {
-      return await this.passes(wanted, memory, room);
+      return await this.passes(wanted, memory, roomFor);
     } finally {
       const errors = [];
       for (let i = 0; i < 3; ++i) errors.push(await this.within(device.popErrorScope()));
@@ -150,15 +153,15 @@ class GraphicsCard {
     }
   }
 
-  async passes(wanted, memory, room) {
-    const {device} = this, {push, segments} = wanted, most = Math.floor(this.info.bindingBytes / 12);
-    this.most ??= {vertices: Math.min(most, 1 << 16), triangles: Math.min(most, 1 << 17)};
+  async passes(wanted, memory, roomFor) {
+    const {device, most} = this, {push, segments} = wanted;
+    this.room ??= {vertices: Math.min(most, 1 << 16), triangles: Math.min(most, 1 << 17)};
     this.take(wanted, memory);
     for (;;) {
       this.makeRoom();
-      [push[0], push[1]] = [this.most.vertices, this.most.triangles];
+      [push[0], push[1]] = [this.room.vertices, this.room.triangles];
       device.queue.writeBuffer(this.buffers.push, 0, new Uint32Array(push));
-      const more = (kind) => Math.min(this.most[kind], Math.ceil(1.25 * this.last[kind]));
+      const more = (kind) => Math.min(this.room[kind], Math.ceil(1.25 * this.last[kind]));
       const guess = {vertices: more('vertices'), triangles: more('triangles')};
       this.encode(segments, guess);
       const bytes = headBytes + 12 * (guess.vertices + guess.triangles);
@@ -166,23 +169,22 @@ class GraphicsCard {
         const [vertices, manyVertices, triangles, manyTriangles, overflow, selected, tied] = new Uint32Array(range, 32, 7);
         if (manyVertices || manyTriangles || vertices > most || triangles > most) return {large: true};
         const done = !overflow && vertices <= guess.vertices && triangles <= guess.triangles;
-        if (done) bring(range, guess, {vertices, triangles}, memory, room(vertices, triangles, tied, selected));
-        return {vertices, triangles, overflow, selected, tied, done};
+        const large = done && !copyAnswer(range, guess, {vertices, triangles}, memory, roomFor(vertices, triangles, tied, selected));
+        return {vertices, triangles, overflow, selected, tied, done, large};
       });
       if (head.large) return false;
       this.last = {vertices: head.vertices, triangles: head.triangles};
       if (head.done) return true;
       if (head.overflow) {
         for (const kind of ['vertices', 'triangles'])
-          if (head[kind] > this.most[kind]) this.most[kind] = Math.min(most, Math.ceil(1.25 * head[kind]));
+          if (head[kind] > this.room[kind]) this.room[kind] = Math.min(most, Math.ceil(1.25 * head[kind]));
         continue;
       }
       const encoder = device.createCommandEncoder();
       this.copy(encoder, head);
       device.queue.submit([encoder.finish()]);
-      await this.read(headBytes + 12 * (head.vertices + head.triangles), (range) =>
-        bring(range, head, head, memory, room(head.vertices, head.triangles, head.tied, head.selected)));
-      return true;
+      return this.read(headBytes + 12 * (head.vertices + head.triangles), (range) =>
+        copyAnswer(range, head, head, memory, roomFor(head.vertices, head.triangles, head.tied, head.selected)));
     }
   }
 
@@ -196,36 +198,45 @@ const uploadBytes = 1 << 24; // of a copy at most: the browser keeps one of its 
 /** Of WebGPU's GPUBufferUsage. */
 const bufferUses = {read: 1, from: 4, to: 8, uniform: 64, storage: 128, indirect: 256};
 
-const isSoftware = (adapter) => Boolean(adapter.info?.isFallbackAdapter ?? adapter.isFallbackAdapter) || adapter.info?.architecture === 'swiftshader';
+/** Whether the adapter is the processor: SwiftShader, Mesa's or Microsoft's. */
+function isSoftware({info, isFallbackAdapter}) {
+  const names = [info?.architecture, info?.device, info?.description].join(' ');
+  return Boolean(info?.isFallbackAdapter ?? isFallbackAdapter) || /swiftshader|llvmpipe|softpipe|\bwarp\b|basic render/i.test(names);
+}
 
-/** Copies an answer, in which there is room for `guess`. */
-function bring(range, guess, {vertices, triangles}, memory, places) {
+/** Copies an answer, in which there is room for `guess`. False: the memory has no places for it. */
+function copyAnswer(range, guess, {vertices, triangles}, memory, places) {
+  if (!places) return false;
   const into = new Uint8Array(memory.buffer);
   into.set(new Uint8Array(range, headBytes, 12 * vertices), places.positions);
   into.set(new Uint8Array(range, headBytes + 12 * guess.vertices, 12 * triangles), places.triangles);
+  return true;
 }
+
+/** The module stopped: its memory is in no known state, and it is called no more. */
+const isTrap = (error) => error instanceof WebAssembly.RuntimeError;
 
 /** A module, and the card that it may have. Calls are made one after another. */
 export class CardOfModule {
   /** @param exports  of the module;  `memory`  has its buffer */
   constructor(exports, memory) {
-    Object.assign(this, {exports, memory, card: null, said: null, why: ''});
+    Object.assign(this, {exports, memory, card: null, message: null, why: ''});
   }
 
-  /** Takes what a module says to the card; false: it is for others. */
-  hears(said) {
-    if (!['card', 'kernels', 'room', 'tested', 'measured'].some((kind) => kind in said)) return false;
-    this.said = said;
+  /** Takes a message of the module to the card; false: it is for others. */
+  take(message) {
+    if (!['card', 'kernels', 'room', 'tested', 'measured'].some((kind) => kind in message)) return false;
+    this.message = message;
     return true;
   }
 
   spent = 0; // ms of the card, by the call that is made
 
-  /** What a call makes the module say. */
+  /** The message of a call. */
   ask(call) {
-    this.said = null;
+    this.message = null;
     call();
-    return this.said;
+    return this.message;
   }
 
   /**
@@ -243,30 +254,32 @@ export class CardOfModule {
     }
   }
 
-  /** Tests the card that was opened with a small grid, and uses it where it is right: a call like others. */
+  /** Tests the card that was opened with a small grid, and uses it where it is right: a call like others. Throws where the module stops. */
   async use() {
     if (!this.opened) return;
     try {
       this.card = this.opened;
       const {bindingBytes} = this.card.info;
       this.exports.card_on(bindingBytes, this.card.device.limits.maxComputeWorkgroupsPerDimension);
-      const said = await this.settle(() => this.exports.card_test());
-      if (this.card && said.tested) this.end(new Error(said.tested));
+      const {tested} = await this.settle(() => this.exports.card_test());
+      if (this.card && tested) this.end(new Error(tested));
     } catch (error) {
+      if (isTrap(error)) throw error;
       this.end(error);
     }
   }
 
-  /** Makes a call, and makes it again when the card has done what it waits for. Returns what was last said to the card. */
+  /** Makes a call, and makes it again when the card has done what it waits for. Returns the last message. Throws where the module stops. */
   async settle(call) {
     for (this.spent = 0;;) {
-      const said = this.ask(call);
-      if (!said?.card) return said;
+      const message = this.ask(call);
+      if (!message?.card) return message;
       const start = performance.now();
       try {
-        const {exports} = this, room = (...counts) => this.ask(() => exports.card_room(...counts)).room;
-        if (!await this.card.surface(said.card, this.memory, room)) exports.card_leave();
+        const {exports} = this, roomFor = (...counts) => this.ask(() => exports.card_room(...counts)).room;
+        if (!await this.card.surface(message.card, this.memory, roomFor)) exports.card_leave();
       } catch (error) {
+        if (isTrap(error)) throw error;
         this.end(error);
       }
       this.spent += performance.now() - start;

@@ -77,8 +77,8 @@ export interface DeviceInfo {
 }
 
 /**
- * A grid of `device: 'webgpu'`. Surfaces have the same vertices and triangles in the same order; the card was tested for that, and that
- * coordinates are within one unit in the last place. It makes surfaces of packed grids in single precision without `fields`; the
+ * A grid of `device: 'webgpu'`. The card makes surfaces in single precision without `fields`, from the second isovalue in a row of a
+ * field on: the same triangles in the same order, coordinates within one unit in the last place, as a small grid has tested. The
  * processor makes all others, and all after the card has failed. Calls are made one after another; arrays are copies, which stay valid.
  */
 export interface DeviceGrid extends Described {

@@ -90,7 +90,7 @@ export class Grid {
   take(at, count, onProgress) {
     const said = JSON.parse(new TextDecoder().decode(new Uint8Array(this.memory.buffer, at, count).slice())); // of shared memory it decodes none
     if (said.progress) onProgress?.(...said.progress);
-    else if (!this.card?.hears(said)) this.answer = said;
+    else if (!this.card?.take(said)) this.answer = said;
   }
 
   card = null; // CardOfModule
@@ -102,12 +102,17 @@ export class Grid {
     new Uint8Array(this.memory.buffer).set(text, at);
     try {
       this.exports.call();
-    } catch (error) { // its memory is in no known state
-      const inThread = Boolean(this.exports.has_failed?.());
-      threadsFailed ||= inThread;
-      this.close();
-      throw new Error(`${inThread ? 'a thread of isotet' : 'isotet'} stopped, for lack of memory perhaps (${error.message})`);
+    } catch (error) {
+      throw this.stopped(error);
     }
+  }
+
+  /** What is thrown where the module stopped: its memory is in no known state. */
+  stopped(error) {
+    const inThread = Boolean(this.exports.has_failed?.());
+    threadsFailed ||= inThread;
+    this.close();
+    return new Error(`${inThread ? 'a thread of isotet' : 'isotet'} stopped, for lack of memory perhaps (${error.message})`);
   }
 
   answered() {
@@ -122,7 +127,11 @@ export class Grid {
 
   /** The same, waiting for the graphics card. */
   async callWithCard(message) {
-    await this.card.settle(() => this.make(message));
+    try {
+      await this.card.settle(() => this.make(message));
+    } catch (error) {
+      throw this.exports ? this.stopped(error) : error;
+    }
     return this.answered();
   }
 
@@ -203,7 +212,7 @@ export class DeviceGrid {
     const {points, cells, fields, times, notes, threads} = grid;
     grid.card = new CardOfModule(grid.exports, grid.memory);
     await grid.card.open(kind);
-    await grid.card.use();
+    await grid.card.use().catch((error) => { throw grid.stopped(error); });
     return Object.assign(new DeviceGrid(), {grid, points, cells, fields, times, notes, threads});
   }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstdlib>
+#include <limits>
 #include <utility>
 
 #include "api/finish.hpp"
@@ -21,7 +23,14 @@ namespace layout = vulkan::layout;
 /// At the front of the state: two lists of clusters, as layout::ListHead, then eight words that tell of the surface.
 constexpr std::uint32_t head_words = 16;
 
-constexpr std::uint64_t most_memory = std::uint64_t{7} << 29; ///< of the module: it may have 4 GiB
+/// Whether so many bytes can be had, and a little more: where they cannot, taking them ends the module.
+bool is_there_room(std::uint64_t bytes) {
+    const std::uint64_t wanted = bytes + (std::uint64_t{1} << 20);
+    if (wanted > std::numeric_limits<std::size_t>::max()) return false;
+    void* const volatile room = std::malloc(wanted); // volatile: compilers leave out what is only given back
+    std::free(room);
+    return room != nullptr;
+}
 
 struct Push {
 #define ISOTET_FLOAT(name) float name;
@@ -113,7 +122,7 @@ void Card::turn_off() {
 
 Card::Asking::~Asking() {
     card_.may_ask_ = false;
-    if (!card_.asked_of_) card_.brought_.clear();
+    if (!card_.asked_of_) card_.made_.clear();
 }
 
 bool Card::takes(const PackedGrid& packed, std::size_t isovalues, const ExtractOptions& options) const {
@@ -156,11 +165,8 @@ bool Card::plan(const core::Packed& packed) {
     place(places_.masks, all_masks);
     const std::uint64_t largest =
         std::max({page_.bytes(), 4 * words, clusters * sizeof(layout::Cluster), std::uint64_t{4096}});
-    const std::uint64_t here = std::uint64_t{__builtin_wasm_memory_size(0)} << 16;
-    if (largest > binding_bytes_ || here + page_.bytes() + clusters * sizeof(layout::Cluster) > most_memory)
-        return false;
     places_.all = static_cast<std::uint32_t>(words);
-    return true;
+    return largest <= binding_bytes_ && is_there_room(page_.bytes() + clusters * sizeof(layout::Cluster));
 }
 
 void Card::fill(const core::Packed& packed) {
@@ -176,32 +182,44 @@ void Card::fill(const core::Packed& packed) {
         tables_[places_.clusters_without_data + c / 32] |= std::uint32_t{packed.has_no_data[c]} << c % 32;
 }
 
+void Card::release_upload() {
+    page_words_.release();
+    clusters_ = {};
+    tables_ = {};
+}
+
+/// Whether the grid is on the card, or goes there with what is asked for next.
+bool Card::can_have(const std::shared_ptr<const core::Packed>& packed) {
+    if (there_.lock() == packed) return true;
+    if (too_large_.lock() == packed) return false;
+    there_.reset();
+    release_upload();
+    if (!plan(*packed)) {
+        too_large_ = packed;
+        return false;
+    }
+    fill(*packed);
+    there_ = packed;
+    ++number_;
+    return true;
+}
+
 Result<Extraction> Card::extract(const PackedGrid& packed, double isovalue, const ExtractOptions& options) {
     if (auto ok = api::check_isovalues({&isovalue, 1}); !ok) return ok.error();
     if (auto ok = api::check_fit(options, packed.data()); !ok) return ok.error();
     const core::Packed& grid = packed.data();
     const auto stored = core::store_isovalue<float>(isovalue, grid.storage);
-    const auto found = std::find_if(brought_.begin(), brought_.end(), [&](const Brought& one) {
+    const auto found = std::find_if(made_.begin(), made_.end(), [&](const Made& one) {
         return one.packed == &grid && one.ties == options.ties && is_same(one.isovalue, stored);
     });
-    if (found == brought_.end()) {
-        if (there_.lock() != packed.shared_data()) {
-            there_.reset();
-            if (!plan(grid)) {
-                too_large_ = packed.shared_data();
-                return isotet::extract(packed, isovalue, options, {1, {}});
-            }
-            fill(grid);
-            there_ = packed.shared_data();
-            ++number_;
-        }
+    if (found == made_.end()) {
+        if (!can_have(packed.shared_data())) return isotet::extract(packed, isovalue, options, {1, {}});
         asked_of_ = packed.shared_data();
         asked_ = stored;
         asked_ties_ = options.ties;
-        told_ = false;
+        is_handed_out_ = false;
         return Error{ErrorCode::cancelled, "the graphics card works on this surface"};
     }
-    if (found->left) return isotet::extract(packed, isovalue, options, {1, {}});
     ops::RawSurface raw;
     raw.positions = found->positions;
     raw.triangles = found->triangles;
@@ -245,8 +263,8 @@ std::vector<std::uint32_t> Card::push_words() const {
 }
 
 std::optional<view::Json> Card::wanted() {
-    if (!asked_of_ || told_) return std::nullopt;
-    told_ = true;
+    if (!asked_of_ || is_handed_out_) return std::nullopt;
+    is_handed_out_ = true;
     view::Json wanted = {
         {"grid", number_},
         {"push", push_words()},
@@ -264,8 +282,9 @@ std::optional<view::Json> Card::wanted() {
 }
 
 void Card::leave() {
-    brought_.push_back({asked_of_.get(), asked_, asked_ties_, {}, {}, 0, 0, true});
-    asked_of_.reset();
+    too_large_ = std::exchange(asked_of_, nullptr);
+    there_.reset();
+    release_upload();
 }
 
 view::Json Card::measure(double part, bool by_card) {
@@ -285,15 +304,14 @@ view::Json Card::measure(double part, bool by_card) {
 
 view::Json Card::room_for(std::uint32_t vertices, std::uint32_t triangles, std::uint32_t tied_points,
                           std::uint32_t selected_clusters) {
-    page_words_.release(); // they are there
-    clusters_ = {};
-    tables_ = {};
+    release_upload(); // it is there
+    if (!is_there_room(12 * (std::uint64_t{vertices} + triangles))) return nullptr;
     core::SharedBuffer<float> positions(3 * std::size_t{vertices});
     core::SharedBuffer<std::uint32_t> corners(3 * std::size_t{triangles});
     const view::Json room = {{"positions", reinterpret_cast<std::uintptr_t>(positions.data())},
                              {"triangles", reinterpret_cast<std::uintptr_t>(corners.data())}};
-    brought_.push_back({asked_of_.get(), asked_, asked_ties_, std::move(positions).to_array(3),
-                        std::move(corners).to_array(3), tied_points, selected_clusters});
+    made_.push_back({asked_of_.get(), asked_, asked_ties_, std::move(positions).to_array(3),
+                     std::move(corners).to_array(3), tied_points, selected_clusters});
     asked_of_.reset();
     return room;
 }

@@ -40,18 +40,18 @@ public:
 
     /// What the card is to do, once; nothing: nothing.
     std::optional<view::Json> wanted();
-    /// Memory for its answer: {"positions": address, "triangles": address}.
+    /// Memory for its answer: {"positions": address, "triangles": address}; null where there is none.
     view::Json room_for(std::uint32_t vertices, std::uint32_t triangles, std::uint32_t tied_points,
                         std::uint32_t selected_clusters);
 
-    /// The processor makes what is wanted.
+    /// The processor makes what is wanted, and all other surfaces of the grid: this one is too large.
     void leave();
 
     /// Extracts from the grid that was extracted from last, at a part of its range: what there is to tell of the
     /// surface; null where the card cannot have the grid, or something is wanted first.
     view::Json measure(double part, bool by_card);
 
-    /// While one is there, who calls can wait for the card. What was brought is kept until a call needs nothing more.
+    /// While one is there, who calls can wait for the card. Surfaces are kept until a call needs nothing more.
     class Asking {
     public:
         explicit Asking(Card& card) : card_(card) {
@@ -67,21 +67,22 @@ public:
     };
 
 private:
-    struct Brought {
+    struct Made {
         const core::Packed* packed;
         core::StoredIsovalue<float> isovalue;
         Ties ties;
         Array positions, triangles;
         std::uint64_t tied_points, selected_clusters;
-        bool left = false; ///< the card cannot
     };
     /// Where things of a grid lie, in words.
     struct Places {
         std::uint32_t counts, segments, blocks, starts, selected, emitted, masks, all; ///< of the state
         std::uint32_t clusters_without_data;                                           ///< in the tables
     };
+    bool can_have(const std::shared_ptr<const core::Packed>& packed);
     bool plan(const core::Packed& packed);
     void fill(const core::Packed& packed);
+    void release_upload();
     std::vector<std::uint32_t> push_words() const;
 
     bool on_ = false, may_ask_ = false;
@@ -100,8 +101,8 @@ private:
     std::shared_ptr<const core::Packed> asked_of_; ///< null: nothing is asked for
     core::StoredIsovalue<float> asked_{0};
     Ties asked_ties_ = Ties::merge;
-    bool told_ = false;
-    std::vector<Brought> brought_;
+    bool is_handed_out_ = false; ///< what is asked for, by wanted()
+    std::vector<Made> made_;
 };
 
 Card& card();

@@ -30,7 +30,7 @@ __attribute__((export_name("card_off"))) void isotet_card_off() { isotet::web::c
 /// The surface that is wanted is too large for the card.
 __attribute__((export_name("card_leave"))) void isotet_card_leave() { isotet::web::card().leave(); }
 
-/// Says {"room": ...}: where the surface that was wanted goes.
+/// Says {"room": ...}: where the surface that was wanted goes; null: there is no memory.
 __attribute__((export_name("card_room"))) void isotet_card_room(std::uint32_t vertices, std::uint32_t triangles,
                                                                 std::uint32_t tied_points, std::uint32_t selected) {
     using namespace isotet;
