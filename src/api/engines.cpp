@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include <isotet/engine.hpp>
+#include "api/engines.hpp"
 
 #include "base/errors.hpp"
 
@@ -7,10 +7,8 @@ namespace isotet {
 
 namespace {
 
-using ExtractPacked = Result<std::vector<Extraction>> (*)(const PackedGrid&, std::span<const double>,
-                                                          const ExtractOptions&, const Run&);
-using ExtractDirect = Result<DirectExtraction> (*)(const Grid&, const PointField&, std::span<const double>,
-                                                   const DirectOptions&, const Run&);
+using api::ExtractDirect;
+using api::ExtractPacked;
 
 /// A handle on the grid is all that the CPU needs.
 class GridInMemory final : public EngineGrid {
@@ -71,15 +69,17 @@ Result<DirectExtraction> Engine::extract_direct(const Grid&, const PointField&, 
     return Error{ErrorCode::internal, "the " + std::string(name()) + " engine extracts from packed grids only"};
 }
 
+std::shared_ptr<const Engine> api::engine_in_memory(std::string_view name, ExtractPacked packed, ExtractDirect direct) {
+    return std::make_shared<const EngineInMemory>(name, packed, direct);
+}
+
 std::shared_ptr<const Engine> cpu_engine() {
-    static const auto engine = std::make_shared<const EngineInMemory>("cpu", static_cast<ExtractPacked>(extract),
-                                                                      static_cast<ExtractDirect>(extract_direct));
+    static const auto engine = api::engine_in_memory("cpu", extract, extract_direct);
     return engine;
 }
 
 std::shared_ptr<const Engine> reference_engine() {
-    static const auto engine =
-        std::make_shared<const EngineInMemory>("reference", extract_by_reference, extract_direct_by_reference);
+    static const auto engine = api::engine_in_memory("reference", extract_by_reference, extract_direct_by_reference);
     return engine;
 }
 

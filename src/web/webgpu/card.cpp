@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "api/engines.hpp"
 #include "api/finish.hpp"
 #include "api/fits.hpp"
 #include "api/ties.hpp"
@@ -47,53 +48,17 @@ bool is_same(const core::StoredIsovalue<float>& a, const core::StoredIsovalue<fl
 
 view::Json place_of(const void* data, std::size_t bytes) { return {reinterpret_cast<std::uintptr_t>(data), bytes}; }
 
-class CardGrid final : public EngineGrid {
-public:
-    explicit CardGrid(const PackedGrid& grid) : packed_(grid) {}
-
-    const PackedGrid& packed() const noexcept override { return packed_; }
-    Result<void> set_field(const PointField& field, const Run& run) override {
-        return take(packed_.with_field(field, run));
-    }
-    Result<void> set_points(const Array& points, const Run& run) override {
-        return take(packed_.with_points(points, run));
-    }
-    Result<std::vector<Extraction>> extract(std::span<const double> isovalues, const ExtractOptions& options,
-                                            const Run& run) override {
-        if (!card().takes(packed_, isovalues.size(), options) || card().is_new(packed_))
-            return isotet::extract(packed_, isovalues, options, run);
-        Result<Extraction> made = card().extract(packed_, isovalues.front(), options);
-        if (!made) return made.error();
-        std::vector<Extraction> all;
-        all.push_back(*std::move(made));
-        return all;
-    }
-
-private:
-    Result<void> take(Result<PackedGrid> changed) {
-        if (!changed) return std::move(changed).error();
-        packed_ = *changed;
-        return {};
-    }
-
-    PackedGrid packed_;
-};
-
-/// The CPU engine, but for grids.
-class CardEngine final : public Engine {
-public:
-    std::string_view name() const noexcept override { return cpu_engine()->name(); }
-    bool is_stateless() const noexcept override { return true; }
-    Result<std::unique_ptr<EngineGrid>> create_grid(const PackedGrid& packed, const Run&) const override {
-        return std::unique_ptr<EngineGrid>(std::make_unique<CardGrid>(packed));
-    }
-    bool extracts_directly() const noexcept override { return true; }
-    Result<DirectExtraction> extract_direct(const Grid& grid, const PointField& field,
-                                            std::span<const double> isovalues, const DirectOptions& options,
-                                            const Run& run) const override {
-        return cpu_engine()->extract_direct(grid, field, isovalues, options, run);
-    }
-};
+/// By the card what it takes, from the second call for a grid on.
+Result<std::vector<Extraction>> extract_by_card(const PackedGrid& packed, std::span<const double> isovalues,
+                                                const ExtractOptions& options, const Run& run) {
+    if (!card().takes(packed, isovalues.size(), options) || card().is_new(packed))
+        return isotet::extract(packed, isovalues, options, run);
+    Result<Extraction> made = card().extract(packed, isovalues.front(), options);
+    if (!made) return made.error();
+    std::vector<Extraction> all;
+    all.push_back(*std::move(made));
+    return all;
+}
 
 } // namespace
 
@@ -103,7 +68,7 @@ Card& card() {
 }
 
 std::shared_ptr<const Engine> card_engine() {
-    static const auto engine = std::make_shared<const CardEngine>();
+    static const auto engine = api::engine_in_memory(cpu_engine()->name(), extract_by_card, extract_direct);
     return engine;
 }
 
