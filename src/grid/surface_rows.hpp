@@ -15,6 +15,6 @@ namespace isotet::core {
 Surface with_triangles(const Surface& surface, const std::vector<std::uint64_t>& triangles);
 
 /// The tuples of an array with some numbers, in their order; itself where it is empty.
-Array rows_of(const Array& array, const std::vector<std::uint64_t>& rows);
+ISOTET_API Array rows_of(const Array& array, const std::vector<std::uint64_t>& rows);
 
 } // namespace isotet::core
