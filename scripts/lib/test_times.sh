@@ -31,12 +31,13 @@ print_times() {
     done
 }
 
-# print_failures LOG: the last lines of each test that failed in ctest's LOG, once more, where the end of a run is read.
+# print_failures LOG: the last lines of each test that failed in ctest's LOG, once more, where the end of a run is read;
+# of a process of several tests, without what says that one begins or passed.
 print_failures() {
     awk -v lines=25 '
         /^[0-9]+\/[0-9]+ Testing: / { name = $3 }
         /^Output:$/ { count = 0; next }
-        /^<end of output>$/ { next }
+        /^<end of output>$/ || /^\[( RUN      |       OK |-{10}|={10})\]/ { next }
         { said[count++ % lines] = $0 }
         /^Test Failed\.$/ {
             printf "\n%s failed:\n", name

@@ -18,6 +18,7 @@
 #include "grid/cell/node_order.hpp"
 #include "linear/curved_grid.hpp"
 #include "linear/refined_cells.hpp"
+#include "support/seeds.hpp"
 #include "support/small_grid.hpp"
 
 namespace isotet::test::high_levels {
@@ -180,7 +181,7 @@ ClosedGrid closed(const Grid& grid) {
 TEST(HighLevels, AreClosedInCellsOfAnyKindAndDegree) {
     const double area = area_of_plane();
     for (const char* shape : {"kuhn", "hex", "wedge", "pyramid", "mixed"})
-        for (const unsigned degree : {3u, 4u, 5u}) {
+        for (const unsigned degree : some_of({3u, 4u, 5u})) {
             SCOPED_TRACE(shape + std::string(" of degree ") + std::to_string(degree));
             const ClosedGrid found = closed(cells_of_degree(levels(shape), all_of(degree)));
             EXPECT_EQ(found.report.curved_cells, found.report.cells);
@@ -198,7 +199,8 @@ TEST(HighLevels, NothingIsOpenOnCurvedShapes) {
         return out;
     };
     // Cubic tets beside curved edges may become folded polyhedra.
-    for (const auto& [shape, degree] : {std::pair{"hex", 3u}, {"hex", 4u}, {"mixed", 3u}, {"kuhn", 3u}, {"kuhn", 4u}}) {
+    for (const auto& [shape, degree] : some_of<std::pair<const char*, unsigned>>(
+             {{"hex", 3u}, {"hex", 4u}, {"mixed", 3u}, {"kuhn", 3u}, {"kuhn", 4u}})) {
         SCOPED_TRACE(shape + std::string(" of degree ") + std::to_string(degree));
         const ClosedGrid found = closed(cells_of_degree(levels(shape, 2), all_of(degree), warp));
         EXPECT_GT(found.report.near_faces, 0u);
@@ -246,7 +248,7 @@ TEST(HighLevels, AreClosedBesideCellsOfLowerDegree) {
 TEST(HighLevels, AreClosedInBezierCells) {
     const double area = area_of_plane();
     for (const char* shape : {"kuhn", "hex", "wedge"})
-        for (const unsigned degree : {2u, 3u}) {
+        for (const unsigned degree : some_of({2u, 3u})) {
             SCOPED_TRACE(shape + std::string(" of degree ") + std::to_string(degree));
             const ClosedGrid found = closed(cells_of_degree(levels(shape), all_of(degree), {}, Nodes::bezier));
             expect_closed(found, bumpy, 0.37);
