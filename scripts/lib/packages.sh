@@ -2,8 +2,8 @@
 # The Debian packages that the project needs, and how missing ones get onto a Debian 12. Sourced, never run.
 
 readonly packages_to_build=(g++ cmake ninja-build libtbb-dev libfmt-dev libmeshoptimizer-dev libfreetype-dev libpng-dev libwebp-dev libcli11-dev nlohmann-json3-dev libboost-dev libjpeg62-turbo-dev
-    libpugixml-dev libdeflate-dev liblz4-dev liblzma-dev
-    libhdf5-dev libcgns-dev glslc libvulkan-dev)
+    libpugixml-dev libdeflate-dev liblz4-dev liblzma-dev libxxhash-dev
+    libhdf5-dev libcgns-dev libseccomp-dev glslc libvulkan-dev)
 # What the software Vulkan device of software_vulkan.sh is linked with.
 readonly packages_for_software_vulkan=(
     libdrm2 libexpat1 libllvm15 libwayland-client0 libx11-xcb1 libxcb-dri3-0 libxcb-present0 libxcb-randr0 libxcb-shm0

@@ -8,6 +8,9 @@
 
 #include <fmt/format.h>
 
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
 #include <isotet/boundary.hpp>
 #include <isotet/fields.hpp>
 #include <isotet/grid.hpp>
@@ -50,28 +53,17 @@ bool same_values(const Array& a, const Array& b) {
 
 /// A checksum of what the cells hold.
 std::uint64_t sum_of(const Cells& cells) {
-    constexpr std::uint64_t factor = 0x9E3779B97F4A7C15U;
-    std::uint64_t sum = static_cast<std::uint64_t>(cells.uniform_type);
-    for (const Array* array : {&cells.connectivity, &cells.offsets, &cells.types, &cells.faces, &cells.face_offsets}) {
-        const auto* bytes = static_cast<const std::byte*>(array->data());
-        sum = (sum ^ array->bytes() ^ static_cast<std::uint64_t>(array->type())) * factor;
-        for (std::size_t left = array->bytes(); left > 0;) {
-            std::uint64_t word = 0;
-            const std::size_t size = std::min(left, sizeof(word));
-            std::memcpy(&word, bytes, size);
-            sum = (sum ^ word) * factor;
-            sum ^= sum >> 32U;
-            bytes += size;
-            left -= size;
-        }
-    }
+    auto sum = static_cast<std::uint64_t>(cells.uniform_type);
+    for (const Array* array : {&cells.connectivity, &cells.offsets, &cells.types, &cells.faces, &cells.face_offsets})
+        sum = XXH3_64bits_withSeed(array->data(), array->bytes(), sum ^ static_cast<std::uint64_t>(array->type()));
     return sum;
 }
 
 /// Whether the boundary of both is the same.
 bool same_cells(const Grid& a, const Grid& b) {
-    return same_values(a.points, b.points) && same_values(a.cells.types, b.cells.types) &&
-           same_values(a.cells.offsets, b.cells.offsets) && same_values(a.cells.connectivity, b.cells.connectivity);
+    const auto have_same = [&](auto... arrays) { return (same_values(a.cells.*arrays, b.cells.*arrays) && ...); };
+    return same_values(a.points, b.points) && a.cells.uniform_type == b.cells.uniform_type &&
+           have_same(&Cells::types, &Cells::offsets, &Cells::connectivity, &Cells::faces, &Cells::face_offsets);
 }
 
 } // namespace
@@ -412,8 +404,8 @@ Result<void> GridView::need_cells(const Run& run) {
     if (has_cells_) return {};
     Result<Grid> again = (is_of_file() ? options_.read_cells : options_.read_step)(step_, run);
     if (!again) return again.error();
-    const bool first = is_of_file() && cells_sum_ == 0;
-    if (!same_values(again->points, grid_.points) || (!first && sum_of(again->cells) != cells_sum_))
+    const bool first = is_of_file() && !cells_sum_;
+    if (!same_values(again->points, grid_.points) || (!first && sum_of(again->cells) != *cells_sum_))
         return Error{ErrorCode::invalid_data,
                      "the file has changed since it was read: it has other points or cells now, "
                      "so what needs its cells cannot be shown. Start isotet view again"};
@@ -427,7 +419,7 @@ Result<void> GridView::need_cells(const Run& run) {
 void GridView::rest() {
     if (uses_packed() && lean_ && has_cells_ && !solids_) {
         if (!sample_) sample_ = sample_of_cells(grid_);
-        if (cells_sum_ == 0) cells_sum_ = sum_of(grid_.cells);
+        if (!cells_sum_) cells_sum_ = sum_of(grid_.cells);
         direct_.contour.reset();
         const std::lock_guard lock(grid_mutex_);
         grid_.cells = {};

@@ -39,11 +39,11 @@ struct GridViewOptions {
     std::size_t preview_triangles = 150'000; ///< of a surface while a hand moves
     std::size_t max_triangles = 8'000'000; ///< of a surface that a page is sent; larger ones are previews of that size
     int threads = 0;                       ///< at most; 0: all
-    std::shared_ptr<const Engine> engine = cpu_engine(); ///< for isosurfaces; one that keeps no grid
-    std::size_t step = 0;                  ///< that the grid is
-    std::size_t steps = 1;                 ///< of the file
+    std::shared_ptr<const Engine> engine = cpu_engine();   ///< for isosurfaces; one that keeps no grid
+    std::size_t step = 0;                                  ///< that the grid is
+    std::size_t steps = 1;                                 ///< of the file
     std::optional<RefineOptions> refine = RefineOptions{}; ///< of curved cells, as ShowMessage::refined asks
-    ReadStep read_step; ///< of any step. Nothing: there is one step, and cells stay in memory
+    ReadStep read_step;               ///< of any step. Nothing: there is one step, and cells stay in memory
     std::optional<PackedFile> packed; ///< where the grid lies, packed: then read_step need not give all cells
     std::uint64_t cells = 0;          ///< of it, of which the grid has some
     ReadStep read_cells;              ///< with `packed`: of any step with all cells
@@ -229,19 +229,19 @@ private:
     static void add(FrameSurface surface, const std::shared_ptr<const Mesh>& mesh,
                     const std::vector<std::string>& known, FrameParts& making);
 
-    mutable std::mutex grid_mutex_; ///< of grid_, grid_number_ and step_, while another thread may copy them
-    Grid grid_;                     ///< without cells where has_cells_ is false; of `cells_` where these are chosen
+    mutable std::mutex grid_mutex_;  ///< of grid_, grid_number_ and step_, while another thread may copy them
+    Grid grid_;                      ///< without cells where has_cells_ is false; of `cells_` where these are chosen
     std::vector<std::string> cells_; ///< as ViewState::cells
     std::optional<Cells> all_cells_; ///< of grid_ where cells are chosen
-    std::uint64_t grid_number_ = 0; ///< another one when cells or points are others
-    bool has_cells_ = true;         ///< of a packed file: and grid_ has values of its cell fields, by these cells
+    std::uint64_t grid_number_ = 0;  ///< another one when cells or points are others
+    bool has_cells_ = true;          ///< of a packed file: and grid_ has values of its cell fields, by these cells
     std::map<std::string, Field> file_cells_; ///< of a packed file at this step, by the user's cells: those that colour
     std::uint64_t cell_count_ = 0;
-    std::optional<Solids> solids_;     ///< of solids_key_, while solids are shown
+    std::optional<Solids> solids_; ///< of solids_key_, while solids are shown
     std::string solids_key_;
-    std::optional<PackedSource> lean_; ///< instead of packed_, where cells may be released
-    std::optional<CellSample> sample_; ///< of the cells that were released
-    std::uint64_t cells_sum_ = 0;      ///< of these, to know them again
+    std::optional<PackedSource> lean_;       ///< instead of packed_, where cells may be released
+    std::optional<CellSample> sample_;       ///< of the cells that were released
+    std::optional<std::uint64_t> cells_sum_; ///< of these, to know them again
     GridViewOptions options_;
     std::vector<OfferedField> fields_;
     Box bounds_;
@@ -259,16 +259,16 @@ private:
     std::string range_key_;
     std::optional<std::vector<double>> scene_isovalues_; ///< that scene_ draws; nothing: it draws nothing yet
     std::optional<VolumeState> scene_volume_;            ///< the same
-    OpacityCurve scene_opacity_;              ///< that scene_volume_ became
+    OpacityCurve scene_opacity_;                         ///< that scene_volume_ became
     std::uint32_t volume_part_ = 3; ///< pictures of a moving volume have this part of the width and height
-    ValueRange volume_range_;                 ///< that presets of opacity are over, of volume_field_: that of the step
-    std::string volume_field_;                ///< which was shown first, so that steps can be compared
+    ValueRange volume_range_;       ///< that presets of opacity are over, of volume_field_: that of the step
+    std::string volume_field_;      ///< which was shown first, so that steps can be compared
     std::mutex boundary_mutex_;
-    std::shared_ptr<const Mesh> boundary_; ///< of the cells and points of grid_; null: not there yet
+    std::shared_ptr<const Mesh> boundary_;            ///< of the cells and points of grid_; null: not there yet
     std::shared_ptr<const Surface> boundary_surface_; ///< the same
-    std::uint64_t boundary_grid_ = 0;      ///< grid_number_ that it is of
-    std::uint64_t boundary_number_ = 0;    ///< another one for each boundary, in its key
-    std::vector<std::uint64_t> boundary_cells_; ///< of the triangles of the boundary with boundary_cells_of_
+    std::uint64_t boundary_grid_ = 0;                 ///< grid_number_ that it is of
+    std::uint64_t boundary_number_ = 0;               ///< another one for each boundary, in its key
+    std::vector<std::uint64_t> boundary_cells_;       ///< of the triangles of the boundary with boundary_cells_of_
     std::uint64_t boundary_cells_of_ = 0;
     std::optional<Classes> classes_;
 };

@@ -84,6 +84,8 @@ const std::vector<LibraryRule>& library_rules() {
         {"libdeflate", {"libdeflate.h"}, {"src/io/", "src/view/saved_mesh.cpp", "tests/"}},
         {"liblz4", {"lz4"}, {"src/io/vtk_xml/"}},
         {"liblzma", {"lzma"}, {"src/io/vtk_xml/"}},
+        {"libseccomp", {"seccomp.h"}, {"src/io/confined/sandbox.cpp"}},
+        {"xxHash", {"xxhash"}, {"src/session/fingerprint.cpp", "src/view/grid_view.cpp"}},
         {"GoogleTest", {"gtest/", "gmock/"}, {"tests/"}},
         {"nanobind", {"nanobind/"}, {"python/"}},
     };

@@ -2,20 +2,20 @@
 #include "io/confined/sandbox.hpp"
 
 #include <cerrno>
-#include <cstddef>
 #include <cstdint>
 #include <fcntl.h>
-#include <linux/audit.h>
-#include <linux/filter.h>
 #include <linux/landlock.h>
 #include <linux/sched.h>
-#include <linux/seccomp.h>
+#include <memory>
+#include <optional>
+#include <seccomp.h>
+#include <sstream>
+#include <string>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
-#include <vector>
 
 #include "io/files/file_kind.hpp"
 
@@ -49,176 +49,69 @@ void confine_files(std::span<const std::string> readable) {
     ::syscall(SYS_landlock_restrict_self, ruleset.number(), 0);
 }
 
-#if defined(__x86_64__) || defined(__aarch64__)
-
-#if defined(__x86_64__)
-constexpr std::uint32_t architecture = AUDIT_ARCH_X86_64;
-#else
-constexpr std::uint32_t architecture = AUDIT_ARCH_AARCH64;
-#endif
-
-/// A seccomp program: each call adds what decides about one system call; the end refuses all others.
+/// A seccomp program: calls that are not named are refused with EPERM, another machine's calls end the process.
 class Filter {
 public:
-    Filter() {
-        load(offsetof(seccomp_data, arch));
-        jump(BPF_JEQ, architecture, 1, 0);
-        answer(SECCOMP_RET_KILL_PROCESS);
-        load(offsetof(seccomp_data, nr));
+    Filter() : filter_(seccomp_init(SCMP_ACT_ERRNO(EPERM)), &seccomp_release) {
+        if (filter_) seccomp_attr_set(filter_.get(), SCMP_FLTATR_ACT_BADARCH, SCMP_ACT_KILL_PROCESS);
     }
-    void allow(long call) {
-        jump(BPF_JEQ, static_cast<std::uint32_t>(call), 0, 1);
-        answer(SECCOMP_RET_ALLOW);
+    void allow(int call) { add(SCMP_ACT_ALLOW, call, {}); }
+    void refuse(int call, int error) { add(SCMP_ACT_ERRNO(static_cast<std::uint32_t>(error)), call, {}); }
+    /// Where of an argument's low half the bits of `mask` are `value`.
+    void allow_where(int call, unsigned argument, std::uint32_t mask, std::uint32_t value) {
+        add(SCMP_ACT_ALLOW, call, SCMP_CMP(argument, SCMP_CMP_MASKED_EQ, mask, value));
     }
-    void refuse(long call, int error) {
-        jump(BPF_JEQ, static_cast<std::uint32_t>(call), 0, 1);
-        answer(refusal(error));
-    }
-    void allow_without(long call, unsigned argument, std::uint32_t bits, int error) {
-        on_argument(call, argument);
-        jump(BPF_JSET, bits, 0, 1);
-        answer(refusal(error));
-        answer(SECCOMP_RET_ALLOW);
-    }
-    void allow_with(long call, unsigned argument, std::uint32_t bits, int error) {
-        on_argument(call, argument);
-        jump(BPF_JSET, bits, 1, 0);
-        answer(refusal(error));
-        answer(SECCOMP_RET_ALLOW);
-    }
-    void allow_equal(long call, unsigned argument, std::uint32_t value, int error) {
-        on_argument(call, argument);
-        jump(BPF_JEQ, value, 1, 0);
-        answer(refusal(error));
-        answer(SECCOMP_RET_ALLOW);
+    /// Else EACCES, from which libraries know that they may only read.
+    void allow_without(int call, unsigned argument, std::uint32_t bits) {
+        allow_where(call, argument, bits, 0);
+        for (std::uint32_t bit = 1; bit; bit <<= 1U)
+            if (bits & bit) add(SCMP_ACT_ERRNO(EACCES), call, SCMP_CMP(argument, SCMP_CMP_MASKED_EQ, bit, bit));
     }
     void install() {
-        answer(refusal(EPERM));
-        const sock_fprog program{static_cast<unsigned short>(steps_.size()), steps_.data()};
-        ::syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, 0, &program);
+        if (filter_ && complete_) seccomp_load(filter_.get());
     }
 
 private:
-    static constexpr std::uint32_t refusal(int error) { return SECCOMP_RET_ERRNO | static_cast<std::uint32_t>(error); }
-
-    /// Four steps follow, which end the program if it is this call.
-    void on_argument(long call, unsigned argument) {
-        jump(BPF_JEQ, static_cast<std::uint32_t>(call), 0, 4);
-        load(static_cast<std::uint32_t>(offsetof(seccomp_data, args) + 8 * argument)); // its low half: little-endian
+    void add(std::uint32_t action, int call, std::optional<scmp_arg_cmp> condition) {
+        if (!filter_ || call == __NR_SCMP_ERROR) return;
+        const int result = condition ? seccomp_rule_add(filter_.get(), action, call, 1, *condition)
+                                     : seccomp_rule_add(filter_.get(), action, call, 0);
+        if (result != 0) complete_ = false;
     }
-    void load(std::uint32_t at) { steps_.push_back({BPF_LD | BPF_W | BPF_ABS, 0, 0, at}); }
-    void jump(unsigned kind, std::uint32_t value, std::uint8_t when_true, std::uint8_t when_false) {
-        steps_.push_back({static_cast<std::uint16_t>(BPF_JMP | kind | BPF_K), when_true, when_false, value});
-    }
-    void answer(std::uint32_t value) { steps_.push_back({BPF_RET | BPF_K, 0, 0, value}); }
 
-    std::vector<sock_filter> steps_;
+    std::unique_ptr<void, decltype(&seccomp_release)> filter_;
+    bool complete_ = true;
 };
 
 void confine_calls() {
     Filter filter;
-    constexpr long allowed[] = {
-        SYS_read,
-        SYS_pread64,
-        SYS_readv,
-        SYS_preadv,
-        SYS_lseek,
-        SYS_close,
-        SYS_fstat,
-        SYS_newfstatat,
-        SYS_statx,
-        SYS_statfs,
-        SYS_fstatfs,
-        SYS_faccessat,
-        SYS_readlinkat,
-        SYS_getdents64,
-        SYS_getcwd,
-        SYS_flock,
-        SYS_fadvise64,
-        SYS_dup,
-        SYS_write,
-        SYS_writev,
-        SYS_pwrite64,
-        SYS_recvmsg,
-        SYS_munmap,
-        SYS_mremap,
-        SYS_madvise,
-        SYS_brk,
-        SYS_futex,
-        SYS_sched_yield,
-        SYS_sched_getaffinity,
-        SYS_nanosleep,
-        SYS_clock_nanosleep,
-        SYS_clock_gettime,
-        SYS_clock_getres,
-        SYS_gettimeofday,
-        SYS_getrusage,
-        SYS_times,
-        SYS_sysinfo,
-        SYS_uname,
-        SYS_getpid,
-        SYS_getppid,
-        SYS_gettid,
-        SYS_getuid,
-        SYS_geteuid,
-        SYS_getgid,
-        SYS_getegid,
-        SYS_getrandom,
-        SYS_rt_sigaction,
-        SYS_rt_sigprocmask,
-        SYS_rt_sigreturn,
-        SYS_sigaltstack,
-        SYS_set_robust_list,
-        SYS_set_tid_address,
-        SYS_rseq,
-        SYS_exit,
-        SYS_exit_group,
-        SYS_ppoll,
-        SYS_restart_syscall,
-        SYS_membarrier,
-        SYS_getcpu,
-#if defined(__x86_64__)
-        SYS_stat,
-        SYS_lstat,
-        SYS_access,
-        SYS_readlink,
-        SYS_getdents,
-        SYS_poll,
-        SYS_time,
-        SYS_getrlimit,
-        SYS_setrlimit,
-#endif
-#ifdef SYS_faccessat2
-        SYS_faccessat2,
-#endif
-    };
-    for (const long call : allowed) filter.allow(call);
+    // Those that an architecture or libseccomp does not have are left out.
+    std::istringstream allowed(
+        "read pread64 readv preadv lseek close fstat newfstatat statx statfs fstatfs faccessat readlinkat "
+        "getdents64 getcwd flock fadvise64 dup write writev pwrite64 recvmsg munmap mremap madvise brk futex "
+        "sched_yield sched_getaffinity nanosleep clock_nanosleep clock_gettime clock_getres gettimeofday "
+        "getrusage times sysinfo uname getpid getppid gettid getuid geteuid getgid getegid getrandom "
+        "rt_sigaction rt_sigprocmask rt_sigreturn sigaltstack set_robust_list set_tid_address rseq exit "
+        "exit_group ppoll restart_syscall membarrier getcpu stat lstat access readlink getdents poll time "
+        "getrlimit setrlimit faccessat2");
+    for (std::string name; allowed >> name;) filter.allow(seccomp_syscall_resolve_name(name.c_str()));
     constexpr auto to_write =
         static_cast<std::uint32_t>(O_WRONLY | O_RDWR | O_CREAT | O_TRUNC | O_APPEND | (O_TMPFILE & ~O_DIRECTORY));
-    filter.allow_without(SYS_openat, 2, to_write, EACCES);
-#if defined(__x86_64__)
-    filter.allow_without(SYS_open, 1, to_write, EACCES);
-#endif
-    filter.allow_without(SYS_mmap, 2, PROT_EXEC, EACCES);
-    filter.allow_without(SYS_mprotect, 2, PROT_EXEC, EACCES);
-    filter.allow_with(SYS_clone, 0, CLONE_THREAD, EPERM); // threads, but no processes
-    filter.allow_equal(SYS_prlimit64, 0, 0, EPERM);
-    filter.allow_equal(SYS_tgkill, 0, static_cast<std::uint32_t>(::getpid()), EPERM); // abort()
+    filter.allow_without(SCMP_SYS(openat), 2, to_write);
+    filter.allow_without(SCMP_SYS(open), 1, to_write);
+    filter.allow_without(SCMP_SYS(mmap), 2, PROT_EXEC);
+    filter.allow_without(SCMP_SYS(mprotect), 2, PROT_EXEC);
+    filter.allow_where(SCMP_SYS(clone), 0, CLONE_THREAD, CLONE_THREAD); // threads, but no processes
+    constexpr std::uint32_t all_bits = ~std::uint32_t{0};
+    filter.allow_where(SCMP_SYS(prlimit64), 0, all_bits, 0);
+    filter.allow_where(SCMP_SYS(tgkill), 0, all_bits, static_cast<std::uint32_t>(::getpid())); // abort()
     // Of fcntl() nothing that names a process to be signalled.
-    filter.allow_without(SYS_fcntl, 1, ~std::uint32_t(7 | F_DUPFD_CLOEXEC), EPERM);
-    filter.refuse(SYS_ioctl, ENOTTY);
-    filter.refuse(SYS_clone3, ENOSYS); // its flags cannot be seen; the C library then calls clone()
-#ifdef SYS_openat2
-    filter.refuse(SYS_openat2, ENOSYS);
-#endif
+    filter.allow_where(SCMP_SYS(fcntl), 1, ~std::uint32_t(7 | F_DUPFD_CLOEXEC), 0);
+    filter.refuse(SCMP_SYS(ioctl), ENOTTY);
+    filter.refuse(SCMP_SYS(clone3), ENOSYS); // its flags cannot be seen; the C library then calls clone()
+    filter.refuse(SCMP_SYS(openat2), ENOSYS);
     filter.install();
 }
-
-#else
-
-void confine_calls() {}
-
-#endif
 
 } // namespace
 
