@@ -250,13 +250,14 @@ ISOTET_API std::optional<FieldName> match_field_name(std::string_view name, cons
 /// `names`, nearest to `wanted` first (edit distance, upper and lower case alike), for error messages.
 ISOTET_API std::vector<std::string> nearest_first(std::string_view wanted, std::vector<std::string> names);
 
-// Cheap looks at a grid that has been read: what survey() counts exactly, and more, takes longer.
+// Cheap looks at a grid that has been read: what survey() counts exactly, and more, takes longer. After a cancel, what they
+// return means nothing.
 
 /// Cells by type (CellType, or VTK's number of a type that is not contoured), contoured or not.
 ///
 /// Guarantees   the same for any thread count; an empty map when Cells::types is no array of uint8
 /// Cost         one parallel pass over the types; none where all cells have the same type
-ISOTET_API std::map<std::uint8_t, std::uint64_t> count_cells_by_type(const Cells& cells);
+ISOTET_API std::map<std::uint8_t, std::uint64_t> count_cells_by_type(const Cells& cells, const Run& run = {});
 
 /// True for the types of which isotet makes tets: tetrahedron, voxel, hexahedron, wedge and pyramid.
 ISOTET_API bool is_contoured(std::uint8_t cell_type) noexcept;
@@ -279,7 +280,7 @@ struct CoincidentPoints {
 /// Guarantees   the same for any thread count; 0 where fewer than a thousandth of the points coincide
 /// Cost         one parallel pass over the points, about 65,000 of which are sorted; another over the connectivity only
 ///              where points coincide
-ISOTET_API CoincidentPoints estimate_coincident_points(const Grid& grid);
+ISOTET_API CoincidentPoints estimate_coincident_points(const Grid& grid, const Run& run = {});
 
 /// Places in a face or edge of a larger cell that does not have them, as between levels of refinement: the surface is open
 /// there. Points of the same place count once.
@@ -291,9 +292,9 @@ ISOTET_API Result<std::uint64_t> count_hanging_points(const Grid& grid, const Ru
 
 /// A power of ten within which points lie that a program has computed twice: they may differ by roundings of the grid's size.
 /// 0 where no coordinate but 0 is finite. Cost: one pass over the points
-ISOTET_API double rounding_of(const Array& points);
+ISOTET_API double rounding_of(const Array& points, const Run& run = {});
 
 /// False where estimate_coincident_points() finds none, whatever the cells are. Cost: the first of its passes
-ISOTET_API bool may_have_coincident_points(const Array& points);
+ISOTET_API bool may_have_coincident_points(const Array& points, const Run& run = {});
 
 } // namespace isotet

@@ -27,7 +27,7 @@ struct Progress {
 
 /// How a call is carried out.
 struct Run {
-    int threads = 0; ///< at most; 0: all
+    int threads = 0; ///< at most; 0: those of the caller's oneTBB arena, outside of one all
     Progress progress = {};
 };
 

@@ -54,11 +54,13 @@ struct Solid {
     double isosurface_area = 0;
     double boundary_area = 0;
     std::uint64_t open_edges = 0; ///< edges at the boundary not used equally often in both directions; 0: closed
-    std::uint64_t seam_edges = 0; ///< where isosurfaces end inside the grid, at faces that lie back to back as their points
-                                  ///< are doubled: the solid has walls there, and is no clean body
-    std::uint64_t unfit_edges = 0; ///< the same at faces that lie on smaller ones, which do not cover them, and at these
+    std::uint64_t seam_edges =
+        0; ///< where isosurfaces end inside the grid, at faces that lie back to back as their points
+           ///< are doubled: the solid has walls there, and is no clean body
+    std::uint64_t unfit_edges =
+        0; ///< the same at faces that lie on smaller ones, which do not cover them, and at these
     std::vector<SolidPatch> patches; ///< of the grid, by number; those that are not on the solid have no triangles
-    ContourResult contour;        ///< of the isosurfaces; its surfaces are empty
+    ContourResult contour;           ///< of the isosurfaces; its surfaces are empty
 };
 
 /// What Solid tells of its surface, of one that reduce() or keep_parts() changed.
@@ -73,7 +75,7 @@ struct SolidMeasure {
 /// Cost     O(F)
 /// Errors   invalid_argument: the surface has no cell field "boundary", or triangles that are not uint32; invalid_data: a
 ///          triangle has a vertex that is not there
-ISOTET_API Result<SolidMeasure> measure_solid(const Surface& surface);
+ISOTET_API Result<SolidMeasure> measure_solid(const Surface& surface, const Run& run = {});
 
 /// Makes solids of one grid and field, for one isovalue after another.
 ///
@@ -163,9 +165,10 @@ struct ClippedGrid {
     std::uint64_t cut_cells = 0;   ///< of the grid
     std::uint64_t polyhedra = 0;   ///< of the pieces of these
     std::uint64_t flat_pieces = 0; ///< left out: at ties, all that is inside of a cell may be a face of it
-    std::uint64_t folded_pieces = 0; ///< without polyhedra: pieces that no point sees from inside, some of whose cells are
-                                     ///< inside out
-    ContourResult contour;           ///< of the isosurfaces; its surfaces are empty
+    std::uint64_t folded_pieces =
+        0;                 ///< without polyhedra: pieces that no point sees from inside, some of whose cells are
+                           ///< inside out
+    ContourResult contour; ///< of the isosurfaces; its surfaces are empty
 };
 
 /// Clips one grid by one field, for one range of values after another.

@@ -85,8 +85,8 @@ ISOTET_API Result<Array> face_normals(const Surface& surface, const Run& run = {
 ISOTET_API Result<void> write_positions(const Surface& surface, const std::array<double, 3>& origin,
                                         std::span<float> out, const Run& run = {});
 
-/// Area of all triangles, summed in double in a fixed order; NaN when check() would call the surface invalid.
-ISOTET_API double area(const Surface& surface);
+/// Area of all triangles, summed in double in a fixed order; NaN when check() would call the surface invalid, or after a cancel.
+ISOTET_API double area(const Surface& surface, const Run& run = {});
 
 // The connected parts of a surface: counted, measured, kept or left out.
 
@@ -150,7 +150,7 @@ struct PartChoice {
     };
     Kind kind = Kind::largest;
     double limit = 1;
-    std::string region = {}; ///< "boundary", the grid's, or what else a caller knows
+    std::string region = {};                 ///< "boundary", the grid's, or what else a caller knows
     std::vector<std::uint64_t> numbers = {}; ///< as SurfaceParts counts; those that are not there do not matter
 
     friend bool operator==(const PartChoice&, const PartChoice&) = default;
@@ -193,8 +193,8 @@ struct ReduceOptions {
 struct ReducedSurface {
     Surface surface;
     std::uint64_t triangles_before = 0;
-    double error = 0;                   ///< that was reached, by the same measure
-    std::vector<std::string> left_out;  ///< names of what a reduced surface has no place for
+    double error = 0;                  ///< that was reached, by the same measure
+    std::vector<std::string> left_out; ///< names of what a reduced surface has no place for
 };
 
 /// Leaves out vertices and joins the triangles around them, where that moves the surface least.

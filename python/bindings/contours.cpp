@@ -348,7 +348,7 @@ void add_solids(nb::module_& module) {
     module.def(
         "measure_solid",
         [](const Surface& surface, const CallOptions& how) {
-            return measure_out(call(how, [&](const Run&) { return measure_solid(surface); }));
+            return measure_out(call(how, [&](const Run& run) { return measure_solid(surface, run); }));
         },
         "surface"_a, "call"_a);
     nb::class_<Solids>(module, "Solids")
@@ -383,8 +383,9 @@ void add_solids(nb::module_& module) {
 Grid with_sources(const ClippedGrid& clipped, bool source_cells) {
     Grid grid = clipped.grid;
     if (source_cells)
-        grid.cell_fields.push_back({"source_cell", clipped.source_cells.empty() ? Array::own(std::vector<std::int64_t>())
-                                                                                : clipped.source_cells});
+        grid.cell_fields.push_back({"source_cell", clipped.source_cells.empty()
+                                                       ? Array::own(std::vector<std::int64_t>())
+                                                       : clipped.source_cells});
     if (!clipped.edge_ends.empty()) {
         grid.point_fields.push_back({"edge_ends", clipped.edge_ends});
         grid.point_fields.push_back({"edge_weights", clipped.edge_weights});

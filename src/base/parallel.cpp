@@ -161,7 +161,7 @@ private:
 
 void with_threads(int threads, const std::function<void()>& work) {
     constexpr int most = 1024; // an arena takes memory for each thread it may get
-    const int count = threads > 0 ? std::min(threads, most) : tbb::info::default_concurrency();
+    const int count = threads > 0 ? std::min(threads, most) : threads_here();
     const AllowThreads allowed(count);
     CallArena(count).execute(work);
 }

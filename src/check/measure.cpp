@@ -100,7 +100,7 @@ Measures measure(const Mesh& mesh, std::size_t most) {
 
 namespace isotet {
 
-double area(const Surface& surface) {
+double area(const Surface& surface, const Run& run) {
     const auto mesh = checking::Mesh::open(surface);
     if (!mesh) return std::numeric_limits<double>::quiet_NaN();
     const std::uint64_t triangles = mesh->triangles();
@@ -110,7 +110,7 @@ double area(const Surface& surface) {
             const auto* const p = positions + 3 * static_cast<std::size_t>(corners[corner]);
             return core::Point{p[0], p[1], p[2]};
         };
-        core::parallel_each(blocks.size(), 1, [&](std::size_t block) {
+        core::parallel_pieces(blocks.size(), 1, run.progress, [&](std::size_t block, std::size_t) {
             double sum = 0;
             const auto [begin, end] = checking::block_of(block, triangles);
             for (std::uint64_t t = begin; t < end; ++t)
@@ -118,10 +118,13 @@ double area(const Surface& surface) {
             blocks[block] = sum;
         });
     };
-    core::IndexColumn(surface.triangles).visit([&](const auto* corners) {
-        if (surface.positions.type() == ScalarType::float32) measure(surface.positions.as<float>().data(), corners);
-        else measure(surface.positions.as<double>().data(), corners);
+    core::with_threads(run.threads, [&] {
+        core::IndexColumn(surface.triangles).visit([&](const auto* corners) {
+            if (surface.positions.type() == ScalarType::float32) measure(surface.positions.as<float>().data(), corners);
+            else measure(surface.positions.as<double>().data(), corners);
+        });
     });
+    if (run.progress.cancelled()) return std::numeric_limits<double>::quiet_NaN();
     return std::accumulate(blocks.begin(), blocks.end(), 0.0) / 2;
 }
 

@@ -59,9 +59,9 @@ Result<Surface> boundary_of(const Grid& grid, const Run& run) {
 
 Result<DrawnGrid> grid_with_joined_points(const Grid& grid, const Run& run) {
     DrawnGrid drawn{{grid.points, grid.cells, {}, {}, grid.point_numbers}, false};
-    if (!may_have_coincident_points(grid.points)) return drawn;
-    if (2 * estimate_coincident_points(grid).points < grid.points.tuples()) return drawn;
-    Result<MergedPoints> merged = merge_points(drawn.grid, {rounding_of(grid.points), MergedValues::lowest}, run);
+    if (!may_have_coincident_points(grid.points, run)) return drawn;
+    if (2 * estimate_coincident_points(grid, run).points < grid.points.tuples()) return drawn;
+    Result<MergedPoints> merged = merge_points(drawn.grid, {rounding_of(grid.points, run), MergedValues::lowest}, run);
     if (!merged && merged.error().code == ErrorCode::invalid_argument) return drawn; // all cells would collapse
     if (!merged) return merged.error();
     if (merged->collapsed_cells > 0) return drawn;

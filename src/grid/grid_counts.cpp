@@ -47,21 +47,23 @@ std::uint32_t sampling_key(const Coordinate* point) {
 }
 
 /// One point of 2^one_in_bits, in any order, but all at one place or none.
-std::vector<SampledPoint> sample_points(const Array& points, int one_in_bits) {
+std::vector<SampledPoint> sample_points(const Array& points, int one_in_bits, const Progress& progress) {
     std::vector<SampledPoint> samples;
     std::mutex mutex;
     const core::PointReader reader(points);
     points.visit([&]<class Coordinate>(std::span<const Coordinate> coordinates) {
         if constexpr (std::is_floating_point_v<Coordinate>) {
-            core::parallel_ranges(points.tuples(), std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
-                std::vector<SampledPoint> found;
-                for (std::size_t i = begin; i < end; ++i) {
-                    const std::uint64_t key = sampling_key(coordinates.data() + 3 * i);
-                    if ((key << one_in_bits) >> 32 == 0) found.push_back({core::hash_of(reader[i]), i});
-                }
-                const std::lock_guard lock(mutex);
-                samples.insert(samples.end(), found.begin(), found.end());
-            });
+            core::parallel_pieces(points.tuples(), std::size_t{1} << 16, progress,
+                                  [&](std::size_t begin, std::size_t end) {
+                                      std::vector<SampledPoint> found;
+                                      for (std::size_t i = begin; i < end; ++i) {
+                                          const std::uint64_t key = sampling_key(coordinates.data() + 3 * i);
+                                          if ((key << one_in_bits) >> 32 == 0)
+                                              found.push_back({core::hash_of(reader[i]), i});
+                                      }
+                                      const std::lock_guard lock(mutex);
+                                      samples.insert(samples.end(), found.begin(), found.end());
+                                  });
         }
     });
     return samples;
@@ -111,9 +113,48 @@ void keep_used(std::vector<SampledPoint>& samples, const Grid& grid) {
     std::erase_if(samples, [&](const SampledPoint& sample) { return !used[sample.number]; });
 }
 
+/// In an array of uint8.
+TypeHistogram count_types(std::span<const std::uint8_t> types, const Progress& progress) {
+    TypeHistogram total{};
+    std::mutex mutex;
+    core::parallel_pieces(types.size(), std::size_t{1} << 20, progress, [&](std::size_t begin, std::size_t end) {
+        TypeHistogram part{};
+        for (const std::uint8_t type : types.subspan(begin, end - begin)) ++part[type];
+        const std::lock_guard lock(mutex);
+        for (std::size_t i = 0; i < part.size(); ++i) total[i] += part[i];
+    });
+    return total;
+}
+
+/// The largest finite coordinate, without its sign.
+double largest_coordinate(const Array& points, const Progress& progress) {
+    const core::PointReader reader(points);
+    double largest = 0;
+    std::mutex mutex;
+    core::parallel_pieces(points.tuples(), std::size_t{1} << 16, progress, [&](std::size_t begin, std::size_t end) {
+        double of_part = 0;
+        for (std::size_t i = begin; i < end; ++i)
+            for (const double x : reader[i])
+                if (std::isfinite(x)) of_part = std::max(of_part, std::abs(x));
+        const std::lock_guard lock(mutex);
+        largest = std::max(largest, of_part);
+    });
+    return largest;
+}
+
+CoincidentPoints coincident_points(const Grid& grid, const Progress& progress) {
+    if (grid.points.components() != 3 || grid.points.tuples() < 2) return {};
+    const int one_in_bits = one_in_bits_for(grid.points.tuples());
+    std::vector<SampledPoint> samples = sample_points(grid.points, one_in_bits, progress);
+    if (few_repeat(samples)) return {};
+    keep_used(samples, grid);
+    if (few_repeat(samples)) return {};
+    return {static_cast<std::uint64_t>(count_repeated(samples)) << one_in_bits, one_in_bits > 0};
+}
+
 } // namespace
 
-std::map<std::uint8_t, std::uint64_t> count_cells_by_type(const Cells& cells) {
+std::map<std::uint8_t, std::uint64_t> count_cells_by_type(const Cells& cells, const Run& run) {
     std::map<std::uint8_t, std::uint64_t> counts;
     if (cells.types.empty()) {
         if (cells.count() > 0) counts[static_cast<std::uint8_t>(cells.uniform_type)] = cells.count();
@@ -121,14 +162,7 @@ std::map<std::uint8_t, std::uint64_t> count_cells_by_type(const Cells& cells) {
     }
     if (cells.types.type() != ScalarType::uint8) return counts;
     TypeHistogram total{};
-    std::mutex mutex;
-    const std::span<const std::uint8_t> types = cells.types.as<std::uint8_t>();
-    core::parallel_ranges(types.size(), std::size_t{1} << 20, [&](std::size_t begin, std::size_t end) {
-        TypeHistogram part{};
-        for (const std::uint8_t type : types.subspan(begin, end - begin)) ++part[type];
-        const std::lock_guard lock(mutex);
-        for (std::size_t i = 0; i < part.size(); ++i) total[i] += part[i];
-    });
+    core::with_threads(run.threads, [&] { total = count_types(cells.types.as<std::uint8_t>(), run.progress); });
     for (std::size_t type = 0; type < total.size(); ++type)
         if (total[type] > 0) counts[static_cast<std::uint8_t>(type)] = total[type];
     return counts;
@@ -138,30 +172,26 @@ bool is_contoured(std::uint8_t cell_type) noexcept {
     return core::is_contoured(cell_type) && !core::is_ordered(cell_type);
 }
 
-double rounding_of(const Array& points) {
+double rounding_of(const Array& points, const Run& run) {
     if (!is_floating(points.type()) || points.components() != 3) return 0;
-    const core::PointReader reader(points);
     double largest = 0;
-    for (std::size_t i = 0; i < points.tuples(); ++i)
-        for (const double x : reader[i])
-            if (std::isfinite(x)) largest = std::max(largest, std::abs(x));
+    core::with_threads(run.threads, [&] { largest = largest_coordinate(points, run.progress); });
     const double share = points.type() == ScalarType::float32 ? 0x1p-23 : 0x1p-33;
     return largest > 0 ? std::pow(10.0, std::ceil(std::log10(share * largest))) : 0;
 }
 
-CoincidentPoints estimate_coincident_points(const Grid& grid) {
-    if (grid.points.components() != 3 || grid.points.tuples() < 2) return {};
-    const int one_in_bits = one_in_bits_for(grid.points.tuples());
-    std::vector<SampledPoint> samples = sample_points(grid.points, one_in_bits);
-    if (few_repeat(samples)) return {};
-    keep_used(samples, grid);
-    if (few_repeat(samples)) return {};
-    return {static_cast<std::uint64_t>(count_repeated(samples)) << one_in_bits, one_in_bits > 0};
+CoincidentPoints estimate_coincident_points(const Grid& grid, const Run& run) {
+    CoincidentPoints found;
+    core::with_threads(run.threads, [&] { found = coincident_points(grid, run.progress); });
+    return found;
 }
 
-bool may_have_coincident_points(const Array& points) {
+bool may_have_coincident_points(const Array& points, const Run& run) {
     if (points.components() != 3 || points.tuples() < 2) return false;
-    return !few_repeat(sample_points(points, one_in_bits_for(points.tuples())));
+    bool few = false;
+    core::with_threads(
+        run.threads, [&] { few = few_repeat(sample_points(points, one_in_bits_for(points.tuples()), run.progress)); });
+    return !few;
 }
 
 } // namespace isotet

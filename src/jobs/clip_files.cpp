@@ -114,10 +114,10 @@ Result<std::optional<ContourInput>> ClipRun::load(std::size_t step) {
     if (!fields) return fields.error();
     numbers_.read_seconds += reading.seconds();
     numbers_.cells = grid->cells.count();
-    emptied_ = emptied_cells(*grid, job_.grid);
+    emptied_ = emptied_cells(*grid, job_.grid, caller_.run());
     numbers_.averaged = field->averaged;
     refines_ = !field->averaged || job_.refine_averaged;
-    if (const std::string note = cells_left_out_note(*grid); !note.empty()) caller_.note(note);
+    if (const std::string note = cells_left_out_note(*grid, caller_.run()); !note.empty()) caller_.note(note);
     grid->point_fields = grid->cell_fields = {};
     std::erase_if(fields->cell, [](const Field& carried) { return carried.name == "source_cell"; });
     return std::optional(

@@ -594,7 +594,7 @@ Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> is
     numbers_.engine = result->engine;
     numbers_.field = result->field;
     numbers_.cells_left_out =
-        result->cells_left_out - std::min(result->cells_left_out, emptied_cells(grid_, job_.grid));
+        result->cells_left_out - std::min(result->cells_left_out, emptied_cells(grid_, job_.grid, caller_.run()));
     numbers_.pack_seconds += result->pack_seconds;
     if (const auto packed = contour_->packed()) numbers_.pack = packed->report();
     coarse_tets_ += result->coarse_tets;
@@ -619,7 +619,7 @@ Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> is
         numbers.vertices = surface.vertex_count();
         numbers.triangles = surface.triangle_count();
         const core::Stopwatch measuring;
-        numbers.area = area(surface);
+        numbers.area = area(surface, caller_.run());
         numbers_.measure_seconds += measuring.seconds();
         if (numbers.triangles == 0 && job_.fail_if_empty)
             return Error{ErrorCode::invalid_data, "`fail_if_empty`: " + why_empty(numbers_.field, isovalues[i])};
@@ -639,8 +639,8 @@ Result<std::vector<Surface>> ExtractRun::extract_solid(double isovalue, std::siz
     numbers_.method = made->contour.method;
     numbers_.engine = made->contour.engine;
     numbers_.field = made->contour.field;
-    numbers_.cells_left_out =
-        made->contour.cells_left_out - std::min(made->contour.cells_left_out, emptied_cells(grid_, job_.grid));
+    numbers_.cells_left_out = made->contour.cells_left_out -
+                              std::min(made->contour.cells_left_out, emptied_cells(grid_, job_.grid, caller_.run()));
     numbers_.pack_seconds += made->contour.pack_seconds;
     coarse_tets_ += made->contour.coarse_tets;
     numbers_.refinement = made->contour.refinement;
@@ -701,11 +701,11 @@ Result<void> ExtractRun::find_parts_of(Surface& surface, SurfaceNumbers& numbers
     numbers.triangles = surface.triangle_count();
     numbers.parts_kept = kept.size();
     if (kept.size() < found->parts.size()) {
-        numbers.area = area(surface);
+        numbers.area = area(surface, caller_.run());
         caller_.note(fmt::format("{} of {} parts are kept", grouped(kept.size()), grouped(found->parts.size())));
         if (numbers.solid) {
             note_cavities(*found, kept, caller_);
-            if (auto measured = measure_again(surface, *numbers.solid); !measured) return measured;
+            if (auto measured = measure_again(surface, *numbers.solid, caller_.run()); !measured) return measured;
         }
     }
     found->numbers = {};
@@ -744,8 +744,8 @@ Result<void> ExtractRun::reduce_triangles(Surface& surface, SurfaceNumbers& numb
     surface = std::move(reduced->surface);
     numbers.vertices = surface.vertex_count();
     numbers.triangles = surface.triangle_count();
-    numbers.area = area(surface);
-    if (numbers.solid) return measure_again(surface, *numbers.solid);
+    numbers.area = area(surface, caller_.run());
+    if (numbers.solid) return measure_again(surface, *numbers.solid, caller_.run());
     return {};
 }
 

@@ -13,7 +13,7 @@ namespace isotet::jobs {
 /// After the surfaces of a step: what was left out, and what rounding did.
 void note_what_the_step_holds(const ExtractNumbers& numbers, const Grid& grid, std::uint64_t coarse_tets,
                               Caller& caller) {
-    if (const std::string note = cells_left_out_note(grid); numbers.cells_left_out > 0 && !note.empty())
+    if (const std::string note = cells_left_out_note(grid, caller.run()); numbers.cells_left_out > 0 && !note.empty())
         caller.note(note);
     if (numbers.field.flushed > 0) {
         caller.note(fmt::format("{} of '{}' {} too small beside the others to be told from 0",

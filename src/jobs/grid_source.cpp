@@ -71,17 +71,17 @@ FileInfo info_of(const SurfaceFile& file, const Grid& grid, const std::string& p
     return info;
 }
 
-std::string tolerance_of_rounding(const Array& points) {
-    const double tolerance = rounding_of(points);
+std::string tolerance_of_rounding(const Array& points, const Run& run) {
+    const double tolerance = rounding_of(points, run);
     return tolerance > 0 ? fmt::format("1e{}", std::lround(std::log10(tolerance))) : "0";
 }
 
-std::string coincident_points_note(const Grid& grid) {
-    const CoincidentPoints found = estimate_coincident_points(grid);
+std::string coincident_points_note(const Grid& grid, const Run& run) {
+    const CoincidentPoints found = estimate_coincident_points(grid, run);
     if (found.points == 0) return {};
     return fmt::format("{}{} coincide{} with other points: the surface has seams there; `merge_points` {} joins them",
                        found.estimated ? "about " : "", counted(found.points, "point"), found.points == 1 ? "s" : "",
-                       tolerance_of_rounding(grid.points));
+                       tolerance_of_rounding(grid.points, run));
 }
 
 /// What is said of fields whose values differ at merged points; empty where none does.
@@ -192,6 +192,19 @@ Result<std::size_t> step_at(const std::vector<double>& times, double time) {
                    times.size(), list_of(times), shortest(times[nearest]));
 }
 
+ReadOptions read_options_of(const GridOptions& options) {
+    ReadOptions read;
+    read.format = options.format;
+    read.merge_pieces_by_coordinates = !options.keep_pieces;
+    read.allow_outside = options.allow_outside;
+    read.patches = options.patches;
+    read.displace = options.displace;
+    read.blocks = options.blocks;
+    read.more_files = options.more_files;
+    read.step = options.step;
+    return read;
+}
+
 } // namespace
 
 FileKinds kinds_of(const std::string& file) {
@@ -226,41 +239,37 @@ Result<void> check_steps(const GridOptions& options, ReadOptions read_options, c
         if (!info) return info.error();
         const auto is_known = [&](const FieldInfo& field) { return names.contains(field.name); };
         if (!names.empty() && !info->fields.empty() && std::ranges::none_of(info->fields, is_known))
-            return refusal("'{}' and '{}' have no field in common: they are different grids, no time steps of one. Give one "
-                           "after another, or, for surfaces, {{name}} in the name of the output",
-                           options.file, one.file);
+            return refusal(
+                "'{}' and '{}' have no field in common: they are different grids, no time steps of one. Give one "
+                "after another, or, for surfaces, {{name}} in the name of the output",
+                options.file, one.file);
         for (const FieldInfo& field : info->fields) names.insert(field.name);
     }
     return {};
+}
+
+Result<void> GridSource::open_made(const GridOptions& options) {
+    if (!options.more_files.empty())
+        return refusal("'{}' would be a further time step, but '{}' is made", options.more_files.front(), options.file);
+    if (!options.blocks.empty())
+        return Error{ErrorCode::invalid_argument,
+                     fmt::format("`block` {}: a made grid has no blocks", options.blocks.front())};
+    Result<MakeOptions> made = parse_make(std::string_view(options.file).substr(made_prefix.size()));
+    if (!made) return made.error();
+    info_ = info_of(*made);
+    info_.files = options.other_inputs;
+    made_ = *std::move(made);
+    return take_choices();
 }
 
 Result<GridSource> GridSource::open(const GridOptions& options, Caller& caller) {
     GridSource source;
     source.options_ = options;
     if (options.file.starts_with(made_prefix)) {
-        if (!options.more_files.empty())
-            return refusal("'{}' would be a further time step, but '{}' is made", options.more_files.front(),
-                           options.file);
-        if (!options.blocks.empty())
-            return Error{ErrorCode::invalid_argument,
-                         fmt::format("`block` {}: a made grid has no blocks", options.blocks.front())};
-        Result<MakeOptions> made = parse_make(std::string_view(options.file).substr(made_prefix.size()));
-        if (!made) return made.error();
-        source.info_ = info_of(*made);
-        source.info_.files = options.other_inputs;
-        source.made_ = *std::move(made);
-        if (auto taken = source.take_choices(); !taken) return taken.error();
+        if (auto made = source.open_made(options); !made) return made.error();
         return source;
     }
-    ReadOptions& read_options = source.read_options_;
-    read_options.format = options.format;
-    read_options.merge_pieces_by_coordinates = !options.keep_pieces;
-    read_options.allow_outside = options.allow_outside;
-    read_options.patches = options.patches;
-    read_options.displace = options.displace;
-    read_options.blocks = options.blocks;
-    read_options.more_files = options.more_files;
-    read_options.step = options.step;
+    ReadOptions& read_options = source.read_options_ = read_options_of(options);
     read_options.kept = keep_files();
     if (auto steps = check_steps(options, read_options, caller.run()); !steps) return steps.error();
     if (options.time && !options.blocks.empty()) { // which may be in that step alone
@@ -549,7 +558,7 @@ Result<ReadResult> GridSource::read_cells(const FieldsToRead& fields, std::size_
         if (!joined) return joined.error();
         result->grid = *std::move(joined);
     } else {
-        caller.note(coincident_points_note(result->grid));
+        caller.note(coincident_points_note(result->grid, run));
     }
     Result<Grid> grid = closed(std::move(result->grid), options_.hanging_points, closing_.get(), caller, run);
     if (!grid) return grid.error();
@@ -590,7 +599,7 @@ Result<SurveyedGrid> GridSource::read_surveyed(const FieldsToRead& fields, std::
     Result<SurveyedGrid> result = isotet::read_surveyed(options_.file, options, caller.run());
     if (!result) return result;
     caller.notes(result->read.notes);
-    if (!result->report) caller.note(coincident_points_note(result->read.grid));
+    if (!result->report) caller.note(coincident_points_note(result->read.grid, caller.run()));
     return result;
 }
 
@@ -606,7 +615,7 @@ Result<ReadResult> GridSource::read_active(const FieldsToRead& fields, std::size
     if (!result) return result;
     caller.notes(result->notes);
     if (result->cells_in_file) return result;
-    caller.note(coincident_points_note(result->grid));
+    caller.note(coincident_points_note(result->grid, caller.run()));
     Result<Grid> grid = closed(std::move(result->grid), options_.hanging_points, closing_.get(), caller, caller.run());
     if (!grid) return grid.error();
     result->grid = *std::move(grid);
@@ -662,22 +671,22 @@ Result<void> keep_broken(std::size_t step, Error error, std::size_t steps, std::
     return {};
 }
 
-std::string cells_left_out_note(const Grid& grid) {
+std::string cells_left_out_note(const Grid& grid, const Run& run) {
     const auto is_split = [&](std::uint8_t type) {
         constexpr std::uint8_t polyhedron = 42;
         return is_curved(type) || (Contour::contours(type) && (type != polyhedron || !grid.cells.faces.empty()));
     };
     std::string list;
-    for (const auto& [type, count] : count_cells_by_type(grid.cells)) {
+    for (const auto& [type, count] : count_cells_by_type(grid.cells, run)) {
         if (type == 0 || is_split(type)) continue; // not chosen, or the session tells about these
         list += fmt::format("{}{} {}", list.empty() ? "" : ", ", grouped(count), name_of_cell_type(type));
     }
     return list.empty() ? list : "cells left out, their types are not contoured: " + list;
 }
 
-std::uint64_t emptied_cells(const Grid& grid, const GridOptions& options) {
+std::uint64_t emptied_cells(const Grid& grid, const GridOptions& options, const Run& run) {
     if (options.cells.empty()) return 0;
-    const auto counts = count_cells_by_type(grid.cells);
+    const auto counts = count_cells_by_type(grid.cells, run);
     const auto empty = counts.find(0);
     return empty == counts.end() ? 0 : empty->second;
 }

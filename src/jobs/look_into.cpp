@@ -104,7 +104,7 @@ Result<void> add_blocks(const GridSource& source, GridSummary& summary, Caller& 
         if (!grid) return grid.error();
         Result<std::vector<FieldSummary>> fields = summarize(*grid, caller.run());
         if (!fields) return fields.error();
-        summary.blocks.push_back({count_cells_by_type(grid->cells), *std::move(fields)});
+        summary.blocks.push_back({count_cells_by_type(grid->cells, caller.run()), *std::move(fields)});
     }
     return {};
 }
@@ -151,7 +151,7 @@ Result<GridReport> survey_by(const std::optional<LinearGrid>& linear, const Grid
     report->cells = linear->user_cells;
     report->cells_left_out += linear->refinement.left_out;
     report->cells_by_type.clear();
-    for (const auto& [type, count] : count_cells_by_type(grid.cells)) report->cells_by_type[type] = count;
+    for (const auto& [type, count] : count_cells_by_type(grid.cells, run)) report->cells_by_type[type] = count;
     return report;
 }
 
@@ -245,7 +245,7 @@ Result<GridSummary> look_all(const InfoJob& job, Caller& caller) {
     if (!surveyed) return surveyed.error();
     summary.report = *std::move(surveyed);
     summary.report.cells_left_out -=
-        std::min<std::uint64_t>(summary.report.cells_left_out, emptied_cells(*grid, options));
+        std::min<std::uint64_t>(summary.report.cells_left_out, emptied_cells(*grid, options, caller.run()));
     summary.surveyed = job.survey && summary.report.tets > 0;
     if (summary.surveyed) {
         const Result<std::uint64_t> hanging = count_hanging_points(*grid, caller.run());

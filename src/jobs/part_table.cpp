@@ -62,8 +62,8 @@ Result<std::vector<std::uint64_t>> kept_parts(const Surface& surface, const Surf
     return all;
 }
 
-Result<void> measure_again(const Surface& surface, SolidNumbers& solid) {
-    const Result<SolidMeasure> measured = measure_solid(surface);
+Result<void> measure_again(const Surface& surface, SolidNumbers& solid, const Run& run) {
+    const Result<SolidMeasure> measured = measure_solid(surface, run);
     if (!measured) return measured.error();
     solid.volume = measured->volume;
     solid.isosurface_area = measured->isosurface_area;

@@ -20,7 +20,7 @@ Result<std::vector<std::uint64_t>> kept_parts(const Surface& surface, const Surf
                                               const std::optional<Region>& touched);
 
 /// The solid's numbers, of its surface after parts or triangles were left out.
-Result<void> measure_again(const Surface& surface, SolidNumbers& solid);
+Result<void> measure_again(const Surface& surface, SolidNumbers& solid, const Run& run);
 
 /// Notes which of the parts that are not kept are cavities.
 void note_cavities(const SurfaceParts& found, const std::vector<std::uint64_t>& kept, Caller& caller);

@@ -627,6 +627,44 @@ Result<void> PictureSource::choose_isovalues(const Contents& contents, DrawInput
     return {};
 }
 
+/// By the job, or where the grid is much flatter than wide.
+void PictureSource::choose_stretch(const Array& points, Caller& caller) {
+    if (!may_stretch()) return;
+    const auto factors = default_stretch(points);
+    if (!factors) return;
+    job_.stretch.assign(factors->begin(), factors->end());
+    caller.note(fmt::format("heights are drawn {} times as large; `scale` 1,1,1 draws them as they are",
+                            shortest(job_.stretch[2])));
+}
+
+IsosurfaceOptions PictureSource::scene_options(Contents& contents, const std::vector<double>& isovalues) {
+    IsosurfaceOptions options;
+    if (contents.field) options.field = *contents.field;
+    options.grid = std::exchange(contents.grid, {});
+    options.all_cells = contents.all_cells;
+    options.bounds = contents.bounds;
+    options.has_cells_around = options.all_cells && job_.shade_by == ShadeBy::gradient;
+    options.boundary = std::move(contents.boundary);
+    options.packed = std::move(contents.packed);
+    if (options.all_cells) options.expected_isovalues = isovalues;
+    if (!job_.stretch.empty()) options.grid.points = stretched(options.grid.points, factors_of(job_.stretch));
+    options.surfaces = job_.sweep.empty() ? isovalues.size() : static_cast<std::uint64_t>(job_.sweep[2]);
+    options.method = job_.method.extract;
+    options.draw = job_.method.draw;
+    options.split_cells = job_.split_cells;
+    options.refine = job_.refine;
+    if (options.field.averaged && !job_.refine_averaged) options.refine.reset();
+    options.index = job_.index.value_or(default_index);
+    options.picture = job_.picture;
+    options.where = draws_volume(job_)                    ? ExtractOn::cpu
+                    : job_.engine == EngineChoice::vulkan ? ExtractOn::device
+                    : job_.engine == EngineChoice::cpu    ? ExtractOn::cpu
+                                                          : ExtractOn::best;
+    if (steps_.size() > 1 && !boundary_) boundary_ = std::make_shared<KnownBoundary>();
+    options.known_boundary = boundary_;
+    return options;
+}
+
 Result<DrawInput> PictureSource::read(std::size_t which, const std::optional<Device>& device, Caller& caller) {
     if (surface_) return take_surface(device, caller);
     DrawInput input;
@@ -654,46 +692,16 @@ Result<DrawInput> PictureSource::read(std::size_t which, const std::optional<Dev
     input.cells = contents->cells;
     input.colors = contents->volume ? contents->volume_colors : contents->colors;
     input.volume = contents->volume;
-    IsosurfaceOptions options;
     if (contents->field) {
         input.field = contents->field->name;
         if (!contents->volume || (names_isovalues(job_) && job_.sweep.empty()))
             if (auto chosen = choose_isovalues(*contents, input, caller); !chosen) return chosen.error();
-        options.field = *contents->field;
     }
-    options.grid = contents->grid;
-    if (may_stretch()) {
-        if (const auto factors = default_stretch(options.grid.points)) {
-            job_.stretch.assign(factors->begin(), factors->end());
-            caller.note(fmt::format("heights are drawn {} times as large; `scale` 1,1,1 draws them as they are",
-                                    shortest(job_.stretch[2])));
-        }
-    }
+    choose_stretch(contents->grid.points, caller);
     input.stretch = job_.stretch;
-    options.all_cells = contents->all_cells;
-    options.bounds = contents->bounds;
-    options.has_cells_around = options.all_cells && job_.shade_by == ShadeBy::gradient;
-    options.boundary = std::move(contents->boundary);
-    options.packed = std::move(contents->packed);
-    if (options.all_cells) options.expected_isovalues = input.isovalues;
-    if (!job_.stretch.empty()) options.grid.points = stretched(options.grid.points, factors_of(job_.stretch));
-    options.surfaces = job_.sweep.empty() ? input.isovalues.size() : static_cast<std::uint64_t>(job_.sweep[2]);
-    options.method = job_.method.extract;
-    options.draw = job_.method.draw;
-    options.split_cells = job_.split_cells;
-    options.refine = job_.refine;
-    if (options.field.averaged && !job_.refine_averaged) options.refine.reset();
-    options.index = job_.index.value_or(default_index);
-    options.picture = job_.picture;
-    options.where = draws_volume(job_)                    ? ExtractOn::cpu
-                    : job_.engine == EngineChoice::vulkan ? ExtractOn::device
-                    : job_.engine == EngineChoice::cpu    ? ExtractOn::cpu
-                                                          : ExtractOn::best;
-    if (steps_.size() > 1 && !boundary_) boundary_ = std::make_shared<KnownBoundary>();
-    options.known_boundary = boundary_;
     const SceneLook look = look_of(*contents);
-    contents->grid = {};
-    Result<IsosurfaceScene> scene = IsosurfaceScene::create(device, std::move(options), look, caller.run());
+    Result<IsosurfaceScene> scene =
+        IsosurfaceScene::create(device, scene_options(*contents, input.isovalues), look, caller.run());
     if (!scene) return scene.error();
     input.scene = *std::move(scene);
     return input;

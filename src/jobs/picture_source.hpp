@@ -73,6 +73,9 @@ private:
     Result<ValueRange> typical_range_of_steps(const PointField& first, Caller& caller);
     Result<Grid> read_grid(const FieldsToRead& fields, std::size_t step, Caller& caller);
     void read_ahead(std::size_t step, Caller& caller);
+    void choose_stretch(const Array& points, Caller& caller);
+    /// Takes the grid.
+    IsosurfaceOptions scene_options(Contents& contents, const std::vector<double>& isovalues);
     SceneLook look_of(const Contents& contents) const;
 
     DrawJob job_; ///< with the isovalues and the range of all steps
@@ -80,20 +83,20 @@ private:
     std::optional<Surface> surface_;
     double surface_seconds_ = 0;
     std::optional<GridSource> source_;
-    std::optional<PackedFile> packed_; ///< that is drawn without its grid
-    bool told_of_cells_ = false;       ///< that all of a packed file is needed
+    std::optional<PackedFile> packed_;                 ///< that is drawn without its grid
+    bool told_of_cells_ = false;                       ///< that all of a packed file is needed
     std::vector<std::pair<Plane, PackedGrid>> sliced_; ///< of a packed file, for planes of each normal
     std::optional<std::size_t> sliced_step_;           ///< from which on the points are where they are there
     std::vector<std::size_t> steps_;
-    double fraction_ = 0; ///< of the way to the next step
-    FirstView first_; ///< where no field is named
+    double fraction_ = 0;                        ///< of the way to the next step
+    FirstView first_;                            ///< where no field is named
     std::optional<OpacityCurve> volume_opacity_; ///< of the first step
 
-    std::shared_ptr<KnownBoundary> boundary_; ///< of the last of several steps
+    std::shared_ptr<KnownBoundary> boundary_;             ///< of the last of several steps
     std::shared_ptr<StreamedBoundary> streamed_boundary_; ///< where not all cells are read
     bool needs_all_cells_ = false;                        ///< a step that was to do with some needed all
-    FieldsToRead last_read_;                  ///< of the last step
-    std::future<Result<Grid>> ahead_; ///< the next step, with the same fields
+    FieldsToRead last_read_;                              ///< of the last step
+    std::future<Result<Grid>> ahead_;                     ///< the next step, with the same fields
     std::size_t ahead_step_ = 0;
 };
 

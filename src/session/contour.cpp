@@ -198,6 +198,24 @@ Result<void> extract_the_rest(const Snapshot& now, std::span<const double> isova
     return {};
 }
 
+/// What is read of a packed file from when this is made.
+class FileUse {
+public:
+    explicit FileUse(const std::optional<PackedGrid>& packed)
+        : residency_(packed ? packed->data().residency : nullptr), before_(residency_ ? residency_->use().read : 0) {}
+
+    void tell(ContourResult& result) const {
+        if (!residency_) return;
+        const core::Residency::Use use = residency_->use();
+        result.file_bytes_read = use.read - before_;
+        result.file_bytes_kept = use.kept;
+    }
+
+private:
+    std::shared_ptr<const core::Residency> residency_;
+    std::uint64_t before_;
+};
+
 } // namespace
 
 Result<ContourResult> Contour::extract(std::span<const double> isovalues, const Run& run) {
@@ -213,8 +231,7 @@ Result<ContourResult> Contour::extract(std::span<const double> isovalues, const 
         const std::optional<FieldReport> whole =
             data.source.is_curved() ? std::optional(data.field_of_curved()) : std::nullopt;
         const std::optional<PackedGrid>& packed = data.state.packed();
-        const std::shared_ptr<const core::Residency> residency = packed ? packed->data().residency : nullptr;
-        const std::uint64_t read_before = residency ? residency->use().read : 0;
+        const FileUse file(packed);
         const auto sink = data.options.sink ? std::make_shared<core::RememberingSink>(data.options.sink) : nullptr;
         ContourResult result;
         if (method != Method::direct)
@@ -250,11 +267,7 @@ Result<ContourResult> Contour::extract(std::span<const double> isovalues, const 
             result.field.no_data = whole->no_data;
             result.field.infinite = whole->infinite;
         }
-        if (residency) {
-            const core::Residency::Use use = residency->use();
-            result.file_bytes_read = use.read - read_before;
-            result.file_bytes_kept = use.kept;
-        }
+        file.tell(result);
         result.method = method;
         result.extract_seconds = time.seconds();
         result.pack_seconds = told.seconds;

@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "base/carry_out.hpp"
 #include "base/errors.hpp"
-#include "base/guard.hpp"
 #include "solid/assemble.hpp"
 
 namespace isotet {
@@ -21,7 +21,7 @@ const Field* cell_field(const Surface& surface, const char* name) {
     return found == surface.cell_fields.end() ? nullptr : &*found;
 }
 
-Result<SolidMeasure> measured(const Surface& surface) {
+Result<SolidMeasure> measured(const Surface& surface, const Progress& progress) {
     const Field *const boundary = cell_field(surface, "boundary"), *const patch = cell_field(surface, "patch");
     if (!boundary || boundary->values.tuples() != surface.triangle_count())
         return invalid_argument("a surface without the cell field 'boundary' is no solid's");
@@ -37,6 +37,8 @@ Result<SolidMeasure> measured(const Surface& surface) {
     const std::vector<double> areas = solid::areas_of(surface, 0, surface.triangle_count());
     std::map<std::int64_t, SolidPatch> patches;
     for (std::size_t i = 0; i < areas.size(); ++i) {
+        if (i % (1 << 16) == 0 && progress.cancelled())
+            return Error{ErrorCode::cancelled, "measuring a solid was cancelled"};
         const bool on_isosurface = boundary->values.at(i) == static_cast<double>(SolidPart::isosurface);
         measure.isosurface_triangles += on_isosurface;
         (on_isosurface ? measure.isosurface_area : measure.boundary_area) += areas[i];
@@ -54,8 +56,9 @@ Result<SolidMeasure> measured(const Surface& surface) {
 
 } // namespace
 
-Result<SolidMeasure> measure_solid(const Surface& surface) {
-    return core::guarded("measuring a solid", [&] { return measured(surface); });
+Result<SolidMeasure> measure_solid(const Surface& surface, const Run& run) {
+    return core::carry_out("measuring a solid", run,
+                           [&](const Progress& progress) { return measured(surface, progress); });
 }
 
 } // namespace isotet

@@ -104,6 +104,36 @@ bool same_planes(const std::vector<Plane>& a, const std::vector<Plane>& b) {
         a, b, [](const Plane& p, const Plane& q) { return p.normal == q.normal && p.offset == q.offset; });
 }
 
+void read_numbers(StateReader& reader, ViewState& state) {
+    reader.read("step", "a whole number", [&](const Json& value) {
+        state.step = whole_number(value);
+        return state.step.has_value();
+    });
+    reader.read("isovalues", fmt::format("at most {} finite numbers", max_isovalues),
+                [&](const Json& value) { return take_numbers(value, max_isovalues, state.isovalues); });
+    reader.read("stretch", "three numbers above 0",
+                [&](const Json& value) { return take_stretch(value, state.stretch); });
+}
+
+void read_colors(StateReader& reader, ViewState& state) {
+    reader.read("map", "the name of a colour map", [&](const Json& value) {
+        const std::string* name = text(value);
+        const auto map = name ? parse_color_map(*name) : std::nullopt;
+        if (map) state.map = *map;
+        return map.has_value();
+    });
+    reader.read("range", "two numbers, the smaller one first", [&](const Json& value) {
+        std::vector<double> ends;
+        if (!take_numbers(value, 2, ends) || ends.size() != 2 || !(ends[0] < ends[1])) return false;
+        state.range = ValueRange{ends[0], ends[1]};
+        return true;
+    });
+    reader.read("opacity", "a number from 0 to 1", [&](const Json& value) {
+        state.opacity = finite_number(value);
+        return state.opacity && *state.opacity >= 0 && *state.opacity <= 1;
+    });
+}
+
 } // namespace
 
 bool take_cells(const Json& json, std::vector<std::string>& cells) {
@@ -204,30 +234,8 @@ Result<ViewState> state_of(const Json& json) {
     });
     reader.read("cells", fmt::format("at most {} texts of at most 4096 bytes", max_cell_choices),
                 [&](const Json& value) { return take_cells(value, state.cells); });
-    reader.read("step", "a whole number", [&](const Json& value) {
-        state.step = whole_number(value);
-        return state.step.has_value();
-    });
-    reader.read("isovalues", fmt::format("at most {} finite numbers", max_isovalues),
-                [&](const Json& value) { return take_numbers(value, max_isovalues, state.isovalues); });
-    reader.read("map", "the name of a colour map", [&](const Json& value) {
-        const std::string* name = text(value);
-        const auto map = name ? parse_color_map(*name) : std::nullopt;
-        if (map) state.map = *map;
-        return map.has_value();
-    });
-    reader.read("range", "two numbers, the smaller one first", [&](const Json& value) {
-        std::vector<double> ends;
-        if (!take_numbers(value, 2, ends) || ends.size() != 2 || !(ends[0] < ends[1])) return false;
-        state.range = ValueRange{ends[0], ends[1]};
-        return true;
-    });
-    reader.read("opacity", "a number from 0 to 1", [&](const Json& value) {
-        state.opacity = finite_number(value);
-        return state.opacity && *state.opacity >= 0 && *state.opacity <= 1;
-    });
-    reader.read("stretch", "three numbers above 0",
-                [&](const Json& value) { return take_stretch(value, state.stretch); });
+    read_numbers(reader, state);
+    read_colors(reader, state);
     reader.read("camera", "a camera as text", [&](const Json& value) {
         const std::string* camera = text(value);
         if (camera && camera->size() <= max_name_bytes) state.camera = parse_camera(*camera);

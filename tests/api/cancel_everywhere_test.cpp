@@ -94,6 +94,8 @@ void add_grid_work(const Grid& grid, std::vector<Work>& all) {
                        Result<Solids> solids = Solids::create({grid, field, {}, {}}, {}, run);
                        return solids ? outcome_of(solids->extract({0.1, 0.5}, run)) : outcome_of(solids);
                    }});
+    const Surface solid = Solids::create({grid, field, {}, {}}, {}).value().extract({0.1, 0.5}).value().surface;
+    add("measure_solid", [=](const Run& run) { return measure_solid(solid, run); });
     all.push_back({"Clipper", [=](const Run& run) {
                        Result<Clipper> clipper = Clipper::create({grid, field, {}, {}}, {}, run);
                        return clipper ? outcome_of(clipper->clip({0.1, 0.5}, {}, run)) : outcome_of(clipper);

@@ -2,7 +2,12 @@
 // What is found out about a grid and its fields before anything is contoured.
 #include <atomic>
 #include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <iterator>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -90,6 +95,28 @@ TEST(CoincidentPoints, AreCountedOnSmallGridsAndEstimatedOnLargeOnes) {
     const double expected = 4.0 * 6 * 24 * 24 * 24 - 25 * 25 * 25;
     EXPECT_TRUE(many.estimated);
     EXPECT_NEAR(static_cast<double>(many.points), expected, 0.05 * expected);
+}
+
+TEST(Looks, BeginNoThreadWhereThereIsToBeOne) {
+    const auto threads = [] {
+        const std::filesystem::directory_iterator tasks("/proc/self/task");
+        return std::distance(begin(tasks), end(tasks));
+    };
+    const isotet::Run one{.threads = 1};
+    Grid grid = with_doubled_points(24);
+    grid.cells.types = Array::own(std::vector<std::uint8_t>(std::size_t{3} << 20, 10));
+    Surface surface;
+    surface.positions = Array::own(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 2, 0}, 3);
+    std::vector<std::uint32_t> triangles;
+    for (std::uint32_t i = 0; i < 100000; ++i) triangles.insert(triangles.end(), {0, 1, 2});
+    surface.triangles = Array::own(std::move(triangles), 3);
+    const auto before = threads();
+    EXPECT_EQ(area(surface, one), 100000);
+    EXPECT_EQ(count_cells_by_type(grid.cells, one).at(10), std::size_t{3} << 20);
+    EXPECT_GT(estimate_coincident_points(grid, one).points, 0u);
+    EXPECT_TRUE(may_have_coincident_points(grid.points, one));
+    EXPECT_EQ(rounding_of(grid.points, one), 1e-6);
+    EXPECT_EQ(threads(), before);
 }
 
 TEST(BoundaryOfAGrid, IsTheCubeAndTheSameForAnyThreadCount) {

@@ -11,6 +11,7 @@
 
 #include <tbb/global_control.h>
 #include <tbb/info.h>
+#include <tbb/task_arena.h>
 
 #include "base/parallel.hpp"
 
@@ -33,6 +34,13 @@ TEST(WithThreads, RaisesTheLimitOfTheProcessOnlyWhileItWorks) {
     });
     EXPECT_EQ(allowed(), cores());
     with_threads(1, [] { EXPECT_EQ(allowed(), cores()); });
+}
+
+TEST(WithThreads, TakesThoseOfTheCallersArena) {
+    tbb::task_arena two(2);
+    two.execute([] { with_threads(0, [] { EXPECT_EQ(threads_here(), 2); }); });
+    with_threads(0, [] { EXPECT_EQ(threads_here(), cores()); });
+    with_threads(1, [] { with_threads(0, [] { EXPECT_EQ(threads_here(), 1); }); });
 }
 
 TEST(WithThreads, LowersTheLimitAgainWhenTheWorkThrows) {

@@ -288,6 +288,31 @@ TEST(GridViewSteps, EachBoundaryHasAKeyOfItsOwn) {
     EXPECT_EQ(std::ranges::adjacent_find(keys), keys.end());
 }
 
+TEST(GridViewSteps, CellsOfAnotherTypeHaveAnotherBoundary) {
+    const auto read = [](std::size_t step) {
+        Grid grid = make_grid({.shape = "hex", .side = 3, .fields = {"sphere"}}).value();
+        grid.cells.types = {};
+        grid.cells.offsets = {};
+        grid.cells.uniform_type = step == 0 ? CellType::hexahedron : CellType::voxel;
+        return grid;
+    };
+    GridViewOptions options;
+    options.steps = 2;
+    options.read_step = [&](std::size_t step, const isotet::Run&) -> Result<Grid> { return read(step); };
+    const auto view = GridView::create(read(0), options).value();
+    ASSERT_TRUE(view->find_boundary({}));
+    std::vector<std::string> known, keys;
+    for (const std::size_t step : {0, 1}) {
+        ShowMessage message = show(step + 1, {});
+        message.state.boundary = 0.5;
+        message.state.step = step;
+        const auto frame = view->frame(message, 0, known, {});
+        ASSERT_TRUE(frame) << frame.error().message;
+        keys.push_back(head_of(frame->bytes)["surfaces"][0]["key"]);
+    }
+    EXPECT_NE(keys[0], keys[1]);
+}
+
 TEST(GridViewSteps, ABoundaryThatIsFoundTooLateIsNotThatOfAnotherStep) {
     GridViewOptions options;
     options.steps = 2;

@@ -145,6 +145,7 @@ private:
                                   const Run& run) const;
     Result<ReadResult> read_unclosed(const FieldsToRead& fields, std::size_t step, CellsToRead cells, Caller& caller,
                                      const Run& run) const;
+    Result<void> open_made(const GridOptions& options);
     Result<void> take_choices();
     bool names_blocks(const FieldsToRead& fields) const;
     Result<void> add_blocks(ReadResult& read, const FieldsToRead& fields) const;
@@ -158,14 +159,14 @@ private:
 
     GridOptions options_;
     std::optional<MakeOptions> made_;
-    std::shared_ptr<const Grid> surface_; ///< where the file is a surface: its triangles as cells
+    std::shared_ptr<const Grid> surface_;                    ///< where the file is a surface: its triangles as cells
     std::shared_ptr<const std::vector<CellChoice>> choices_; ///< those of GridOptions::cells; null: none
     FileInfo info_;
-    bool knows_blocks_ = false;                                 ///< cell_names() has "block"
-    std::optional<std::size_t> described_;                      ///< the step whose fields info_ has; nothing: of several
+    bool knows_blocks_ = false;            ///< cell_names() has "block"
+    std::optional<std::size_t> described_; ///< the step whose fields info_ has; nothing: of several
     std::map<std::size_t, std::vector<FieldInfo>> step_fields_; ///< of the steps that were looked at
     ReadOptions read_options_;
-    std::shared_ptr<Kept> kept_; ///< shared by copies: given out once
+    std::shared_ptr<Kept> kept_;            ///< shared by copies: given out once
     std::shared_ptr<KnownClosing> closing_; ///< of the last of several steps; shared by copies
 };
 
@@ -192,10 +193,10 @@ Result<void> keep_broken(std::size_t step, Error error, std::size_t steps, std::
 
 /// "cells left out, their types are not contoured: 12 triangle, 40 polyhedron"; empty when there are none. Empty
 /// cells are not told of.
-std::string cells_left_out_note(const Grid& grid);
+std::string cells_left_out_note(const Grid& grid, const Run& run);
 
 /// How many cells GridOptions::cells left as empty ones.
-std::uint64_t emptied_cells(const Grid& grid, const GridOptions& options);
+std::uint64_t emptied_cells(const Grid& grid, const GridOptions& options, const Run& run);
 
 /// The time of a step; nothing where the file knows no time.
 std::optional<double> time_of(const FileInfo& info, std::size_t step);
