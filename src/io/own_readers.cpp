@@ -96,10 +96,6 @@ Result<Value> with_file(const std::string& path, const Result<WholeFile>& file, 
     return in_file<Value>(path, parse(without_byte_order_mark(file->text())));
 }
 
-Result<WholeFile> beginning_of(const std::string& path, const Progress& progress) {
-    return WholeFile::read(path, progress, head_bytes);
-}
-
 int recognizes_gmsh(std::string_view head, std::string_view extension) {
     const std::string_view first = TextScanner(head).word();
     const bool content =
@@ -158,18 +154,28 @@ std::optional<std::string> solution_beside(const std::string& path) {
 void add_file(FileInfo& info, const std::string& file) { info.files.push_back(file); }
 void add_file(ReadResult& result, const std::string& file) { result.info.files.push_back(file); }
 
-/// `most`   bytes of the mesh
+/// How a file is opened: looked into, or taken whole.
+using OpenFile = Result<WholeFile> (*)(const std::string& path, const ReadOptions& options, const Progress& progress);
+
+Result<WholeFile> look_into_beginning(const std::string& path, const ReadOptions& options, const Progress& progress) {
+    return look_into_file(path, options, progress, head_bytes);
+}
+
+Result<WholeFile> look_into_whole(const std::string& path, const ReadOptions& options, const Progress& progress) {
+    return look_into_file(path, options, progress);
+}
+
 template <class Value, class Parse>
 Result<Value> with_mesh_and_solution(const std::string& path, const ReadOptions& options, const Progress& progress,
-                                     std::size_t most, const Parse& parse) {
+                                     OpenFile open_mesh, OpenFile open_solution, const Parse& parse) {
     const auto solution_path = solution_beside(path);
     if (!solution_path)
-        return with_file<Value>(path, WholeFile::read(path, progress, most),
+        return with_file<Value>(path, open_mesh(path, options, progress),
                                 [&](std::string_view mesh) { return parse(mesh, std::nullopt); });
     if (auto allowed = check_companion(path, *solution_path, options); !allowed) return allowed.error();
-    const auto solution = WholeFile::read(*solution_path, progress);
+    const auto solution = open_solution(*solution_path, options, progress);
     if (!solution) return solution.error();
-    auto result = with_file<Value>(path, WholeFile::read(path, progress, most), [&](std::string_view mesh) {
+    auto result = with_file<Value>(path, open_mesh(path, options, progress), [&](std::string_view mesh) {
         return parse(mesh, std::optional(without_byte_order_mark(solution->text())));
     });
     if (result) add_file(*result, *solution_path);
@@ -180,13 +186,13 @@ using OptionalText = std::optional<std::string_view>;
 
 Result<FileInfo> inspect_medit_file(const std::string& path, const ReadOptions& options, const Progress& progress) {
     return with_mesh_and_solution<FileInfo>(
-        path, options, progress, head_bytes,
+        path, options, progress, look_into_beginning, look_into_whole,
         [&](std::string_view mesh, OptionalText solution) { return inspect_medit(mesh, solution, progress); });
 }
 
 Result<ReadResult> read_medit_file(const std::string& path, const ReadOptions& options, const Progress& progress) {
     return with_mesh_and_solution<ReadResult>(
-        path, options, progress, WholeFile::all,
+        path, options, progress, take_file, take_file,
         [&](std::string_view mesh, OptionalText solution) { return parse_medit(mesh, solution, options, progress); });
 }
 
@@ -195,10 +201,9 @@ int recognizes_tetgen(std::string_view, std::string_view extension) {
     return by_content_or_name(false, extension == ".node" || extension == ".ele");
 }
 
-/// `most`   bytes of each
 template <class Value, class Parse>
 Result<Value> with_nodes_and_elements(const std::string& path, const ReadOptions& options, const Progress& progress,
-                                      std::size_t most, const Parse& parse) {
+                                      OpenFile open, const Parse& parse) {
     for (const char* extension : {".node", ".ele"}) {
         const std::string file = beside(path, extension);
         if (auto allowed = check_companion(path, file, options); !allowed) return allowed.error();
@@ -208,9 +213,9 @@ Result<Value> with_nodes_and_elements(const std::string& path, const ReadOptions
                                      "file, tets in an .ele file of the same name",
                                      escaped(path), escaped(file))};
     }
-    const auto nodes = WholeFile::read(beside(path, ".node"), progress, most);
+    const auto nodes = open(beside(path, ".node"), options, progress);
     if (!nodes) return nodes.error();
-    const auto elements = WholeFile::read(beside(path, ".ele"), progress, most);
+    const auto elements = open(beside(path, ".ele"), options, progress);
     if (!elements) return elements.error();
     auto result =
         in_file<Value>(path, parse(without_byte_order_mark(nodes->text()), without_byte_order_mark(elements->text())));
@@ -221,12 +226,12 @@ Result<Value> with_nodes_and_elements(const std::string& path, const ReadOptions
 
 Result<FileInfo> inspect_tetgen_files(const std::string& path, const ReadOptions& options, const Progress& progress) {
     return with_nodes_and_elements<FileInfo>(
-        path, options, progress, head_bytes,
+        path, options, progress, look_into_beginning,
         [&](std::string_view nodes, std::string_view elements) { return inspect_tetgen(nodes, elements, progress); });
 }
 
 Result<ReadResult> read_tetgen_files(const std::string& path, const ReadOptions& options, const Progress& progress) {
-    return with_nodes_and_elements<ReadResult>(path, options, progress, WholeFile::all,
+    return with_nodes_and_elements<ReadResult>(path, options, progress, take_file,
                                                [&](std::string_view nodes, std::string_view elements) {
                                                    return parse_tetgen(nodes, elements, options, progress);
                                                });
@@ -238,8 +243,8 @@ int recognizes_gocad(std::string_view head, std::string_view extension) {
     return by_content_or_name(content, extension == ".so");
 }
 
-Result<FileInfo> inspect_gocad_file(const std::string& path, const ReadOptions&, const Progress& progress) {
-    return with_file<FileInfo>(path, beginning_of(path, progress),
+Result<FileInfo> inspect_gocad_file(const std::string& path, const ReadOptions& options, const Progress& progress) {
+    return with_file<FileInfo>(path, look_into_beginning(path, options, progress),
                                [&](std::string_view text) { return inspect_gocad(text, progress); });
 }
 

@@ -21,6 +21,7 @@
 #include "grid/cell_faces.hpp"
 #include "grid/cells.hpp"
 #include "grid/patches.hpp"
+#include "io/files/kept_files.hpp"
 #include "io/files/text_scanner.hpp"
 #include "io/formats.hpp"
 #include "io/pieces/join.hpp"
@@ -326,6 +327,7 @@ Result<void> number_steps(const FileOfStep& file, FileInfo& info) {
 Result<FileInfo> inspect_one(const std::string& path, const ReadOptions& options, const Progress& progress) {
     const auto reader = choose_reader(path, options);
     if (!reader) return reader.error();
+    if (options.kept) options.kept->look_at(path);
     auto info = (*reader)->inspect(path, options, progress);
     if (!info) return info;
     if (auto known = check_blocks(*info, options); !known) return known.error();

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -31,6 +32,20 @@ TEST(WholeFile, HoldsEveryByte) {
     EXPECT_TRUE(WholeFile::read(path, {}, 5'000'000).value().text() == content.substr(0, 5'000'000));
 }
 
+TEST(WholeFile, ReadsOnlyTheRestBehindItsBeginning) {
+    const TemporaryFolder folder;
+    const std::string path = folder.write("file", "abcdefgh");
+    const WholeFile begin = WholeFile::read(path, {}, 3).value();
+    EXPECT_FALSE(begin.is_whole());
+    folder.write("file", "ABCDEFGH");
+    EXPECT_EQ(WholeFile::read_rest(begin, path, {}).value().text(), "abcDEFGH");
+    folder.write("file", "AB");
+    EXPECT_EQ(WholeFile::read_rest(begin, path, {}).value().text(), "AB");
+    const WholeFile whole = WholeFile::read(path, {}).value();
+    folder.write("file", "none");
+    EXPECT_EQ(WholeFile::read_rest(whole, path, {}).value().text(), "AB");
+}
+
 /// Writes other bytes over the beginning of a file, which looks as old as before.
 void change_unseen(const std::string& path, std::string_view bytes) {
     const auto time = std::filesystem::last_write_time(path);
@@ -47,6 +62,44 @@ TEST(KeptFiles, AreReadOnceForLookingAndReading) {
     change_unseen(path, "no mesh");
     EXPECT_TRUE(read(path, options)) << "the bytes that inspect() read";
     EXPECT_FALSE(read(path, options)) << "they were taken";
+}
+
+TEST(KeptFiles, AreAllFilesOfAGrid) {
+    const std::vector<std::vector<std::pair<std::string, std::string>>> grids{
+        {{"a.mesh", "MeshVersionFormatted 2\nDimension 3\nVertices\n4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n"
+                    "Tetrahedra\n1\n1 2 3 4 0\nEnd\n"},
+         {"a.sol", "MeshVersionFormatted 2\nDimension 3\nSolAtVertices\n4\n1 1\n0\n1\n2\n3\nEnd\n"}},
+        {{"a.node", "4 3 1 0\n0 0 0 0 7\n1 1 0 0 7\n2 0 1 0 7\n3 0 0 1 7\n"}, {"a.ele", "1 4 0\n0 0 1 2 3\n"}},
+        {{"a.so", "GOCAD TSolid 1\nTVOLUME a\nVRTX 1 0 0 0\nVRTX 2 1 0 0\nVRTX 3 0 1 0\nVRTX 4 0 0 1\n"
+                  "TETRA 1 2 3 4\nEND\n"}}};
+    for (const auto& files : grids) {
+        const TemporaryFolder folder;
+        for (const auto& [name, content] : files) folder.write(name, content);
+        const std::string path = folder.file(files.front().first);
+        ReadOptions options;
+        options.kept = keep_files();
+        ASSERT_TRUE(inspect(path, options));
+        ASSERT_TRUE(inspect(path, options));
+        for (const auto& [name, content] : files) change_unseen(folder.file(name), "x\nx");
+        options.format = files.front().first == "a.mesh" ? "medit" : files.front().first == "a.so" ? "gocad" : "tetgen";
+        const auto kept = read(path, options);
+        ASSERT_TRUE(kept) << kept.error().message;
+        EXPECT_EQ(kept->grid.cells.count(), 1u);
+        EXPECT_EQ(kept->grid.point_fields.empty(), options.format == "gocad");
+        EXPECT_FALSE(read(path, options)) << "they were taken";
+    }
+}
+
+TEST(KeptFiles, AreForgottenForAnotherGrid) {
+    const TemporaryFolder folder;
+    const std::string path = folder.write("a.msh", gmsh_sample({})), other = folder.write("b.msh", gmsh_sample({}));
+    ReadOptions options;
+    options.kept = keep_files();
+    ASSERT_TRUE(inspect(path, options));
+    ASSERT_TRUE(inspect(other, options));
+    change_unseen(path, "no mesh");
+    EXPECT_FALSE(read(path, options));
+    EXPECT_TRUE(read(other, options));
 }
 
 TEST(KeptFiles, AreReadAgainWhereTheyWereChanged) {

@@ -15,30 +15,48 @@ std::optional<KeptFiles::Identity> KeptFiles::identity_of(const std::string& pat
                     static_cast<std::uint64_t>(status.st_mtim.tv_nsec)};
 }
 
+void KeptFiles::look_at(const std::string& grid) {
+    const std::lock_guard lock(mutex_);
+    if (grid == grid_) return;
+    grid_ = grid;
+    kept_.clear();
+}
+
 void KeptFiles::keep(const std::string& path, const Identity& identity, const io::WholeFile& file) {
     const std::lock_guard lock(mutex_);
-    kept_ = Kept{path, identity, file};
+    kept_.insert_or_assign(path, Kept{identity, file});
+}
+
+std::optional<io::WholeFile> KeptFiles::get(const std::string& path) const {
+    const std::lock_guard lock(mutex_);
+    const auto kept = kept_.find(path);
+    if (kept == kept_.end() || identity_of(path) != kept->second.identity) return std::nullopt;
+    return kept->second.file;
 }
 
 std::optional<io::WholeFile> KeptFiles::take(const std::string& path) {
+    auto file = get(path);
     const std::lock_guard lock(mutex_);
-    if (!kept_ || kept_->path != path || identity_of(path) != kept_->identity) return std::nullopt;
-    return std::move(std::exchange(kept_, std::nullopt)->file);
+    kept_.erase(path);
+    return file;
 }
 
 namespace io {
 
-Result<WholeFile> look_into_file(const std::string& path, const ReadOptions& options, const Progress& progress) {
+Result<WholeFile> look_into_file(const std::string& path, const ReadOptions& options, const Progress& progress,
+                                 std::size_t most) {
     const auto identity = options.kept ? KeptFiles::identity_of(path) : std::nullopt;
-    auto file = WholeFile::read(path, progress);
+    if (identity)
+        if (auto kept = options.kept->get(path); kept && (kept->is_whole() || kept->text().size() >= most))
+            return *std::move(kept);
+    auto file = WholeFile::read(path, progress, most);
     if (file && identity) options.kept->keep(path, *identity, *file);
     return file;
 }
 
 Result<WholeFile> take_file(const std::string& path, const ReadOptions& options, const Progress& progress) {
-    if (options.kept)
-        if (auto kept = options.kept->take(path)) return *std::move(kept);
-    return WholeFile::read(path, progress);
+    auto kept = options.kept ? options.kept->take(path) : std::nullopt;
+    return kept ? WholeFile::read_rest(*std::move(kept), path, progress) : WholeFile::read(path, progress);
 }
 
 } // namespace io

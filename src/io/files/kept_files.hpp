@@ -2,11 +2,12 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <string>
-#include <utility>
 
 #include <isotet/read.hpp>
 
@@ -14,7 +15,7 @@
 
 namespace isotet {
 
-/// A file that was read whole to be looked into, until it is read again: ReadOptions::kept.
+/// What looking at a grid read of its files, whole or their beginnings, until they are read again: ReadOptions::kept.
 ///
 /// Threads   safe from many threads
 class KeptFiles {
@@ -25,29 +26,34 @@ public:
     /// Nothing where there is no such file.
     static std::optional<Identity> identity_of(const std::string& path);
 
-    /// In place of one that was kept before. `identity`   before it was read
+    /// From here on files of this grid are looked into; those of another are forgotten.
+    void look_at(const std::string& grid);
+
+    /// In place of what was kept of it before. `identity`   before it was read
     void keep(const std::string& path, const Identity& identity, const io::WholeFile& file);
 
     /// Nothing where it was not kept, or changed since.
+    std::optional<io::WholeFile> get(const std::string& path) const;
     std::optional<io::WholeFile> take(const std::string& path);
 
 private:
     struct Kept {
-        std::string path;
         Identity identity;
         io::WholeFile file;
     };
-    std::mutex mutex_;
-    std::optional<Kept> kept_;
+    mutable std::mutex mutex_;
+    std::string grid_;
+    std::map<std::string, Kept> kept_;
 };
 
 namespace io {
 
-/// A file for inspect(), which is kept for read() where `options` have a place for it.
+/// A file for inspect(), or its first bytes, which are kept for read() where `options` have a place for them.
 /// Errors   as WholeFile::read()
-Result<WholeFile> look_into_file(const std::string& path, const ReadOptions& options, const Progress& progress);
+Result<WholeFile> look_into_file(const std::string& path, const ReadOptions& options, const Progress& progress,
+                                 std::size_t most = WholeFile::all);
 
-/// The file that look_into_file() kept, or reads it.
+/// The whole file, of which what look_into_file() kept is not read again.
 Result<WholeFile> take_file(const std::string& path, const ReadOptions& options, const Progress& progress);
 
 } // namespace io

@@ -29,18 +29,27 @@ public:
     ///          cancelled
     static Result<WholeFile> read(const std::string& path, const Progress& progress, std::size_t most = all);
 
+    /// The whole file that begins so, of which only the rest is read.
+    /// Errors   as read()
+    static Result<WholeFile> read_rest(WholeFile begin, const std::string& path, const Progress& progress);
+
+    bool is_whole() const noexcept { return whole_; }
     std::string_view text() const noexcept { return {reinterpret_cast<const char*>(bytes_->data()), bytes_->size()}; }
 
 private:
-    explicit WholeFile(std::shared_ptr<const core::Buffer<std::byte>> bytes) : bytes_(std::move(bytes)) {}
+    WholeFile(std::shared_ptr<const core::Buffer<std::byte>> bytes, bool whole)
+        : bytes_(std::move(bytes)), whole_(whole) {}
+    static Result<WholeFile> read_behind(std::span<const std::byte> begin, const std::string& path,
+                                         const Progress& progress, std::size_t most);
 
     std::shared_ptr<const core::Buffer<std::byte>> bytes_;
+    bool whole_;
 };
 
-/// Fills `to` from the beginning of an open file, in parallel.
+/// Fills `to` from byte `at` of an open file on, in parallel.
 ///
 /// Errors   file: the file is shorter, or reading failed; cancelled
 Result<void> read_bytes(const PlainFile& file, const std::string& path, std::span<std::byte> to,
-                        const Progress& progress);
+                        const Progress& progress, std::size_t at = 0);
 
 } // namespace isotet::io
