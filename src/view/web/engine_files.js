@@ -71,7 +71,7 @@ export class Files {
 
   view() { return new DataView(this.memory.buffer); }
 
-  path(at, length) { return plainPath(new TextDecoder().decode(new Uint8Array(this.memory.buffer, at, length))); }
+  path(at, length) { return plainPath(new TextDecoder('utf-8', {ignoreBOM: true}).decode(new Uint8Array(this.memory.buffer, at, length))); }
 
   /** A file that was given without its folder, or in another one, is found by its name. */
   find(path) {

@@ -114,7 +114,17 @@ id('reset').addEventListener('click', () => {
   commit();
 });
 
-onReturn(showState);
+/** What an address names and there is not: a map of colours, a time step, an isovalue, saved colours. */
+function fitState() {
+  if (app.maps && !Object.hasOwn(app.maps, app.state.map)) app.state.map = 'viridis';
+  if (!app.grid) return;
+  if (app.grid.times.length < 2) app.state.step = null;
+  else if (app.state.step === null || app.state.step >= app.grid.times.length) app.state.step = fromMessage(app.grid.state).step;
+  if (app.state.value !== null) app.state.value = app.slider.allowed(app.state.value);
+  if (app.grid.colors && !app.grid.colors.includes(app.state.colorBy)) app.state.colorBy = '';
+}
+
+onReturn(() => { fitState(); showState(); });
 commands.show = showState;
 
 function fill(select, names, chosen) {
@@ -141,15 +151,11 @@ function takeGrid(message) {
   const names = app.grid.fields.map(({name}) => name), start = fromMessage(app.grid.state);
   const fresh = !app.state.field || !mayBeField(app.state.field);
   if (fresh) app.state = {...start, camera: app.state.camera, labels: app.state.labels, drawn: app.state.drawn};
-  if (app.grid.times.length < 2) app.state.step = null;
-  else if (app.state.step === null || app.state.step >= app.grid.times.length) app.state.step = start.step;
+  fitState();
   if (!names.includes(app.state.field)) names.unshift(app.state.field);
-  if (app.state.value !== null) app.state.value = app.slider.allowed(app.state.value);
   const label = (name) => [name, name + (app.grid.fields.find((one) => one.name === name)?.cell ? ' (cells)' : '')];
   fill(id('field'), names.map(label), app.state.field);
-  const colors = app.grid.colors ?? names;
-  if (app.grid.colors && !colors.includes(app.state.colorBy)) app.state.colorBy = '';
-  fill(id('color-by'), [['', 'Surface'], ...colors.map(label)], app.state.colorBy);
+  fill(id('color-by'), [['', 'Surface'], ...(app.grid.colors ?? names).map(label)], app.state.colorBy);
   showNotes();
   document.body.dataset.grid = `${app.grid.points} points, ${app.grid.cells} cells`;
   if (!app.state.camera) lookAtFirst();
@@ -193,7 +199,8 @@ const messages = {
     app.maps = message.maps;
     app.save.out = message.out;
     app.other = message.other ?? '';
-    fill(id('map'), Object.keys(app.maps).map((name) => [name, name]), app.state.map in app.maps ? app.state.map : (app.state.map = 'viridis'));
+    fitState();
+    fill(id('map'), Object.keys(app.maps).map((name) => [name, name]), app.state.map);
     const name = message.file.split('/').pop();
     id('file').textContent = name;
     id('file').title = message.file;
