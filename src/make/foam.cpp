@@ -8,7 +8,7 @@
 
 #include "base/buffer.hpp"
 #include "base/memory.hpp"
-#include "base/parallel.hpp"
+#include "base/until_cancelled.hpp"
 #include "make/analytic_field.hpp"
 
 namespace isotet::make {
@@ -18,6 +18,7 @@ namespace {
 using Place = std::array<int, 3>; ///< in quarters of a cube, from the lowest corner
 
 constexpr std::size_t corner_count = 24, face_count = 14;
+constexpr std::uint64_t slots_at_once = 1 << 20;         ///< between two looks for a cancel
 constexpr std::uint64_t stream_size = 1 + 6 * 5 + 8 * 7; ///< numbers that tell the faces of a cell
 
 /// A truncated octahedron around the origin.
@@ -94,7 +95,10 @@ public:
         if (!step(0.4)) return stopped();
         fill_cells(grid.cells);
         if (!step(0.8)) return stopped();
-        for (const std::string& name : options_.fields) grid.point_fields.push_back({name, field(name)});
+        for (const std::string& name : options_.fields) {
+            if (progress_.cancelled()) return stopped();
+            grid.point_fields.push_back({name, field(name)});
+        }
         if (!step(1)) return stopped();
         return grid;
     }
@@ -149,13 +153,15 @@ private:
     /// Numbers the corners of cells in the order of their slots.
     void number_points() {
         std::ranges::fill(ranks_, 0U);
-        core::parallel_each(side_ * side_, 1, [&](std::size_t row) { // cells of two rows may set one slot to the same
+        // Cells of two rows may set one slot to the same.
+        core::each_until_cancelled(side_ * side_, 1, progress_, [&](std::size_t row) {
             for (std::uint64_t i = 2 * row * side_; i < 2 * (row + 1) * side_; ++i)
                 for (const Place& from : octahedron_.corners)
                     std::atomic_ref(ranks_[slot(corner(centre(i), from))]).store(1U, std::memory_order_relaxed);
         });
         std::uint32_t next = 0;
         for (std::uint64_t i = 0; i < ranks_.size(); ++i) {
+            if (i % slots_at_once == 0 && progress_.cancelled()) return;
             const bool used = ranks_[i] != 0;
             if (used) slots_.push_back(static_cast<std::uint32_t>(i));
             ranks_[i] = next;
@@ -173,7 +179,7 @@ private:
 
     Array points() {
         core::Buffer<float> out(3 * slots_.size());
-        core::parallel_each(slots_.size(), 1 << 13, [&](std::size_t point) {
+        core::each_until_cancelled(slots_.size(), 1 << 13, progress_, [&](std::size_t point) {
             const Position at = position(point);
             std::ranges::copy(at, out.data() + 3 * point);
         });
@@ -185,7 +191,7 @@ private:
         core::Buffer<std::int64_t> offsets(cells() + 1), face_offsets(cells() + 1);
         core::Buffer<std::uint8_t> types(cells());
         constexpr std::uint8_t polyhedron = 42;
-        core::parallel_each(cells(), 1 << 10, [&](std::size_t cell) {
+        core::each_until_cancelled(cells(), 1 << 10, progress_, [&](std::size_t cell) {
             std::int32_t* numbers = connectivity.data() + cell * corner_count;
             for (std::size_t i = 0; i < corner_count; ++i)
                 numbers[i] = static_cast<std::int32_t>(ranks_[slot(corner(centre(cell), octahedron_.corners[i]))]);
@@ -217,7 +223,8 @@ private:
     template <class Value, class At>
     Array values(const At& at) const {
         core::Buffer<Value> all(slots_.size());
-        core::parallel_each(slots_.size(), 1 << 13, [&](std::size_t point) { all[point] = at(point); });
+        core::each_until_cancelled(slots_.size(), 1 << 13, progress_,
+                                   [&](std::size_t point) { all[point] = at(point); });
         return std::move(all).to_array();
     }
 

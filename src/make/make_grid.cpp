@@ -11,7 +11,7 @@
 #include "base/buffer.hpp"
 #include "base/carry_out.hpp"
 #include "base/memory.hpp"
-#include "base/parallel.hpp"
+#include "base/until_cancelled.hpp"
 #include "grid/cells.hpp"
 #include "make/analytic_field.hpp"
 #include "make/foam.hpp"
@@ -94,7 +94,7 @@ private:
         constexpr std::uint64_t piece = 1 << 22;
         for (std::uint64_t begin = 0; begin < count && !progress_.cancelled(); begin += piece) {
             const std::uint64_t size = std::min(piece, count - begin);
-            core::parallel_each(size, 1 << 13, [&](std::size_t i) { body(begin + i); });
+            core::each_until_cancelled(size, 1 << 13, progress_, [&](std::size_t i) { body(begin + i); });
             done_ += size;
             progress_("make", static_cast<double>(done_) / static_cast<double>(work_));
         }

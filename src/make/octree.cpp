@@ -6,11 +6,9 @@
 #include <limits>
 #include <vector>
 
-#include <tbb/parallel_sort.h>
-
 #include "base/buffer.hpp"
 #include "base/memory.hpp"
-#include "base/parallel.hpp"
+#include "base/until_cancelled.hpp"
 #include "make/analytic_field.hpp"
 #include "make/cube_cells.hpp"
 #include "make/random.hpp"
@@ -44,16 +42,18 @@ public:
         if (auto fits = core::require_memory("making the grid", bytes); !fits) return fits.error();
         if (!step(0.2)) return stopped();
         number_points();
+        if (!step(0.6)) return stopped();
         if (keys_.size() > std::uint64_t{std::numeric_limits<std::int32_t>::max()})
             return Error{ErrorCode::invalid_argument, "the grid would have more than 2^31 points: a smaller side"};
-        if (!step(0.6)) return stopped();
         Grid grid;
         grid.points = points();
         grid.cells.connectivity = connectivity();
-        grid.cells.uniform_type =
-            shape_.leaf == Leaf::hexahedron ? CellType::hexahedron : CellType::tetrahedron;
+        grid.cells.uniform_type = shape_.leaf == Leaf::hexahedron ? CellType::hexahedron : CellType::tetrahedron;
         if (!step(0.8)) return stopped();
-        for (const std::string& name : options_.fields) grid.point_fields.push_back({name, field(name)});
+        for (const std::string& name : options_.fields) {
+            if (progress_.cancelled()) return stopped();
+            grid.point_fields.push_back({name, field(name)});
+        }
         if (!step(1)) return stopped();
         return grid;
     }
@@ -110,7 +110,7 @@ private:
 
     void count_leaves() {
         first_.assign(cubes() + 1, 0);
-        core::parallel_each(cubes(), 1 << 8, [&](std::size_t cube) {
+        core::each_until_cancelled(cubes(), 1 << 8, progress_, [&](std::size_t cube) {
             each_leaf(cube, [&](const Uncut&) { ++first_[cube + 1]; });
         });
         for (std::size_t cube = 0; cube < cubes(); ++cube) first_[cube + 1] += first_[cube];
@@ -124,13 +124,14 @@ private:
     /// Points along x first, then y, then z.
     void number_points() {
         keys_.resize(8 * first_.back());
-        core::parallel_each(cubes(), 1 << 8, [&](std::size_t cube) {
+        core::each_until_cancelled(cubes(), 1 << 8, progress_, [&](std::size_t cube) {
             std::uint64_t* to = keys_.data() + 8 * first_[cube];
             each_leaf(cube, [&](const Uncut& leaf) {
                 for (unsigned corner = 0; corner < 8; ++corner) *to++ = corner_key(leaf, corner);
             });
         });
-        tbb::parallel_sort(keys_.begin(), keys_.end());
+        core::sort_until_cancelled(progress_, keys_);
+        if (progress_.cancelled()) return;
         keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
     }
 
@@ -146,8 +147,7 @@ private:
         }
         if (!inner) return at;
         std::uint64_t bits = draw(options_.seed, Stream::position, number);
-        for (double& x : at)
-            x += reach_of_corners * 2 / static_cast<double>(side_) * to_symmetric(bits = mix(bits));
+        for (double& x : at) x += reach_of_corners * 2 / static_cast<double>(side_) * to_symmetric(bits = mix(bits));
         return at;
     }
 
@@ -183,7 +183,7 @@ private:
 
     Array points() const {
         core::Buffer<float> out(3 * keys_.size());
-        core::parallel_each(keys_.size(), 1 << 12, [&](std::size_t point) {
+        core::each_until_cancelled(keys_.size(), 1 << 12, progress_, [&](std::size_t point) {
             std::ranges::copy(position(point), out.data() + 3 * point);
         });
         return std::move(out).to_array(3);
@@ -192,7 +192,7 @@ private:
     Array connectivity() const {
         core::Buffer<std::int32_t> out(first_.back() * corners_per_leaf());
         const CubeCells& cells = shape_.leaf == Leaf::hexahedron ? hex_cube : kuhn_cube;
-        core::parallel_each(cubes(), 1 << 8, [&](std::size_t cube) {
+        core::each_until_cancelled(cubes(), 1 << 8, progress_, [&](std::size_t cube) {
             std::int32_t* to = out.data() + corners_per_leaf() * first_[cube];
             each_leaf(cube, [&](const Uncut& leaf) {
                 for (const std::uint8_t corner : cells.corners) {
@@ -213,7 +213,8 @@ private:
     template <class Value, class At>
     Array values(const At& at) const {
         core::Buffer<Value> all(keys_.size());
-        core::parallel_each(keys_.size(), 1 << 12, [&](std::size_t point) { all[point] = at(point); });
+        core::each_until_cancelled(keys_.size(), 1 << 12, progress_,
+                                   [&](std::size_t point) { all[point] = at(point); });
         return std::move(all).to_array();
     }
 
