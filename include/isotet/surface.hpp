@@ -208,7 +208,8 @@ struct ReducedSurface {
 /// Cost         O(F log F) on one thread, about a second a million triangles, up to nine where there are such
 ///              parts; 150 bytes a triangle while it works
 /// Errors       invalid_argument: a share outside 0 to 1, an error below 0, from 2^32 vertices on; invalid_data as
-///              check(); out_of_memory; cancelled, between parts
+///              check(); out_of_memory; cancelled
+/// Method       meshoptimizer, which cannot be asked to stop: large parts in a forked process
 ISOTET_API Result<ReducedSurface> reduce(const Surface& surface, const ReduceOptions& options = {},
                                          const Run& run = {});
 

@@ -14,7 +14,7 @@
 #include "base/buffer.hpp"
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
-#include "base/parallel.hpp"
+#include "base/until_cancelled.hpp"
 #include "check/components.hpp"
 #include "check/mesh.hpp"
 #include "grid/surface_rows.hpp"
@@ -121,11 +121,12 @@ ByComponent sort_by_component(std::span<const std::uint32_t> component_of, std::
     return out;
 }
 
-SurfacePart measured_part(const Mesh& mesh, std::span<const std::uint64_t> triangles, std::span<const Column> columns) {
+SurfacePart measured_part(const Mesh& mesh, std::span<const std::uint64_t> triangles, std::span<const Column> columns,
+                          const Progress& progress) {
     constexpr std::size_t at_once = 1 << 14;
     const core::Point base = mesh.position(mesh.corners(triangles[0])[0]);
     std::vector<PartSums> sums((triangles.size() + at_once - 1) / at_once, no_sums(columns.size()));
-    core::parallel_each(sums.size(), 1, [&](std::size_t i) {
+    core::each_until_cancelled(sums.size(), 1, progress, [&](std::size_t i) {
         const std::size_t end = std::min(triangles.size(), (i + 1) * at_once);
         for (std::size_t k = i * at_once; k < end; ++k) add_triangle(mesh, triangles[k], base, columns, sums[i]);
     });
@@ -144,14 +145,14 @@ SurfacePart measured_part(const Mesh& mesh, std::span<const std::uint64_t> trian
 
 /// 1 for each component with an edge that is not used equally often in both directions.
 std::vector<std::uint8_t> open_components(const Mesh& mesh, std::span<const std::uint32_t> component_of,
-                                          std::size_t components) {
+                                          std::size_t components, const Progress& progress) {
     struct Edge {
         std::uint64_t low, high;
         std::int32_t uses;
         std::uint32_t component;
     };
     std::vector<Edge> edges(3 * component_of.size());
-    core::parallel_each(component_of.size(), 1 << 14, [&](std::size_t i) {
+    core::each_until_cancelled(component_of.size(), 1 << 14, progress, [&](std::size_t i) {
         const Corners c = mesh.corners(i);
         for (std::size_t k = 0; k < 3; ++k) {
             const std::uint64_t from = c[k], to = c[(k + 1) % 3];
@@ -159,9 +160,10 @@ std::vector<std::uint8_t> open_components(const Mesh& mesh, std::span<const std:
         }
     });
     const auto before = [](const Edge& a, const Edge& b) { return a.low != b.low ? a.low < b.low : a.high < b.high; };
-    tbb::parallel_sort(edges.begin(), edges.end(), before);
+    core::sort_until_cancelled(progress, before,
+                               [&](const auto& compare) { tbb::parallel_sort(edges.begin(), edges.end(), compare); });
     std::vector<std::uint8_t> out(components);
-    for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
+    for (std::size_t begin = 0, end = 0; begin < edges.size() && !progress.cancelled(); begin = end) {
         std::int32_t uses = 0;
         for (end = begin; end < edges.size() && !before(edges[begin], edges[end]); ++end) uses += edges[end].uses;
         if (uses != 0) out[edges[begin].component] = 1;
@@ -182,34 +184,40 @@ Result<SurfaceParts> parts_of(const Surface& surface, const Progress& progress) 
     const Result<Mesh> opened = Mesh::open(surface);
     if (!opened) return opened.error();
     const Mesh& mesh = *opened;
-    const Components<std::uint64_t> components(mesh, Collapsed::some_part);
+    const Error stopped{ErrorCode::cancelled, "finding the parts of a surface was cancelled"};
+    const Components<std::uint64_t> components(mesh, Collapsed::some_part, progress);
+    if (progress.cancelled()) return stopped;
     if (components.count() > std::numeric_limits<std::uint32_t>::max())
         return invalid_data(fmt::format("the surface has {} parts, but must have fewer than 2^32", components.count()));
-    if (progress.cancelled()) return Error{ErrorCode::cancelled, "finding the parts of a surface was cancelled"};
     std::vector<std::uint32_t> component_of(mesh.triangles());
-    core::parallel_each(component_of.size(), 1 << 14, [&](std::size_t i) {
+    core::each_until_cancelled(component_of.size(), 1 << 14, progress, [&](std::size_t i) {
         component_of[i] = static_cast<std::uint32_t>(components.of(mesh.corners(i)[0]));
     });
+    if (progress.cancelled()) return stopped;
     const auto count = static_cast<std::size_t>(components.count());
     const ByComponent sorted = sort_by_component(component_of, count);
     SurfaceParts out;
     const std::vector<Column> columns = columns_of(surface, out.fields);
     std::vector<SurfacePart> parts(count);
-    core::parallel_each(count, 64, [&](std::size_t i) {
+    core::each_until_cancelled(count, 64, progress, [&](std::size_t i) {
         const auto triangles =
             std::span(sorted.triangles).subspan(sorted.first[i], sorted.first[i + 1] - sorted.first[i]);
-        parts[i] = measured_part(mesh, triangles, columns);
+        parts[i] = measured_part(mesh, triangles, columns, progress);
     });
-    const std::vector<std::uint8_t> open = open_components(mesh, component_of, count);
+    const std::vector<std::uint8_t> open = open_components(mesh, component_of, count, progress);
     for (std::size_t i = 0; i < count; ++i) parts[i].closed = !open[i];
     std::vector<std::uint8_t> used(mesh.vertex_count());
-    for (std::uint64_t i = 0; i < mesh.triangles(); ++i)
+    for (std::uint64_t i = 0; i < mesh.triangles(); ++i) {
+        if (i % (1 << 16) == 0 && progress.cancelled()) return stopped;
         for (const std::uint64_t vertex : mesh.corners(i))
             if (!std::exchange(used[vertex], std::uint8_t{1})) ++parts[component_of[i]].vertices;
+    }
     const std::vector<std::uint32_t> rank = ranks_by_area(parts);
     out.parts.resize(count);
     for (std::size_t i = 0; i < count; ++i) out.parts[rank[i]] = std::move(parts[i]);
-    core::parallel_each(component_of.size(), 1 << 14, [&](std::size_t i) { component_of[i] = rank[component_of[i]]; });
+    core::each_until_cancelled(component_of.size(), 1 << 14, progress,
+                               [&](std::size_t i) { component_of[i] = rank[component_of[i]]; });
+    if (progress.cancelled()) return stopped;
     out.numbers = Array::own(std::move(component_of));
     return out;
 }

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
+#include <new>
 #include <span>
 #include <string_view>
 #include <tuple>
@@ -12,10 +14,13 @@
 
 #include <fmt/core.h>
 #include <meshoptimizer.h>
+#include <tbb/parallel_sort.h>
 
+#include "base/apart.hpp"
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
 #include "base/memory.hpp"
+#include "base/until_cancelled.hpp"
 #include "check/mesh.hpp"
 #include "grid/surface_rows.hpp"
 #include "check/triangle_groups.hpp"
@@ -36,27 +41,46 @@ struct Piece {
     std::vector<float> positions; ///< relative to the first vertex
 };
 
-Piece piece_of(const Mesh& mesh, std::span<const std::uint64_t> triangles) {
-    Piece piece;
-    piece.vertices.reserve(3 * triangles.size());
-    for (const std::uint64_t triangle : triangles)
-        for (const std::uint64_t vertex : mesh.corners(triangle)) piece.vertices.push_back(vertex);
-    std::ranges::sort(piece.vertices);
-    piece.vertices.erase(std::ranges::unique(piece.vertices).begin(), piece.vertices.end());
-    piece.indices.reserve(3 * triangles.size());
-    for (const std::uint64_t triangle : triangles)
-        for (const std::uint64_t vertex : mesh.corners(triangle))
-            piece.indices.push_back(
-                static_cast<unsigned>(std::ranges::lower_bound(piece.vertices, vertex) - piece.vertices.begin()));
-    const core::Point origin = mesh.position(piece.vertices.front());
-    piece.positions.reserve(3 * piece.vertices.size());
-    for (const std::uint64_t vertex : piece.vertices) {
-        const core::Point place = mesh.position(vertex);
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            piece.positions.push_back(static_cast<float>(place[axis] - origin[axis]));
+constexpr std::size_t stride_of_positions = 3 * sizeof(float);
+
+constexpr std::size_t looked_at_once = 1 << 14; ///< triangles or vertices between two looks for a cancel
+
+/// Makes one piece after another.
+class PieceMaker {
+public:
+    PieceMaker(const Mesh& mesh, const Progress& progress)
+        : mesh_(mesh), progress_(progress), numbers_(mesh.vertex_count(), none) {}
+
+    /// Of no use after a cancel.
+    Piece operator()(std::span<const std::uint64_t> triangles) {
+        Piece piece;
+        for (std::size_t i = 0; i < triangles.size() && !(i % looked_at_once == 0 && progress_.cancelled()); ++i)
+            for (const std::uint64_t vertex : mesh_.corners(triangles[i]))
+                if (std::exchange(numbers_[vertex], 0) == none) piece.vertices.push_back(vertex);
+        core::sort_until_cancelled(progress_, piece.vertices);
+        for (std::size_t i = 0; i < piece.vertices.size(); ++i) numbers_[piece.vertices[i]] = static_cast<unsigned>(i);
+        piece.indices.resize(3 * triangles.size());
+        core::each_until_cancelled(triangles.size(), looked_at_once, progress_, [&](std::size_t i) {
+            const Corners corners = mesh_.corners(triangles[i]);
+            for (std::size_t k = 0; k < 3; ++k) piece.indices[3 * i + k] = numbers_[corners[k]];
+        });
+        piece.positions.resize(3 * piece.vertices.size());
+        core::each_until_cancelled(piece.vertices.size(), looked_at_once, progress_, [&](std::size_t i) {
+            const core::Point place = mesh_.position(piece.vertices[i]), origin = mesh_.position(piece.vertices[0]);
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                piece.positions[3 * i + axis] = static_cast<float>(place[axis] - origin[axis]);
+        });
+        for (const std::uint64_t vertex : piece.vertices) numbers_[vertex] = none;
+        return piece;
     }
-    return piece;
-}
+
+private:
+    static constexpr unsigned none = std::numeric_limits<unsigned>::max();
+
+    const Mesh& mesh_;
+    const Progress& progress_;
+    std::vector<unsigned> numbers_; ///< of the vertices of the piece that is being made
+};
 
 /// What is left of a piece.
 struct Simplified {
@@ -66,22 +90,71 @@ struct Simplified {
     std::size_t triangles() const { return indices.size() / 3; }
 };
 
-/// Leaves triangles out until `wanted` are left, or the next one would move the piece farther than `limit`.
-Simplified simplify(const Piece& piece, std::size_t wanted, double limit) {
-    constexpr std::size_t stride = 3 * sizeof(float);
+/// What meshoptimizer made of a piece.
+struct Outcome {
+    std::size_t indices = 0;
+    float error = 0;
+};
+
+/// meshopt_simplify(), which cannot be asked to stop: where it lasts, in a process of its own.
+///
+/// Errors   by exception: std::bad_alloc
+class Simplifier {
+public:
+    Simplifier(const Piece& piece, std::size_t wanted, float error) : piece_(piece), wanted_(wanted), error_(error) {}
+
+    /// Puts what is left into `indices`. Nothing is left after a cancel.
+    float run(std::vector<unsigned>& indices, const Progress& progress) const {
+        constexpr std::size_t soon_done = 3 << 15;
+        indices.clear();
+        const std::size_t all = piece_.indices.size();
+        const core::SharedMemory memory(all < soon_done ? 1 : sizeof(Outcome) + all * sizeof(unsigned));
+        core::Apart ended = core::Apart::refused;
+        if (all >= soon_done && memory.data()) {
+            auto* const outcome = new (memory.data()) Outcome;
+            auto* const left = reinterpret_cast<unsigned*>(outcome + 1);
+            ended = core::run_apart(progress, [&] {
+                meshopt_setAllocator(core::take_pages, [](void*) {});
+                *outcome = simplify(left);
+            });
+            if (ended == core::Apart::failed) throw std::bad_alloc();
+            if (ended == core::Apart::done) {
+                indices.assign(left, left + outcome->indices);
+                return outcome->error;
+            }
+        }
+        if (ended == core::Apart::cancelled) return 0;
+        indices.resize(all);
+        const Outcome outcome = simplify(indices.data());
+        indices.resize(outcome.indices);
+        return outcome.error;
+    }
+
+private:
+    Outcome simplify(unsigned* left) const {
+        Outcome out;
+        out.indices = meshopt_simplify(left, piece_.indices.data(), piece_.indices.size(), piece_.positions.data(),
+                                       piece_.vertices.size(), stride_of_positions, 3 * wanted_, error_,
+                                       meshopt_SimplifyLockBorder, &out.error);
+        return out;
+    }
+
+    const Piece& piece_;
+    std::size_t wanted_;
+    float error_;
+};
+
+/// Leaves triangles out until `wanted` are left, or the next one would move the piece farther than `limit`. Nothing is
+/// left after a cancel.
+Simplified simplify(const Piece& piece, std::size_t wanted, double limit, const Progress& progress) {
     constexpr std::size_t least = 4; // of a piece: closed ones of fewer enclose nothing
     if (piece.indices.size() <= 3 * std::max(wanted, least)) return {piece.indices, 0};
     const auto scale =
-        static_cast<double>(meshopt_simplifyScale(piece.positions.data(), piece.vertices.size(), stride));
+        static_cast<double>(meshopt_simplifyScale(piece.positions.data(), piece.vertices.size(), stride_of_positions));
+    const Simplifier simplifier(piece, std::max(wanted, least),
+                                static_cast<float>(scale > 0 ? std::min(limit / scale, 1.0) : 0));
     Simplified out;
-    out.indices.resize(piece.indices.size());
-    float reached = 0;
-    const std::size_t left = meshopt_simplify(
-        out.indices.data(), piece.indices.data(), piece.indices.size(), piece.positions.data(), piece.vertices.size(),
-        stride, 3 * std::max(wanted, least), static_cast<float>(scale > 0 ? std::min(limit / scale, 1.0) : 0),
-        meshopt_SimplifyLockBorder, &reached);
-    out.indices.resize(left);
-    out.error = static_cast<double>(reached) * scale;
+    out.error = static_cast<double>(simplifier.run(out.indices, progress)) * scale;
     return out;
 }
 
@@ -123,7 +196,7 @@ private:
         Counts counts{limit, {}, 0};
         for (const Piece& piece : pieces_) {
             if (progress_.cancelled()) break;
-            counts.left.push_back(simplify(piece, 0, limit).triangles());
+            counts.left.push_back(simplify(piece, 0, limit, progress_).triangles());
             counts.sum += counts.left.back();
         }
         counts.left.resize(pieces_.size());
@@ -135,7 +208,7 @@ private:
         constexpr int halvings = 5;
         double lowest = std::numeric_limits<double>::infinity(), highest = 0;
         for (std::size_t i = 0; i < pieces_.size() && !progress_.cancelled(); ++i) {
-            const double error = simplify(pieces_[i], goals_[i].wanted, goals_[i].limit).error;
+            const double error = simplify(pieces_[i], goals_[i].wanted, goals_[i].limit, progress_).error;
             lowest = std::min(lowest, error);
             highest = std::max(highest, error);
         }
@@ -177,7 +250,7 @@ struct Left {
 
 /// Takes away pairs of triangles on the same corners, back to back: where both sides of a border lost the vertices between
 /// the same three of its own.
-void cancel_double_sheets(Left& left) {
+void cancel_double_sheets(Left& left, const Progress& progress) {
     struct Sheet {
         Corners corners; ///< ascending
         bool mirrored;
@@ -193,7 +266,9 @@ void cancel_double_sheets(Left& left) {
         const bool mirrored = c[1] > c[2];
         sheets[i] = {{c[0], std::min(c[1], c[2]), std::max(c[1], c[2])}, mirrored, i};
     }
-    std::ranges::sort(sheets, std::less<>());
+    core::sort_until_cancelled(progress, std::less<>(),
+                               [&](const auto& before) { tbb::parallel_sort(sheets.begin(), sheets.end(), before); });
+    if (progress.cancelled()) return;
     std::vector<std::uint8_t> gone(sheets.size());
     for (std::size_t begin = 0, end = 0; begin < sheets.size(); begin = end) {
         while (end < sheets.size() && sheets[end].corners == sheets[begin].corners) ++end;
@@ -211,16 +286,18 @@ void cancel_double_sheets(Left& left) {
 }
 
 /// The vertices that are left, with what belongs to them, and the new triangles.
-Surface surface_of(const Surface& surface, const Left& left) {
+Surface surface_of(const Surface& surface, const Left& left, const Progress& progress) {
     std::vector<std::uint64_t> vertices = left.corners;
-    std::ranges::sort(vertices);
+    core::sort_until_cancelled(progress, vertices);
     vertices.erase(std::ranges::unique(vertices).begin(), vertices.end());
     Surface out;
     out.positions = core::rows_of(surface.positions, vertices);
     std::vector<std::uint32_t> triangles(left.corners.size());
-    for (std::size_t i = 0; i < triangles.size(); ++i)
-        triangles[i] =
-            static_cast<std::uint32_t>(std::ranges::lower_bound(vertices, left.corners[i]) - vertices.begin());
+    core::each_until_cancelled(triangles.size(), looked_at_once, progress, [&](std::size_t i) {
+        const auto place = std::ranges::lower_bound(vertices, left.corners[i]);
+        triangles[i] = static_cast<std::uint32_t>(place - vertices.begin());
+    });
+    if (progress.cancelled()) return out;
     out.triangles = Array::own(std::move(triangles), 3);
     if (surface.normals_kind == Normals::gradient) {
         out.normals_kind = Normals::gradient;
@@ -260,21 +337,25 @@ Result<ReducedSurface> reduced(const Surface& surface, const ReduceOptions& opti
     ReducedSurface out;
     out.triangles_before = surface.triangle_count();
     out.left_out = left_out_of(surface);
-    const std::vector<TriangleGroup> groups = triangle_groups(surface, kept_fields);
+    const std::vector<TriangleGroup> groups = triangle_groups(surface, kept_fields, progress);
     std::vector<Piece> pieces;
-    for (const TriangleGroup& group : groups) pieces.push_back(piece_of(*mesh, group.triangles));
+    PieceMaker piece_of(*mesh, progress);
+    for (const TriangleGroup& group : groups) pieces.push_back(piece_of(group.triangles));
+    const Error stopped{ErrorCode::cancelled, "reducing a surface was cancelled"};
+    if (progress.cancelled()) return stopped;
     const Goals goals(pieces, options, progress);
     Left left;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-        if (progress.cancelled()) return Error{ErrorCode::cancelled, "reducing a surface was cancelled"};
-        const Simplified simplified = simplify(pieces[i], goals[i].wanted, goals[i].limit);
+        const Simplified simplified = simplify(pieces[i], goals[i].wanted, goals[i].limit, progress);
+        if (progress.cancelled()) return stopped;
         out.error = std::max(out.error, simplified.error);
         for (const unsigned index : simplified.indices) left.corners.push_back(pieces[i].vertices[index]);
         left.like.insert(left.like.end(), simplified.triangles(), groups[i].triangles.front());
         progress("reduce", static_cast<double>(i + 1) / static_cast<double>(pieces.size()));
     }
-    cancel_double_sheets(left);
-    out.surface = surface_of(surface, left);
+    cancel_double_sheets(left, progress);
+    out.surface = surface_of(surface, left, progress);
+    if (progress.cancelled()) return stopped;
     return out;
 }
 

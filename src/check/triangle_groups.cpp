@@ -24,11 +24,14 @@ std::vector<const Field*> present(const Surface& surface, std::span<const std::s
 }
 
 /// Nothing where there are too many.
-std::optional<Groups> by_values(const Surface& surface, const std::vector<const Field*>& fields) {
+std::optional<Groups> by_values(const Surface& surface, const std::vector<const Field*>& fields,
+                                const Progress& progress) {
+    constexpr std::uint64_t between_looks = 1 << 16;
     Groups groups;
     auto last = groups.end();
     Key key(fields.size());
     for (std::uint64_t triangle = 0; triangle < surface.triangle_count(); ++triangle) {
+        if (triangle % between_looks == 0 && progress.cancelled()) break;
         for (std::size_t i = 0; i < fields.size(); ++i) {
             const double value = fields[i]->values.at(triangle);
             key[i] = value == value ? value : 0; // keys must have an order
@@ -52,10 +55,11 @@ std::string name_of_group(const Key& key, const std::vector<const Field*>& field
 
 } // namespace
 
-std::vector<TriangleGroup> triangle_groups(const Surface& surface, std::span<const std::string_view> fields) {
+std::vector<TriangleGroup> triangle_groups(const Surface& surface, std::span<const std::string_view> fields,
+                                           const Progress& progress) {
     const std::vector<const Field*> found = present(surface, fields);
     if (!found.empty()) {
-        if (auto groups = by_values(surface, found)) {
+        if (auto groups = by_values(surface, found, progress)) {
             std::vector<TriangleGroup> named;
             for (auto& [key, triangles] : *groups)
                 named.push_back({name_of_group(key, found), key, std::move(triangles)});

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <isotet/export.hpp>
+#include <isotet/progress.hpp>
 #include <isotet/surface.hpp>
 
 namespace isotet::checking {
@@ -22,8 +23,9 @@ struct TriangleGroup {
 
 /// Triangles by the values of those of `fields` that the surface has: cell fields of one component; ascending, first
 /// field first, triangles in their order. One group "surface" where it has none of them, or where they make more than
-/// `max_groups`.
-ISOTET_API std::vector<TriangleGroup> triangle_groups(const Surface& surface, std::span<const std::string_view> fields);
+/// `max_groups`. After a cancel some triangles are missing.
+ISOTET_API std::vector<TriangleGroup> triangle_groups(const Surface& surface, std::span<const std::string_view> fields,
+                                                      const Progress& progress = {});
 
 constexpr std::size_t max_groups = 4096;
 

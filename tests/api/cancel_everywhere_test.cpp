@@ -184,5 +184,48 @@ TEST_F(EveryFunction, IsCancelledAtAnyMomentOrDone) {
     }
 }
 
+/// Work in which one step takes a large part of the time: on the average over all moments it would end after an eighth of
+/// the whole, or later, if that step did not stop.
+TEST(LongSteps, EndSoonAfterACancelAtAnyMoment) {
+    const TemporaryFolder folder;
+    const Grid grid = make_grid({.shape = "kuhn", .side = 56, .fields = {"gyroid"}}).value();
+    const Surface surface = extract_direct(grid, first_field(grid), std::vector{0.1}).value().surfaces[0].surface;
+    const std::vector<Work> all{
+        {"make_grid, hanging",
+         [](const isotet::Run& run) {
+             return outcome_of(make_grid({.shape = "octree-tets", .side = 28, .fields = {}}, run));
+         }},
+        {"make_grid, shuffled",
+         [](const isotet::Run& run) {
+             return outcome_of(make_grid({.shape = "shuffled", .side = 30, .fields = {"wavelet"}}, run));
+         }},
+        {"reduce", [&](const isotet::Run& run) { return outcome_of(reduce(surface, {}, run)); }},
+        {"find_parts", [&](const isotet::Run& run) { return outcome_of(find_parts(surface, run)); }},
+        {"write 3MF",
+         [&](const isotet::Run& run) { return outcome_of(write_surface(surface, folder.file("a.3mf"), {}, run)); }}};
+    for (const auto& [name, carry_out] : all) {
+        using Clock = std::chrono::steady_clock;
+        const auto begin = Clock::now();
+        EXPECT_EQ(carry_out({1, {}}), std::nullopt) << name;
+        const auto whole = Clock::now() - begin;
+        constexpr int moments = 6;
+        Clock::duration late{};
+        for (int i = 0; i < moments; ++i) {
+            std::atomic<bool> cancel{false};
+            Clock::time_point at;
+            std::thread canceller([&] {
+                std::this_thread::sleep_for(whole * (2 * i + 1) / (2 * moments));
+                at = Clock::now();
+                cancel = true;
+            });
+            const Outcome outcome = carry_out({1, {nullptr, &cancel}});
+            const auto end = Clock::now();
+            canceller.join();
+            if (outcome) late += end - at;
+        }
+        EXPECT_LT(late, whole * moments / 8) << name;
+    }
+}
+
 } // namespace
 } // namespace isotet::test

@@ -185,6 +185,40 @@ def test_ctrl_c_stops_a_call(sphere):
     assert threading.active_count() == before
 
 
+def seconds_of(call) -> float:
+    begin = time.perf_counter()
+    call()
+    return time.perf_counter() - begin
+
+
+@pytest.mark.parametrize("what", ["read", "pack", "contour", "reduce", "3mf", "make"])
+def test_ctrl_c_stops_a_call_soon(what, tmp_path):
+    grid = isotet.make("kuhn", 64, ["gyroid"])
+    if what == "read":
+        grid.write(tmp_path / "grid.vtu")
+    surface = grid.contour(0.1, "gyroid")
+    call = {
+        "read": lambda: isotet.read(tmp_path / "grid.vtu"),
+        "pack": lambda: isotet.pack(grid, threads=1),
+        "contour": lambda: grid.contour([i / 10 for i in range(-9, 10)], "gyroid", threads=1),
+        "reduce": lambda: surface.reduce(0.9, threads=1),
+        "3mf": lambda: surface.write(tmp_path / "surface.3mf"),
+        "make": lambda: isotet.make("octree-tets", 48, []),
+    }[what]
+    whole = seconds_of(call)
+    late = []
+    for part in (0.15, 0.3, 0.45, 0.6):
+        timer = threading.Timer(part * whole, os.kill, (os.getpid(), signal.SIGINT))
+        begin = time.perf_counter()
+        timer.start()
+        try:
+            call()
+            timer.join()  # this time it was faster
+        except KeyboardInterrupt:
+            late.append(time.perf_counter() - begin - part * whole)
+    assert late and sum(late) < len(late) * (0.1 + 0.2 * whole), (late, whole)
+
+
 def test_handlers_of_other_signals_run_meanwhile():
     seen = []
     old = signal.signal(signal.SIGUSR1, lambda *_: seen.append(isotet.make("kuhn", 2, ["sphere"]).contour(0.5)))

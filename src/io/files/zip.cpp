@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 #include <libdeflate.h>
 
+#include "base/apart.hpp"
 #include "base/errors.hpp"
 #include "io/files/byte_reader.hpp"
 
@@ -33,6 +34,8 @@ struct FreeDecompressor {
 struct FreeCompressor {
     void operator()(libdeflate_compressor* it) const noexcept { libdeflate_free_compressor(it); }
 };
+
+Error no_memory_to_pack() { return {ErrorCode::out_of_memory, "no memory left to pack an archive"}; }
 
 /// What the directory of an archive says of a member.
 struct Entry {
@@ -59,7 +62,8 @@ std::optional<Entry> next_entry(ByteReader& reader) {
     std::uint16_t name = 0, extra = 0, comment = 0;
     if (!reader.read(mark) || mark != central_mark || !reader.skip(6) || !reader.read(entry.method) ||
         !reader.skip(4) || !reader.read(entry.check) || !reader.read(entry.packed) || !reader.read(entry.size) ||
-        !reader.read(name) || !reader.read(extra) || !reader.read(comment) || !reader.skip(8) || !reader.read(entry.offset))
+        !reader.read(name) || !reader.read(extra) || !reader.read(comment) || !reader.skip(8) ||
+        !reader.read(entry.offset))
         return {};
     const auto text = take(reader, name);
     if (!text || !reader.skip(std::size_t{extra} + comment)) return {};
@@ -111,6 +115,31 @@ Result<std::string> unpacked(std::string_view packed, const Entry& entry) {
     return content;
 }
 
+/// One call of libdeflate, which cannot be asked to stop: where it lasts, in a process of its own.
+Result<std::string> packed_content(std::string_view content, const Progress& progress) {
+    constexpr std::size_t soon_done = std::size_t{4} << 20;
+    const std::unique_ptr<libdeflate_compressor, FreeCompressor> deflate(libdeflate_alloc_compressor(level));
+    if (!deflate) return no_memory_to_pack();
+    const std::size_t bound = libdeflate_deflate_compress_bound(deflate.get(), content.size());
+    const auto pack = [&](char* to) {
+        return libdeflate_deflate_compress(deflate.get(), content.data(), content.size(), to, bound);
+    };
+    if (content.size() >= soon_done) {
+        const core::SharedMemory memory(sizeof(std::size_t) + bound);
+        auto* const size = static_cast<std::size_t*>(memory.data());
+        auto* const bytes = reinterpret_cast<char*>(size + 1);
+        switch (size ? core::run_apart(progress, [&] { *size = pack(bytes); }) : core::Apart::refused) {
+        case core::Apart::done: return std::string(bytes, *size);
+        case core::Apart::cancelled: return Error{ErrorCode::cancelled, "packing an archive was cancelled"};
+        case core::Apart::failed: return no_memory_to_pack();
+        case core::Apart::refused: break;
+        }
+    }
+    std::string packed(bound, '\0');
+    packed.resize(pack(packed.data()));
+    return packed;
+}
+
 } // namespace
 
 void ZipWriter::put_facts(std::string& out, const Member& member) {
@@ -126,15 +155,13 @@ void ZipWriter::put_facts(std::string& out, const Member& member) {
     put_little(std::uint16_t{0}, out); // nothing extra
 }
 
-Result<void> ZipWriter::add(std::string_view name, std::string_view content) {
-    const std::unique_ptr<libdeflate_compressor, FreeCompressor> deflate(libdeflate_alloc_compressor(level));
-    if (!deflate) return Error{ErrorCode::out_of_memory, "no memory left to pack an archive"};
-    std::string packed(libdeflate_deflate_compress_bound(deflate.get(), content.size()), '\0');
-    packed.resize(
-        libdeflate_deflate_compress(deflate.get(), content.data(), content.size(), packed.data(), packed.size()));
+Result<void> ZipWriter::add(std::string_view name, std::string_view content, const Progress& progress) {
+    Result<std::string> deflated_content = packed_content(content, progress);
+    if (!deflated_content) return deflated_content.error();
+    const std::string packed = *std::move(deflated_content);
     if (content.size() > largest || bytes_.size() + packed.size() > largest - (1 << 20))
-        return Error{ErrorCode::invalid_argument, fmt::format("an archive holds at most 4 GB, but \"{}\" has {} bytes",
-                                                              name, content.size())};
+        return Error{ErrorCode::invalid_argument,
+                     fmt::format("an archive holds at most 4 GB, but \"{}\" has {} bytes", name, content.size())};
     Member member{std::string(name), libdeflate_crc32(0, content.data(), content.size()),
                   static_cast<std::uint32_t>(packed.size()), static_cast<std::uint32_t>(content.size()),
                   static_cast<std::uint32_t>(bytes_.size())};

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include <isotet/progress.hpp>
 #include <isotet/result.hpp>
 
 namespace isotet::io {
@@ -14,8 +15,8 @@ namespace isotet::io {
 /// Puts members one after another, deflated; finish() gives the archive. Bytes depend on the members alone.
 class ZipWriter {
 public:
-    /// Errors   invalid_argument: the archive would pass 4 GB; out_of_memory
-    Result<void> add(std::string_view name, std::string_view content);
+    /// Errors   invalid_argument: the archive would pass 4 GB; out_of_memory; cancelled
+    Result<void> add(std::string_view name, std::string_view content, const Progress& progress = {});
     std::string finish() &&;
 
 private:

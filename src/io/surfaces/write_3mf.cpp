@@ -2,6 +2,7 @@
 // 3MF, core specification 1.3: an object for each isovalue, one unit of the grid a millimetre.
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -12,6 +13,7 @@
 
 #include "base/errors.hpp"
 #include "base/memory.hpp"
+#include "base/until_cancelled.hpp"
 #include "check/triangle_groups.hpp"
 #include "io/files/zip.hpp"
 #include "io/write/write_formats.hpp"
@@ -26,6 +28,7 @@ using checking::triangle_groups;
 using checking::TriangleGroup;
 
 constexpr std::array<std::string_view, 1> object_fields{"isovalue"};
+constexpr std::size_t items_at_once = 1 << 12;                      ///< between two looks for a cancel
 constexpr std::uint64_t text_of_vertex = 70, text_of_triangle = 50; // at most, about
 
 constexpr std::string_view content_types =
@@ -38,30 +41,35 @@ constexpr std::string_view relationships =
 )";
 
 /// Whether triangles use every edge as often in one direction as in the other: a sum of hashes, with a sign each, is 0.
-bool closes(const Array& triangles, std::span<const std::uint64_t> some) {
-    std::uint64_t sum = 0;
+bool closes(const Array& triangles, std::span<const std::uint64_t> some, const Progress& progress) {
+    std::atomic<std::uint64_t> sum = 0;
     triangles.visit([&](auto corners) {
-        for (const std::uint64_t triangle : some)
-            for (std::size_t k = 0; k < 3; ++k) {
-                const auto from = static_cast<std::uint64_t>(corners[3 * triangle + k]);
-                const auto to = static_cast<std::uint64_t>(corners[3 * triangle + (k + 1) % 3]);
-                const std::uint64_t edge = core::mixed(core::mixed(std::min(from, to)) + std::max(from, to));
-                sum += from < to ? edge : -edge;
-            }
+        core::parallel_pieces(some.size(), items_at_once, progress, [&](std::size_t begin, std::size_t end) {
+            std::uint64_t part = 0;
+            for (const std::uint64_t triangle : some.subspan(begin, end - begin))
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const auto from = static_cast<std::uint64_t>(corners[3 * triangle + k]);
+                    const auto to = static_cast<std::uint64_t>(corners[3 * triangle + (k + 1) % 3]);
+                    const std::uint64_t edge = core::mixed(core::mixed(std::min(from, to)) + std::max(from, to));
+                    part += from < to ? edge : -edge;
+                }
+            sum += part;
+        });
     });
     return sum == 0;
 }
 
 /// The vertices of some triangles, ascending, each once.
-std::vector<std::uint64_t> vertices_of(const Array& triangles, std::span<const std::uint64_t> some) {
-    std::vector<std::uint64_t> vertices;
-    vertices.reserve(3 * some.size());
+std::vector<std::uint64_t> vertices_of(const Array& triangles, std::span<const std::uint64_t> some,
+                                       const Progress& progress) {
+    std::vector<std::uint64_t> vertices(3 * some.size());
     triangles.visit([&](auto corners) {
-        for (const std::uint64_t triangle : some)
+        core::each_until_cancelled(some.size(), items_at_once, progress, [&](std::size_t i) {
             for (std::size_t k = 0; k < 3; ++k)
-                vertices.push_back(static_cast<std::uint64_t>(corners[3 * triangle + k]));
+                vertices[3 * i + k] = static_cast<std::uint64_t>(corners[3 * some[i] + k]);
+        });
     });
-    std::sort(vertices.begin(), vertices.end());
+    core::sort_until_cancelled(progress, vertices);
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     return vertices;
 }
@@ -87,13 +95,13 @@ void append_vertex(std::string& out, const Array& positions, std::uint64_t verte
 /// The last part of it is missing where that is cancelled.
 void append_object(std::string& out, const Surface& surface, const TriangleGroup& group, std::size_t id,
                    const Progress& progress) {
-    constexpr std::size_t lines_at_once = 1 << 12;
     std::size_t lines = 0;
-    const auto stops = [&] { return ++lines % lines_at_once == 0 && progress.cancelled(); };
+    const auto stops = [&] { return ++lines % items_at_once == 0 && progress.cancelled(); };
     constexpr std::array<std::string_view, 3> corners_of_triangle{"v1", "v2", "v3"};
-    const std::vector<std::uint64_t> vertices = vertices_of(surface.triangles, group.triangles);
-    out += fmt::format("<object id=\"{}\" type=\"{}\" name=\"{}\"><mesh><vertices>\n", id,
-                       closes(surface.triangles, group.triangles) ? "model" : "surface", xml_name(group.name));
+    const std::vector<std::uint64_t> vertices = vertices_of(surface.triangles, group.triangles, progress);
+    out +=
+        fmt::format("<object id=\"{}\" type=\"{}\" name=\"{}\"><mesh><vertices>\n", id,
+                    closes(surface.triangles, group.triangles, progress) ? "model" : "surface", xml_name(group.name));
     for (const std::uint64_t vertex : vertices) {
         if (stops()) return;
         append_vertex(out, surface.positions, vertex);
@@ -128,7 +136,8 @@ std::string model_of(const Surface& surface, const std::vector<TriangleGroup>& g
         append_object(out, surface, groups[i], i + 1, progress);
         items += fmt::format("<item objectid=\"{}\"/>", i + 1);
     }
-    return out + "</resources>\n<build>" + items + "</build>\n</model>\n";
+    out += "</resources>\n<build>" + items + "</build>\n</model>\n";
+    return out;
 }
 
 } // namespace
@@ -148,9 +157,10 @@ Result<WriteReport> write_3mf(const SurfaceToWrite& input) {
     ZipWriter archive;
     if (auto ok = archive.add("[Content_Types].xml", content_types); !ok) return ok.error();
     if (auto ok = archive.add("_rels/.rels", relationships); !ok) return ok.error();
-    const std::string model = model_of(surface, triangle_groups(surface, object_fields), input.progress);
+    const std::string model =
+        model_of(surface, triangle_groups(surface, object_fields, input.progress), input.progress);
     if (input.progress.cancelled()) return Error{ErrorCode::cancelled, "writing was cancelled"};
-    if (auto ok = archive.add("3D/3dmodel.model", model); !ok) return ok.error();
+    if (auto ok = archive.add("3D/3dmodel.model", model, input.progress); !ok) return ok.error();
     const std::string bytes = std::move(archive).finish();
     return write_file(input.path, input.progress, bytes.size(), [&](WriteStream& stream) { stream.text(bytes); });
 }
