@@ -169,7 +169,9 @@ Result<std::string> page_document(std::string_view title, const Json& saved, con
     if (has_engine) {
         const Result<std::string> worker = bundle(modules, "engine_worker.js", {});
         if (!worker) return worker.error();
-        data += fmt::format("<script type=\"text/plain\" id=\"worker\">{}</script>\n", base64_of(*worker));
+        const Result<std::string> packed = deflated(*worker);
+        if (!packed) return packed.error();
+        data += fmt::format("<script type=\"text/plain\" id=\"worker\">{}</script>\n", base64_of(*packed));
     }
 
     std::string html(text_of_file(files, "index.html"));

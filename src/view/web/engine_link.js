@@ -2,7 +2,7 @@
 // In place of the socket (link.js) where the page is a file: isotet as WebAssembly answers, in a thread (engine_worker.js).
 import {readFrame} from './frame.js';
 import {nothingShown, surfaceFile} from './mesh_files.js';
-import {partBytes} from './unpack.js';
+import {unpack} from './unpack.js';
 
 /** The graphics card, unless the address says `?card=off`; with `?card=any` one that is the processor too. */
 const chosenCard = () => ({off: '', any: 'webgpu-software'}[new URLSearchParams(location.search).get('card')] ?? 'webgpu');
@@ -16,24 +16,27 @@ export class EngineLink {
 
   forget() {
     this.worker?.terminate();
-    this.worker = null;
+    this.worker = this.beginning = null;
     this.ready = false;
     this.meshes = new Map(); // of the last frame
     this.wish = null;        // the newest that waits
     this.working = false;    // on a frame
   }
 
-  failed(why) { this.on.text({say: 'error', about: 'engine', sentence: `The grid cannot be looked at: ${why}`}); }
+  failed(why) { this.take({text: {say: 'error', about: 'engine', sentence: `The grid cannot be looked at: ${why}.`}}); }
 
-  /** @param message  {engine, grid or blobs, told}: as the thread takes it */
-  begin(message) {
-    const code = URL.createObjectURL(new Blob([partBytes('worker')], {type: 'text/javascript'}));
-    this.worker = new Worker(code);
-    this.started = new Promise((resolve) => {
-      this.worker.onmessage = ({data}) => (data.started ? resolve() : this.take(data));
-      this.worker.onerror = (event) => { resolve(); this.failed(event.message); };
+  /** @param message()  {engine, grid or blobs, told}: as the thread takes it */
+  begin(message) { this.started = this.startThread(message).catch((error) => this.failed(error.message)); }
+
+  async startThread(message) {
+    const beginning = this.beginning = {}, told = message(), code = await unpack('worker');
+    if (this.beginning !== beginning) return; // another file was chosen
+    const worker = this.worker = new Worker(URL.createObjectURL(new Blob([code], {type: 'text/javascript'})));
+    worker.postMessage({...told, card: chosenCard()});
+    await new Promise((resolve) => {
+      worker.onmessage = ({data}) => (data.started ? resolve() : this.take(data));
+      worker.onerror = (event) => { resolve(); this.failed(event.message); };
     });
-    this.worker.postMessage({...message, card: chosenCard()});
   }
 
   take({text, frame, spent}) {

@@ -2,12 +2,19 @@
 // isotet as WebAssembly (src/web) in a thread of its own. It is told {engine, grid, told} once, or {engine, blobs, told}, and then
 // messages of the page; what it says goes back as {started}, {text} or {frame}. Engine and grid are deflated, in base64. `card`
 // names the kind of graphics card that is used (webgpu.js); nothing: none.
-import {allBytes, fromBase64, inflated} from './base64.js';
+import {allBytes, damaged, fromBase64, inflated} from './base64.js';
 import {blobAsFile, bytesAsFile, Files} from './engine_files.js';
 import {CardOfModule} from './webgpu.js';
 
 /** Compiled while it is inflated. */
-const compiled = (text) => WebAssembly.compileStreaming(new Response(inflated(fromBase64(text)), {headers: {'Content-Type': 'application/wasm'}}));
+async function compiled(text) {
+  const response = new Response(inflated(fromBase64(text)), {headers: {'Content-Type': 'application/wasm'}});
+  try {
+    return await WebAssembly.compileStreaming(response);
+  } catch (error) {
+    throw error instanceof WebAssembly.CompileError ? new Error(`this browser cannot run isotet: ${error.message}`) : damaged();
+  }
+}
 
 /**
  * isotet as WebAssembly, with a grid: packed, as bytes, or files that its readers read.
@@ -93,8 +100,8 @@ if (typeof onmessage !== 'undefined' && typeof document === 'undefined') {
     if (isotet) return later(() => answer(data));
     try {
       const files = data.blobs && Object.fromEntries(data.blobs.map(({path, blob}) => [path, blobAsFile(blob)]));
-      const engine = compiled(data.engine), grid = data.grid && await allBytes(inflated(fromBase64(data.grid)));
-      isotet = await startEngine({engine: await engine, grid, files, told: data.told}, say);
+      const [engine, grid] = await Promise.all([compiled(data.engine), data.grid !== undefined && allBytes(inflated(fromBase64(data.grid)))]);
+      isotet = await startEngine({engine, grid, files, told: data.told}, say);
       if (data.card) beginCard(data.card);
     } catch (error) {
       failed(error);

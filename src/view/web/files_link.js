@@ -2,7 +2,7 @@
 // The link of a page without a grid: one is dropped into it, or chosen. Nothing of it leaves the page.
 import {filesOfDrop, filesOfList, openfoamCase, pathsToRead} from './dropped_files.js';
 import {EngineLink} from './engine_link.js';
-import {partText} from './unpack.js';
+import {partText, savedMessage} from './unpack.js';
 
 function element(kind, attributes, ...children) {
   const made = Object.assign(document.createElement(kind), attributes);
@@ -13,7 +13,6 @@ function element(kind, attributes, ...children) {
 export class Link extends EngineLink {
   constructor(_token, on) {
     super(on);
-    this.told = JSON.parse(document.getElementById('saved').textContent);
     this.makeControls();
     this.takeDrops();
   }
@@ -56,7 +55,7 @@ export class Link extends EngineLink {
     this.panel.hidden = true;
     this.on.text({say: 'progress', step: 'read', fraction: 0});
     const files = pathsToRead(blobs.map(({path}) => path));
-    this.begin({engine: partText('engine'), blobs, told: {file: files[0] === '.' ? 'OpenFOAM case' : files[0].split('/').pop(), version: this.told.version, files}});
+    this.begin(() => ({engine: partText('engine'), blobs, told: {file: files[0] === '.' ? 'OpenFOAM case' : files[0].split('/').pop(), version: savedMessage().version, files}}));
   }
 
   take(message) {

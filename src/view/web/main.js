@@ -29,6 +29,8 @@ import {commit, commitSoon, nameState, onReturn} from './undo.js';
 import {showVolume} from './volume.js';
 import {serverDraws, stopWaiting, wishSoon} from './wishes.js';
 
+id('unfinished').remove(); // all of the page came
+
 /** The controls and the picture follow a new state. */
 function showState() {
   showHeights();

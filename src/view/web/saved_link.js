@@ -2,7 +2,7 @@
 // In place of the socket (link.js) where the page is a file of `isotet export`: what the server would say stands in the file.
 import {looksOf} from './looks.js';
 import {nothingShown, surfaceFile} from './mesh_files.js';
-import {decodeMesh, unpack} from './unpack.js';
+import {decodeMesh, savedMessage, unpack} from './unpack.js';
 
 const maxKept = 256e6; // bytes of meshes that were unpacked
 
@@ -10,8 +10,7 @@ export class Link {
   /** @param on  as that of link.js */
   constructor(_token, on) {
     this.on = on;
-    this.ready = true;
-    this.saved = JSON.parse(document.getElementById('saved').textContent);
+    this.saved = null;
     this.meshes = new Map(); // by their names, the one that was used last at the end
     this.known = new Set();  // keys that the page has
     this.wish = null;
@@ -19,10 +18,15 @@ export class Link {
   }
 
   begin() {
-    this.on.open();
-    this.on.text(this.saved.welcome);
-    this.on.text(this.saved.grid);
-    this.on.text({say: 'progress', step: 'ready', fraction: 1});
+    try {
+      this.saved = savedMessage();
+      this.on.open();
+      this.on.text(this.saved.welcome);
+      this.on.text(this.saved.grid);
+      this.on.text({say: 'progress', step: 'ready', fraction: 1});
+    } catch (error) {
+      this.on.text({say: 'error', about: 'page', sentence: `Nothing can be shown: ${error.message}.`});
+    }
   }
 
   restart() {
@@ -32,6 +36,7 @@ export class Link {
 
   send(message) {
     const {saved} = this, step = message.step ?? 0;
+    if (!saved) return false;
     if (message.do === 'show') this.show(message);
     if (message.do === 'chart') this.answer(message, saved.charts, step);
     if (message.do === 'spectrum') this.answer(message, saved.spectra, step);

@@ -1,15 +1,26 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Meshes out of a file: base64, inflated by the browser, then columns of differences (src/view/saved_mesh.hpp).
-import {allBytes, fromBase64, inflated} from './base64.js';
+import {allBytes, damaged, fromBase64, inflated} from './base64.js';
 
 /** What stands in the file under this name: base64. */
-export const partText = (name) => document.getElementById(name).textContent;
+export function partText(name) {
+  const part = document.getElementById(name);
+  if (!part) throw damaged();
+  return part.textContent;
+}
 
-/** Its bytes, as they are. */
-export const partBytes = (name) => fromBase64(partText(name));
+/** Its bytes, inflated. */
+export const unpack = async (name) => allBytes(inflated(fromBase64(partText(name))));
 
-/** The same, inflated. */
-export const unpack = (name) => allBytes(inflated(partBytes(name)));
+/** What the page was told when it was made. */
+export function savedMessage() {
+  const text = partText('saved');
+  try {
+    return JSON.parse(text);
+  } catch {
+    throw damaged();
+  }
+}
 
 /** Columns of numbers of so many bytes each, the lowest bytes of all first. */
 class Columns {
