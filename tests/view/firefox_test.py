@@ -1,33 +1,15 @@
 # Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 """Pages of one file in Firefox, opened from the disk: isosurfaces, and where the program has isotet as WebAssembly a grid, and files
 that are chosen."""
-import json
 import os
-import subprocess
 import sys
 import tempfile
 import traceback
 
 from firefox import Browser
+from pages import check, has_module, isotet
 
 ARTERY = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'data', 'vtu', 'artery_flow_tet_wedge.vtu')
-
-
-def check(condition, what):
-    if not condition:
-        raise AssertionError(what)
-
-
-def isotet(*words):
-    """The JSON of a command."""
-    run = subprocess.run([os.environ['ISOTET_PROGRAM'], *words, '--json', '-', '--quiet'], capture_output=True, text=True)
-    check(run.returncode == 0, f'{words}: {run.stderr}')
-    return json.loads(run.stdout)
-
-
-def has_module(folder):
-    run = subprocess.run([os.environ['ISOTET_PROGRAM'], 'page', os.path.join(folder, 'try.html'), '--quiet'], capture_output=True)
-    return run.returncode == 0
 
 
 def at_rest(browser):
@@ -93,6 +75,25 @@ def module_test_files(browser, folder):
     browser.wait('document.body.dataset.step === "ready"')
     try_slider(browser)
     check_triangles(browser, '--method', 'clusters')
+
+
+def module_test_damaged(browser, folder):
+    """A part that was changed on its way is a sentence."""
+    path = os.path.join(folder, 'damaged.html')
+    isotet('export', ARTERY, path, '-f', 'Umag', '--as', 'grid')
+    with open(path, encoding='utf-8') as file:
+        page = file.read()
+    for part in ('engine', 'grid', 'worker', 'saved'):
+        at = page.index(f'id="{part}">') + len(f'id="{part}">')
+        end = at + (page.index('</script>', at) - at) // 2
+        for damaged in (page[:end] + page[page.index('</script>', at):], page[:end] + '"!"' + page[end:]):
+            with open(path, 'w', encoding='utf-8') as file:
+                file.write(damaged)
+            browser.open('about:blank')
+            browser.open('file://' + path)
+            browser.wait('!document.getElementById("message").hidden')
+            told = browser.value('document.getElementById("message").textContent')
+            check('damaged on its way' in told, f'{part}: {told}')
 
 
 def main():
