@@ -6,10 +6,12 @@
 
 #include <isotet/result.hpp>
 
+#include "io/files/byte_source.hpp"
+
 namespace isotet::io::confined {
 
-/// HDF5: the end of file that the superblock states is there.
-Result<void> check_hdf5_length(const std::string& path);
+/// HDF5: the end of file that the superblock states is there. Other files pass.
+Result<void> check_hdf5_length(const ByteSource& file, const std::string& path);
 
 /// ADF (CGNS): the end of file that the header states is there. Other files pass.
 Result<void> check_adf_length(const std::string& path);

@@ -5,16 +5,13 @@
 #include <fmt/core.h>
 
 #include "io/confined/length_check.hpp"
-#include "io/files/byte_source.hpp"
 #include "io/pieces/loaded.hpp"
 
 namespace isotet::io::confined {
 
-Result<void> check_hdf5_length(const std::string& path) {
-    const auto file = ByteSource::open(path);
-    if (!file) return file.error();
+Result<void> check_hdf5_length(const ByteSource& file, const std::string& path) {
     Scratch scratch;
-    const auto head = file->view(0, std::min<std::size_t>(file->size(), 64), scratch);
+    const auto head = file.view(0, std::min<std::size_t>(file.size(), 64), scratch);
     if (!head) return head.error();
     const std::string_view bytes = *head;
     if (!bytes.starts_with("\x89HDF\r\n\x1a\n")) return {};
@@ -26,9 +23,9 @@ Result<void> check_hdf5_length(const std::string& path) {
     if (version > 3 || (size != 4 && size != 8)) return broken(path, "its HDF5 superblock is broken");
     std::uint64_t end = 0;
     for (unsigned i = 0; i < size; ++i) end |= std::uint64_t(byte(first + 2 * size + i)) << (8 * i);
-    if (end > file->size())
+    if (end > file.size())
         return broken(path,
-                      fmt::format("the file has {} bytes, but its header says {}: it is cut short", file->size(), end));
+                      fmt::format("the file has {} bytes, but its header says {}: it is cut short", file.size(), end));
     return {};
 }
 

@@ -12,6 +12,9 @@ using Load = Result<Loaded> (*)(const std::string& path, const ReadOptions& opti
 /// The loader of a format, or null.
 Load loader_of(std::string_view format);
 
+/// Lets go of the HDF5 files that loaders opened, once for several uses: those that nothing else holds are closed.
+void close_hdf5_files();
+
 Result<Loaded> load_exodus(const std::string& path, const ReadOptions& options, Depth depth);
 Result<Loaded> load_cgns(const std::string& path, const ReadOptions& options, Depth depth);
 Result<Loaded> load_med(const std::string& path, const ReadOptions& options, Depth depth);

@@ -151,6 +151,7 @@ void serve_one(const Parcel& parcel) {
         forbid_file_growth();
         reply = answer(*request);
     }
+    close_hdf5_files(); // they may change until the next request
     allow_file_growth();
     const bool good = !std::holds_alternative<Error>(reply);
     const auto written = write_reply(parcel.reply.number(), std::move(reply));

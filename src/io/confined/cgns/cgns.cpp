@@ -204,10 +204,10 @@ Result<Loaded> CgnsFile::load(const ReadOptions& options, Depth depth) {
 } // namespace
 
 Result<Loaded> load_cgns(const std::string& path, const ReadOptions& options, Depth depth) {
-    if (auto complete = check_hdf5_length(path); !complete) return complete.error();
     if (auto complete = check_adf_length(path); !complete) return complete.error();
     const auto names = check_hdf5_names(path, options.allow_outside);
     if (!names) return names.error();
+    close_hdf5_files(); // CGNS's library opens it in a way of its own
     const auto tree = CgnsTree::open(path);
     if (!tree) return tree.error();
     auto loaded = CgnsFile(path, *tree).load(options, depth);

@@ -16,7 +16,6 @@
 #include "io/confined/exodus/exodus_parts.hpp"
 #include "io/confined/exodus/exodus_sides.hpp"
 #include "io/confined/hdf5/hdf5_walk.hpp"
-#include "io/confined/length_check.hpp"
 #include "io/confined/loaders.hpp"
 #include "io/confined/progress.hpp"
 
@@ -195,13 +194,12 @@ std::vector<BlockInfo> blocks_of(const ExodusFile& file) {
 }
 
 /// Opens a part, once it is known to be whole.
-Result<OpenPart> open_part(const std::string& part, const ReadOptions& options) {
-    if (auto complete = check_hdf5_length(part); !complete) return complete.error();
+Result<std::shared_ptr<OpenPart>> open_part(const std::string& part, const ReadOptions& options) {
     auto broken = check_hdf5_names(part, options.allow_outside);
     if (!broken) return broken.error();
     auto file = ExodusFile::open(part);
     if (!file) return file.error();
-    return OpenPart{*std::move(file), *std::move(broken)};
+    return std::make_shared<OpenPart>(OpenPart{*std::move(file), *std::move(broken)});
 }
 
 /// How many steps files have in common, from the first one on: of those with as many all, else those of equal times.
@@ -210,16 +208,17 @@ std::size_t common_steps(const std::vector<double>& a, const std::vector<double>
     return static_cast<std::size_t>(std::ranges::mismatch(a, b).in1 - a.begin());
 }
 
-/// What all parts hold.
+/// What all parts hold. `opened` gets them, unless they are too many.
 Result<FileInfo> describe_parts(const std::vector<std::string>& parts, const ReadOptions& options,
-                                std::vector<std::string>& notes) {
+                                std::vector<std::string>& notes, std::vector<std::shared_ptr<OpenPart>>& opened) {
     FileInfo all;
     std::size_t fewest = 0, most = 0;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         auto file = open_part(parts[i], options);
         if (!file) return file.error();
-        FileInfo info = describe(*file);
-        if (const std::uint64_t cut = file->file.steps_cut_off(); cut > 0)
+        if (parts.size() <= most_open) opened.push_back(*file);
+        FileInfo info = describe(**file);
+        if (const std::uint64_t cut = (*file)->file.steps_cut_off(); cut > 0)
             notes.push_back(fmt::format("{}the last {}of {} time steps {} cut short and left out",
                                         parts.size() > 1 ? escaped(parts[i]) + ": " : "",
                                         cut > 1 ? fmt::format("{} ", cut) : "", info.times.size() + cut,
@@ -239,7 +238,7 @@ Result<FileInfo> describe_parts(const std::vector<std::string>& parts, const Rea
         most = std::max(most, steps);
         for (FieldInfo& field : info.fields) announce(all, std::move(field));
         for (LeftOut& item : info.left_out) leave_out(all, std::move(item));
-        for (const BlockInfo& block : blocks_of(file->file)) announce_block(all, block);
+        for (const BlockInfo& block : blocks_of((*file)->file)) announce_block(all, block);
     }
     if (fewest != most)
         notes.push_back(fmt::format("its parts have {} to {} time steps: those that all have are read, the first {}",
@@ -335,7 +334,8 @@ Result<Loaded> load_exodus(const std::string& path, const ReadOptions& options, 
     auto parts = exodus_parts(path);
     if (!parts) return parts.error();
     Loaded loaded;
-    auto info = describe_parts(*parts, options, loaded.notes);
+    std::vector<std::shared_ptr<OpenPart>> all_opened;
+    auto info = describe_parts(*parts, options, loaded.notes, all_opened);
     if (!info) return info.error();
     loaded.info = std::move(*info);
     const auto chosen = chosen_blocks(loaded.info.blocks, options);
@@ -346,11 +346,10 @@ Result<Loaded> load_exodus(const std::string& path, const ReadOptions& options, 
     loaded.step = *step;
     for (std::size_t i = 0; i < parts->size(); ++i) {
         const PartRead part{(*parts)[i], parts->size() > 1, parts->size() <= most_open};
-        auto opened = open_part(part.path, options);
+        auto opened = part.stays_open ? Result(std::move(all_opened[i])) : open_part(part.path, options);
         if (!opened) return opened.error();
-        const auto file = std::make_shared<OpenPart>(*std::move(opened));
-        auto piece = options.blocks.empty() ? read_piece(file, part, options, loaded)
-                                            : read_chosen(file, part, options, *chosen, loaded);
+        auto piece = options.blocks.empty() ? read_piece(*opened, part, options, loaded)
+                                            : read_chosen(*opened, part, options, *chosen, loaded);
         if (!piece) return piece.error();
         loaded.pieces.push_back(std::move(*piece));
         report_progress(static_cast<double>(i + 1) / static_cast<double>(parts->size()));

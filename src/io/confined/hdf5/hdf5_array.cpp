@@ -11,10 +11,10 @@
 #include "io/files/escape.hpp"
 #include "io/files/text_scanner.hpp"
 #include "io/confined/hdf5/hdf5_array.hpp"
+#include "io/confined/hdf5/hdf5_file.hpp"
 #include "io/confined/hdf5/hdf5_filters.hpp"
 #include "io/confined/hdf5/hdf5_handle.hpp"
 #include "io/confined/hdf5/hdf5_unwritten.hpp"
-#include "io/confined/length_check.hpp"
 #include "io/pieces/loaded.hpp"
 
 namespace isotet::io::confined {
@@ -87,12 +87,10 @@ Result<ShapedValues> read_hdf5_array(const std::string& file, const std::string&
     const auto failed = [&](std::string_view what) {
         return broken(file, fmt::format("data set \"{}\" {}", escaped(name), what));
     };
-    if (auto complete = check_hdf5_length(file); !complete) return complete.error();
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); // errors are returned, not printed
-    const Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-    if (!opened.good()) return broken(file, "not an HDF5 file, or a broken one");
+    const auto opened = open_hdf5(file);
+    if (!opened) return opened.error();
     const Handle access(access_inside_file(), H5Pclose);
-    const Handle data(H5Dopen2(opened, name.c_str(), access), H5Dclose);
+    const Handle data(H5Dopen2((*opened)->file, name.c_str(), access), H5Dclose);
     if (!data.good()) return failed("is not there, or is a link to another file");
     if (!lies_inside_file(data)) return failed("has its values in another file");
     const Handle stored(H5Dget_type(data), H5Tclose);
@@ -133,10 +131,9 @@ struct NamesOfKind {
 };
 
 std::vector<std::string> objects_of(const std::string& file, const std::string& group, H5I_type_t kind) {
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     NamesOfKind found{kind};
-    const Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-    const Handle inside(opened.good() ? H5Gopen2(opened, group.c_str(), H5P_DEFAULT) : -1, H5Gclose);
+    const auto opened = open_hdf5(file);
+    const Handle inside(opened ? H5Gopen2((*opened)->file, group.c_str(), H5P_DEFAULT) : -1, H5Gclose);
     if (!inside.good()) return {};
     const auto add = [](hid_t at, const char* name, const H5L_info_t*, void* data) -> herr_t {
         auto* const to = static_cast<NamesOfKind*>(data);
@@ -159,18 +156,16 @@ std::vector<std::string> groups_of(const std::string& file, const std::string& g
 }
 
 bool is_written(const std::string& file, const std::string& name) {
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-    const Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-    const Handle data(opened.good() ? H5Dopen2(opened, name.c_str(), H5P_DEFAULT) : -1, H5Dclose);
+    const auto opened = open_hdf5(file);
+    const Handle data(opened ? H5Dopen2((*opened)->file, name.c_str(), H5P_DEFAULT) : -1, H5Dclose);
     return data.good() && !may_be_unwritten(data);
 }
 
 std::vector<double> numbers_attribute(const std::string& file, const std::string& group, const char* name) {
     constexpr hssize_t most = 1024;
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-    const Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-    if (!opened.good() || H5Aexists_by_name(opened, group.c_str(), name, H5P_DEFAULT) <= 0) return {};
-    const Handle attribute(H5Aopen_by_name(opened, group.c_str(), name, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    const auto opened = open_hdf5(file);
+    if (!opened || H5Aexists_by_name((*opened)->file, group.c_str(), name, H5P_DEFAULT) <= 0) return {};
+    const Handle attribute(H5Aopen_by_name((*opened)->file, group.c_str(), name, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
     const Handle space(attribute.good() ? H5Aget_space(attribute) : -1, H5Sclose);
     const hssize_t count = space.good() ? H5Sget_simple_extent_npoints(space) : 0;
     if (count < 1 || count > most) return {};
@@ -208,10 +203,9 @@ std::string variable_text(hid_t attribute, hid_t type) {
 } // namespace
 
 std::string text_attribute(const std::string& file, const std::string& group, const char* name) {
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-    const Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-    if (!opened.good() || H5Aexists_by_name(opened, group.c_str(), name, H5P_DEFAULT) <= 0) return {};
-    const Handle attribute(H5Aopen_by_name(opened, group.c_str(), name, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    const auto opened = open_hdf5(file);
+    if (!opened || H5Aexists_by_name((*opened)->file, group.c_str(), name, H5P_DEFAULT) <= 0) return {};
+    const Handle attribute(H5Aopen_by_name((*opened)->file, group.c_str(), name, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
     const Handle type(attribute.good() ? H5Aget_type(attribute) : -1, H5Tclose);
     if (!type.good() || H5Tget_class(type) != H5T_STRING) return {};
     if (H5Tis_variable_str(type) > 0) return unpadded(variable_text(attribute, type));

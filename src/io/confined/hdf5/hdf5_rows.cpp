@@ -5,7 +5,6 @@
 #include <array>
 #include <cstring>
 #include <iterator>
-#include <mutex>
 #include <span>
 #include <utility>
 
@@ -13,11 +12,10 @@
 
 #include "base/buffer.hpp"
 #include "base/memory.hpp"
+#include "io/confined/hdf5/hdf5_file.hpp"
 #include "io/confined/hdf5/hdf5_filters.hpp"
-#include "io/confined/hdf5/hdf5_handle.hpp"
 #include "io/confined/hdf5/hdf5_stored_rows.hpp"
 #include "io/confined/hdf5/hdf5_unwritten.hpp"
-#include "io/files/byte_source.hpp"
 #include "io/files/escape.hpp"
 #include "io/pieces/loaded.hpp"
 #include "io/pieces/narrow_indices.hpp"
@@ -30,12 +28,6 @@ constexpr std::size_t block_bytes = std::size_t{1} << 18;       ///< and of thos
 constexpr std::uint64_t library_rows = std::uint64_t{1} << 20;  ///< that HDF5 reads at once of those that go by
 constexpr std::uint64_t window_chunks = std::uint64_t{1} << 16; ///< of which the places are known at once
 constexpr std::uint64_t many_bytes = std::uint64_t{64} << 20;   ///< asking what is free takes longer than reading fewer
-
-/// Held for every call of HDF5 while others may read; no parallel work is begun under it.
-std::recursive_mutex& hdf5_calls() {
-    static std::recursive_mutex mutex;
-    return mutex;
-}
 
 /// An open data set with its shape.
 struct DataSet {
@@ -103,8 +95,8 @@ Result<void> each_window(const DataSet& set, std::uint64_t first, std::uint64_t 
 
 struct Hdf5Rows::File {
     std::string path;
-    ByteSource source;
-    Handle file;
+    std::shared_ptr<const Hdf5File> opened;
+    hid_t file;
     bool starts_at_zero; ///< else places are relative to what stands before
 
     OpenDataSet open(const std::string& name) const;
@@ -160,7 +152,7 @@ std::optional<StoredRows> Hdf5Rows::File::find(const DataSet& set, const RowRang
         return H5Tequal(set.stored, native_type<T>()) > 0;
     });
     if (!set.is_here || !as_here) return std::nullopt;
-    return StoredRows::find(set.data, set.creation, set.rank, source, range);
+    return StoredRows::find(set.data, set.creation, set.rank, opened->source, range);
 }
 
 Result<void> Hdf5Rows::File::by_library(const std::string& name, const DataSet& set, const RowRange& range,
@@ -179,21 +171,14 @@ Result<void> Hdf5Rows::File::by_library(const std::string& name, const DataSet& 
 Hdf5Rows::Hdf5Rows(std::shared_ptr<const File> file) : file_(std::move(file)) {}
 
 Result<Hdf5Rows> Hdf5Rows::open(const std::string& path) {
-    const auto close = [](File* opened) {
-        const std::scoped_lock lock(hdf5_calls());
-        delete opened;
-    };
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); // errors are returned, not printed
-    auto source = ByteSource::open(path);
-    if (!source) return source.error();
+    const auto opened = open_hdf5(path);
+    if (!opened) return opened.error();
     const std::scoped_lock lock(hdf5_calls());
-    const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-    if (file < 0) return broken(path, "not an HDF5 file, or a broken one");
-    std::shared_ptr<File> opened(new File{path, *std::move(source), {file, H5Fclose}, false}, close);
+    const hid_t file = (*opened)->file;
     const Handle creation(H5Fget_create_plist(file), H5Pclose);
     hsize_t before = 1;
-    opened->starts_at_zero = creation.good() && H5Pget_userblock(creation, &before) >= 0 && before == 0;
-    return Hdf5Rows(std::move(opened));
+    const bool starts_at_zero = creation.good() && H5Pget_userblock(creation, &before) >= 0 && before == 0;
+    return Hdf5Rows(std::make_shared<const File>(File{path, *opened, file, starts_at_zero}));
 }
 
 std::optional<RowsShape> Hdf5Rows::shape(const std::string& name) const {

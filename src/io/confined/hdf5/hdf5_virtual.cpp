@@ -8,7 +8,7 @@
 
 #include <fmt/core.h>
 
-#include "io/confined/hdf5/hdf5_handle.hpp"
+#include "io/confined/hdf5/hdf5_file.hpp"
 #include "io/confined/hdf5/hdf5_unwritten.hpp"
 #include "io/files/escape.hpp"
 #include "io/files/index_file.hpp"
@@ -100,8 +100,8 @@ Result<void> check_source(const std::string& file, const std::string& name, hid_
     const auto failed = [&](std::string_view why) {
         return wrong(fmt::format("is put together of \"{}\" in \"{}\", {}", escaped(name), escaped(file), why));
     };
-    const Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-    const Handle data(opened.good() ? H5Dopen2(opened, name.c_str(), H5P_DEFAULT) : -1, H5Dclose);
+    const auto opened = open_hdf5(file);
+    const Handle data(opened ? H5Dopen2((*opened)->file, name.c_str(), H5P_DEFAULT) : -1, H5Dclose);
     if (!data.good()) return failed("which HDF5 cannot open");
     const Handle creation(H5Dget_create_plist(data), H5Pclose);
     const Handle space(H5Dget_space(data), H5Sclose);

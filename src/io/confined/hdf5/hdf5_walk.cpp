@@ -11,7 +11,10 @@
 #include <fmt/core.h>
 #include <hdf5.h>
 
+#include "io/confined/hdf5/hdf5_file.hpp"
 #include "io/confined/hdf5/hdf5_virtual.hpp"
+#include "io/confined/length_check.hpp"
+#include "io/files/byte_source.hpp"
 #include "io/files/escape.hpp"
 #include "io/files/index_file.hpp"
 #include "io/pieces/loaded.hpp"
@@ -95,6 +98,15 @@ std::string label_of(hid_t group) {
     return text;
 }
 
+/// HDF5's signature is at the beginning, or at 512, 1024, 2048 and so on.
+bool is_hdf5(const ByteSource& file) {
+    constexpr std::string_view signature = "\x89HDF\r\n\x1a\n";
+    Scratch scratch;
+    for (std::size_t at = 0; at + signature.size() <= file.size(); at = std::max<std::size_t>(512, 2 * at))
+        if (const auto bytes = file.view(at, signature.size(), scratch); bytes && *bytes == signature) return true;
+    return false;
+}
+
 class Walk {
 public:
     Walk(const std::string& path, bool allow_outside) : allow_outside_(allow_outside), files_{{path, true}} {}
@@ -135,10 +147,10 @@ private:
     void follow_links() {
         for (std::size_t i = 0; i < links_.size() && !failed_;) {
             file_ = links_[i].file;
-            const Closing file(H5Fopen(file_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+            const auto file = open_hdf5(file_);
             for (; i < links_.size() && links_[i].file == file_ && !failed_; ++i) {
                 LooseLink& link = links_[i];
-                const Closing object(H5Oopen(file.id, link.path.c_str(), H5P_DEFAULT), H5Oclose);
+                const Closing object(!file ? -1 : H5Oopen((*file)->file, link.path.c_str(), H5P_DEFAULT), H5Oclose);
                 if (object.id >= 0 && link.missing) failed_ = std::move(link.missing); // HDF5 found another one
                 else if (object.id < 0 && link.without) lack(*std::move(link.without));
                 else if (object.id < 0) fail(in(link.path, "is a link that leads to nothing"));
@@ -149,8 +161,8 @@ private:
     void check_virtual() {
         for (const VirtualData& one : virtual_) {
             file_ = one.file;
-            const Closing file(H5Fopen(file_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-            const Closing data(file.id < 0 ? -1 : H5Dopen2(file.id, one.path.c_str(), H5P_DEFAULT), H5Dclose);
+            const auto file = open_hdf5(file_);
+            const Closing data(!file ? -1 : H5Dopen2((*file)->file, one.path.c_str(), H5P_DEFAULT), H5Dclose);
             if (data.id < 0) return fail(in(one.path, "cannot be opened"));
             auto whole = check_virtual_data(data.id, file_, allow_outside_, one.path.ends_with("/Offsets"));
             if (!whole) return fail(in(one.path, whole.error().message));
@@ -159,10 +171,10 @@ private:
     void one_file(const WalkedFile& walked) {
         file_ = walked.path;
         needed_ = walked.needed;
-        const Closing file(H5Fopen(file_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-        if (file.id < 0 && !needed_) return;
-        if (file.id < 0) return fail("HDF5 cannot open it: the file is broken");
-        const Closing root(H5Gopen2(file.id, "/", H5P_DEFAULT), H5Gclose);
+        const auto file = open_hdf5(file_);
+        if (!file && !needed_) return;
+        if (!file) return fail("HDF5 cannot open it: the file is broken");
+        const Closing root(H5Gopen2((*file)->file, "/", H5P_DEFAULT), H5Gclose);
         if (root.id < 0) return fail("it has no root group: the file is broken");
         group(root.id, "");
     }
@@ -296,7 +308,10 @@ private:
 
 Result<std::vector<LeftOut>> check_hdf5_names(const std::string& path, bool allow_outside) {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); // messages are ours
-    if (H5Fis_hdf5(path.c_str()) <= 0) return std::vector<LeftOut>();
+    const auto file = ByteSource::open(path);
+    if (!file) return file.error();
+    if (auto complete = check_hdf5_length(*file, path); !complete) return complete.error();
+    if (!is_hdf5(*file)) return std::vector<LeftOut>();
     return Walk(path, allow_outside).all_files();
 }
 

@@ -17,7 +17,8 @@ namespace isotet::io::confined {
 ///          CGNS, variables of Exodus
 ///
 /// Cost     O(objects), at most a million
-/// Errors   invalid_data: the name that breaks a rule; the file, a group or another object cannot be opened
+/// Errors   invalid_data: the name that breaks a rule; the file, a group or another object cannot be opened; the file is
+///          shorter than it says
 Result<std::vector<LeftOut>> check_hdf5_names(const std::string& path, bool allow_outside);
 
 } // namespace isotet::io::confined

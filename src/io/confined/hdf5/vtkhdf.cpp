@@ -11,7 +11,6 @@
 #include "io/confined/hdf5/vtkhdf_amr.hpp"
 #include "io/confined/hdf5/vtkhdf_grid.hpp"
 #include "io/confined/hdf5/vtkhdf_image.hpp"
-#include "io/confined/length_check.hpp"
 #include "io/confined/loaders.hpp"
 #include "io/files/escape.hpp"
 #include "io/pieces/block_choice.hpp"
@@ -68,8 +67,8 @@ Result<std::vector<CollectedGrid>> grids_of_collection(const std::string& path, 
         if (type == "UnstructuredGrid" || type == "ImageData")
             found.emplace_back(index.value_or(std::numeric_limits<std::int64_t>::max()), name);
         else if (!type.empty())
-            leave_out(info,
-                      {"block", name, fmt::format("it is of type {}, not UnstructuredGrid or ImageData", escaped(type))});
+            leave_out(info, {"block", name,
+                             fmt::format("it is of type {}, not UnstructuredGrid or ImageData", escaped(type))});
     }
     std::ranges::sort(found);
     std::vector<CollectedGrid> all;
@@ -128,7 +127,6 @@ Result<Loaded> load_any(const std::string& path, const ReadOptions& options, Dep
 } // namespace
 
 Result<Loaded> load_vtkhdf(const std::string& path, const ReadOptions& options, Depth depth) {
-    if (auto complete = check_hdf5_length(path); !complete) return complete.error();
     const auto names = check_hdf5_names(path, options.allow_outside);
     if (!names) return names.error();
     auto loaded = load_any(path, options, depth);

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "io/confined/hdf5/hdf5_walk.hpp"
-#include "io/confined/length_check.hpp"
 #include "io/confined/loaders.hpp"
 #include "io/confined/med/med_fields.hpp"
 #include "io/confined/med/med_file.hpp"
@@ -33,7 +32,7 @@ private:
     struct Placed {
         MedMesh mesh;
         MedMeshPlace place;
-        std::vector<std::int64_t> families = {}; ///< of its cells; empty: it has none
+        std::vector<std::int64_t> families = {};                      ///< of its cells; empty: it has none
         std::map<std::string, std::vector<std::int64_t>> groups = {}; ///< families in each
     };
 
@@ -209,7 +208,6 @@ Result<Loaded> MedLoader::load(Depth depth) {
 } // namespace
 
 Result<Loaded> load_med(const std::string& path, const ReadOptions& options, Depth depth) {
-    if (auto complete = check_hdf5_length(path); !complete) return complete.error();
     const auto names = check_hdf5_names(path, options.allow_outside);
     if (!names) return names.error();
     const auto file = MedFile::open(path);

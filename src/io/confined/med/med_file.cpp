@@ -35,12 +35,11 @@ std::optional<T> number_of_attribute(hid_t file, const std::string& group, const
 } // namespace
 
 Result<MedFile> MedFile::open(const std::string& path) {
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); // errors are returned, not printed
-    auto file = std::make_unique<Handle>(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-    if (!file->good()) return broken(path, "not a MED file: it is no HDF5 file, or a broken one");
+    auto file = open_hdf5(path);
+    if (!file) return broken(path, "not a MED file: it is no HDF5 file, or a broken one");
     auto rows = Hdf5Rows::open(path);
     if (!rows) return rows.error();
-    MedFile opened(path, std::move(file), *std::move(rows));
+    MedFile opened(path, *std::move(file), *std::move(rows));
     const auto version = opened.integer("/INFOS_GENERALES", "MAJ");
     if (!version) return opened.wrong("not a MED file: it states no version");
     if (*version < 3)
@@ -52,8 +51,8 @@ Result<MedFile> MedFile::open(const std::string& path) {
 
 std::vector<std::string> MedFile::groups(const std::string& group) const {
     std::vector<std::string> names;
-    if (H5Lexists(*file_, group.c_str(), H5P_DEFAULT) <= 0) return names;
-    const Handle inside(H5Gopen2(*file_, group.c_str(), H5P_DEFAULT), H5Gclose);
+    if (H5Lexists(file_->file, group.c_str(), H5P_DEFAULT) <= 0) return names;
+    const Handle inside(H5Gopen2(file_->file, group.c_str(), H5P_DEFAULT), H5Gclose);
     if (!inside.good()) return names;
     const auto add = [](hid_t at, const char* name, const H5L_info_t*, void* to) -> herr_t {
         const Handle object(H5Oopen(at, name, H5P_DEFAULT), H5Oclose);
@@ -66,16 +65,16 @@ std::vector<std::string> MedFile::groups(const std::string& group) const {
 }
 
 std::optional<std::int64_t> MedFile::integer(const std::string& group, const char* name) const {
-    return number_of_attribute<std::int64_t>(*file_, group, name, H5T_NATIVE_INT64);
+    return number_of_attribute<std::int64_t>(file_->file, group, name, H5T_NATIVE_INT64);
 }
 
 std::optional<double> MedFile::real(const std::string& group, const char* name) const {
-    return number_of_attribute<double>(*file_, group, name, H5T_NATIVE_DOUBLE);
+    return number_of_attribute<double>(file_->file, group, name, H5T_NATIVE_DOUBLE);
 }
 
 std::string MedFile::text(const std::string& group, const char* name) const {
-    if (H5Aexists_by_name(*file_, group.c_str(), name, H5P_DEFAULT) <= 0) return {};
-    const Handle attribute(H5Aopen_by_name(*file_, group.c_str(), name, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    if (H5Aexists_by_name(file_->file, group.c_str(), name, H5P_DEFAULT) <= 0) return {};
+    const Handle attribute(H5Aopen_by_name(file_->file, group.c_str(), name, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
     const Handle type(attribute.good() ? H5Aget_type(attribute) : -1, H5Tclose);
     if (!type.good() || H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0) return {};
     const std::size_t size = H5Tget_size(type);
@@ -85,7 +84,7 @@ std::string MedFile::text(const std::string& group, const char* name) const {
 }
 
 std::vector<std::string> MedFile::texts(const std::string& data_set) const {
-    const Handle data(H5Dopen2(*file_, data_set.c_str(), H5P_DEFAULT), H5Dclose);
+    const Handle data(H5Dopen2(file_->file, data_set.c_str(), H5P_DEFAULT), H5Dclose);
     const Handle type(data.good() ? H5Dget_type(data) : -1, H5Tclose);
     const Handle space(data.good() ? H5Dget_space(data) : -1, H5Sclose);
     if (!type.good() || !space.good() || H5Tget_size(type) != letters_of_group_name) return {};
@@ -107,8 +106,7 @@ Result<Array> MedFile::numbers(const std::string& data_set, std::uint64_t count)
     const auto known = rows_.shape(data_set);
     if (!known || known->columns != 1) return wrong(fmt::format("\"{}\" is no list of numbers", escaped(data_set)));
     if (known->rows != count)
-        return wrong(
-            fmt::format("\"{}\" has {} numbers, but {} are needed", escaped(data_set), known->rows, count));
+        return wrong(fmt::format("\"{}\" has {} numbers, but {} are needed", escaped(data_set), known->rows, count));
     return rows_.read(data_set, 0, count);
 }
 

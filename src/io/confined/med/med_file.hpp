@@ -13,7 +13,7 @@
 #include <isotet/array.hpp>
 #include <isotet/result.hpp>
 
-#include "io/confined/hdf5/hdf5_handle.hpp"
+#include "io/confined/hdf5/hdf5_file.hpp"
 #include "io/confined/hdf5/hdf5_rows.hpp"
 #include "io/pieces/loaded.hpp"
 
@@ -49,11 +49,11 @@ public:
     std::optional<RowsShape> shape(const std::string& data_set) const { return rows_.shape(data_set); }
 
 private:
-    MedFile(std::string path, std::unique_ptr<Handle> file, Hdf5Rows rows)
+    MedFile(std::string path, std::shared_ptr<const Hdf5File> file, Hdf5Rows rows)
         : path_(std::move(path)), file_(std::move(file)), rows_(std::move(rows)) {}
 
     std::string path_;
-    std::unique_ptr<Handle> file_;
+    std::shared_ptr<const Hdf5File> file_;
     Hdf5Rows rows_;
 };
 

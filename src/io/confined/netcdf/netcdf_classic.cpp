@@ -27,7 +27,18 @@ namespace {
 constexpr std::uint64_t enough = std::uint64_t(1) << 60;
 
 enum class NetcdfType : std::uint8_t {
-    none, int8, letters, int16, int32, float32, float64, uint8, uint16, uint32, int64, uint64
+    none,
+    int8,
+    letters,
+    int16,
+    int32,
+    float32,
+    float64,
+    uint8,
+    uint16,
+    uint32,
+    int64,
+    uint64
 };
 
 NetcdfType type_of_tag(std::uint64_t tag) {
@@ -265,7 +276,8 @@ public:
     Result<Array> rows(const std::string& name, std::uint64_t first, std::uint64_t count) const override;
     std::vector<std::string> texts(const std::string& name) const override {
         const NetcdfVariable* const found = variable(name);
-        if (!found || found->type != NetcdfType::letters || found->dimensions.size() != 2 || found->is_record) return {};
+        if (!found || found->type != NetcdfType::letters || found->dimensions.size() != 2 || found->is_record)
+            return {};
         std::string letters(found->dimensions[0] * found->row, '\0');
         if (!file_.read(found->begin, std::as_writable_bytes(std::span(letters)))) return {};
         return rows_of_letters(letters.data(), found->dimensions[0], found->dimensions[1]);
@@ -309,7 +321,8 @@ Result<Array> NetcdfClassic::rows(const std::string& name, std::uint64_t first, 
     const NetcdfVariable* const found = variable(name);
     const auto type = found ? number_type_of(found->type) : std::nullopt;
     if (!type || found->dimensions.empty() || first > found->dimensions[0] || count > found->dimensions[0] - first)
-        return broken(path_, fmt::format("the variable \"{}\" is not there, or has not all that is wanted", escaped(name)));
+        return broken(path_,
+                      fmt::format("the variable \"{}\" is not there, or has not all that is wanted", escaped(name)));
     const std::uint64_t bytes = count * found->row, row = found->row / size_of(*type);
     if (auto room = core::require_memory("reading a variable", bytes); !room) return room.error();
     const bool together = found->stride == found->row; // no other variables between the rows
@@ -338,8 +351,7 @@ Result<std::optional<NetcdfHeader>> read_netcdf_header(const ByteSource& file) {
         const auto bytes = file.view(0, std::min(size, file.size()), scratch);
         if (!bytes) return bytes.error();
         const int version = bytes->size() < 4 || !bytes->starts_with("CDF") ? 0 : (*bytes)[3];
-        if (version != 1 && version != 2 && version != 5)
-            return Error{ErrorCode::invalid_data, "it is no netCDF file"};
+        if (version != 1 && version != 2 && version != 5) return Error{ErrorCode::invalid_data, "it is no netCDF file"};
         auto header = NetcdfHeaderWalk(*bytes, version, file.size()).walk();
         if (header || size >= std::min(most, file.size())) return header;
     }
@@ -347,19 +359,16 @@ Result<std::optional<NetcdfHeader>> read_netcdf_header(const ByteSource& file) {
 
 } // namespace
 
-Result<std::unique_ptr<NetcdfFile>> open_netcdf_classic(const std::string& path) {
-    auto file = ByteSource::open(path);
-    if (!file) return file.error();
-    auto header = read_netcdf_header(*file);
+Result<std::unique_ptr<NetcdfFile>> open_netcdf_classic(const std::string& path, ByteSource file) {
+    auto header = read_netcdf_header(file);
     if (!header) return in_file(path, header.error());
-    if (*header) drop_records_cut_off(**header, file->size());
+    if (*header) drop_records_cut_off(**header, file.size());
     const auto needed = *header ? needed_length(**header) : std::nullopt;
     if (!needed) return broken(path, "its netCDF header is broken or cut short");
-    if (*needed > file->size())
-        return broken(path, fmt::format("the file has {} bytes, but its header needs {}: it is cut short", file->size(),
-                                        *needed));
-    return std::unique_ptr<NetcdfFile>(
-        std::make_unique<NetcdfClassic>(path, *std::move(file), **std::move(header)));
+    if (*needed > file.size())
+        return broken(
+            path, fmt::format("the file has {} bytes, but its header needs {}: it is cut short", file.size(), *needed));
+    return std::unique_ptr<NetcdfFile>(std::make_unique<NetcdfClassic>(path, std::move(file), **std::move(header)));
 }
 
 } // namespace isotet::io::confined

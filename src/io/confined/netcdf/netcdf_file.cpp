@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "io/files/byte_source.hpp"
 #include "io/pieces/common_type.hpp"
 
 namespace isotet::io::confined {
@@ -19,12 +18,12 @@ std::vector<std::string> rows_of_letters(const char* all, std::uint64_t rows, st
 }
 
 Result<std::unique_ptr<NetcdfFile>> NetcdfFile::open(const std::string& path) {
-    const auto file = ByteSource::open(path);
+    auto file = ByteSource::open(path);
     if (!file) return file.error();
     Scratch scratch;
     const auto head = file->view(0, std::min<std::size_t>(file->size(), 3), scratch);
     if (!head) return head.error();
-    return *head == "CDF" ? open_netcdf_classic(path) : open_netcdf_hdf5(path);
+    return *head == "CDF" ? open_netcdf_classic(path, *std::move(file)) : open_netcdf_hdf5(path);
 }
 
 template <class T>

@@ -10,6 +10,8 @@
 #include <isotet/array.hpp>
 #include <isotet/result.hpp>
 
+#include "io/files/byte_source.hpp"
+
 namespace isotet::io::confined {
 
 /// An open netCDF file: classic, with 64-bit offsets or data, or in HDF5. Dimensions and variables are found by name.
@@ -53,7 +55,7 @@ public:
 /// Letters in rows of so many.
 std::vector<std::string> rows_of_letters(const char* all, std::uint64_t rows, std::uint64_t letters);
 
-Result<std::unique_ptr<NetcdfFile>> open_netcdf_classic(const std::string& path);
+Result<std::unique_ptr<NetcdfFile>> open_netcdf_classic(const std::string& path, ByteSource file);
 Result<std::unique_ptr<NetcdfFile>> open_netcdf_hdf5(const std::string& path);
 
 } // namespace isotet::io::confined

@@ -5,7 +5,7 @@
 #include <hdf5.h>
 
 #include "io/confined/hdf5/hdf5_array.hpp"
-#include "io/confined/hdf5/hdf5_handle.hpp"
+#include "io/confined/hdf5/hdf5_file.hpp"
 #include "io/confined/hdf5/hdf5_rows.hpp"
 #include "io/confined/netcdf/netcdf_file.hpp"
 
@@ -28,8 +28,7 @@ public:
     }
     Result<Array> rows(const std::string& variable, std::uint64_t first, std::uint64_t count) const override {
         if (!rows_.shape(variable))
-            if (const auto extents = shape(variable))
-                return rows_of_many_dimensions(variable, *extents, first, count);
+            if (const auto extents = shape(variable)) return rows_of_many_dimensions(variable, *extents, first, count);
         const auto read = rows_.read(variable, first, count);
         if (!read) return read.error();
         return Array(read->type(), read->data(), read->size(), 1, read->owner().lock());
@@ -65,8 +64,8 @@ private:
 
 std::vector<std::string> NetcdfInHdf5::texts(const std::string& variable) const {
     constexpr hsize_t most = hsize_t{1} << 26;
-    const Handle file(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-    const Handle data(file.good() ? H5Dopen2(file, variable.c_str(), H5P_DEFAULT) : -1, H5Dclose);
+    const auto file = open_hdf5(path_);
+    const Handle data(file ? H5Dopen2((*file)->file, variable.c_str(), H5P_DEFAULT) : -1, H5Dclose);
     const Handle type(data.good() ? H5Dget_type(data) : -1, H5Tclose);
     const Handle space(data.good() ? H5Dget_space(data) : -1, H5Sclose);
     if (!type.good() || !space.good() || H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 ||
