@@ -2,12 +2,11 @@
 """The page of `isotet page` in Chromium, opened from the disk: files are dropped into it, and read by isotet as WebAssembly."""
 import json
 import os
-import subprocess
 import sys
 import tempfile
-import traceback
 
 from chromium import Browser
+from pages import check, choose, isotet, run_tests
 
 DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'data')
 ARTERY = os.path.join(DATA, 'vtu', 'artery_flow_tet_wedge.vtu')
@@ -15,28 +14,10 @@ FOAM = os.path.join(DATA, '..', 'tests', 'corruption', 'samples', 'openfoam')
 TETGEN = [os.path.join(DATA, 'tetgen', 'ellipsoid_16k' + ending) for ending in ('.node', '.ele')]
 
 
-def check(condition, what):
-    if not condition:
-        raise AssertionError(what)
-
-
-def isotet(*words):
-    """The JSON of a command."""
-    run = subprocess.run([os.environ['ISOTET_PROGRAM'], *words, '--json', '-', '--quiet'], capture_output=True, text=True)
-    check(run.returncode == 0, f'{words}: {run.stderr}')
-    return json.loads(run.stdout)
-
-
 def start(browser, path):
     browser.call('Page.navigate', url='about:blank')
     browser.open('file://' + path)
     browser.wait('document.getElementById("drop") !== null')
-
-
-def choose(browser, files, input='#chosen-files'):
-    document = browser.call('DOM.getDocument')['root']['nodeId']
-    node = browser.call('DOM.querySelector', nodeId=document, selector=input)['nodeId']
-    browser.call('DOM.setFileInputFiles', nodeId=node, files=[os.path.abspath(file) for file in files])
 
 
 def drop(browser, files):
@@ -147,26 +128,57 @@ def test_small_screens_and_keys(browser, path, folder):
     browser.resize(1280, 720)
 
 
+def test_large_files_show_progress(browser, path, folder):
+    """100 MB: how far it is, then a surface while the grid is packed; another file that is chosen meanwhile comes in its place."""
+    large = os.path.join(folder, 'large.vtu')
+    isotet('make', 'kuhn', '--side', '88', '--fields', 'sphere', '-o', large)
+    check(os.path.getsize(large) > 90e6, 'it is large')
+    start(browser, path)
+    browser.value('(() => { window.told = []; const bar = document.getElementById("progress-bar"); new MutationObserver(() => '
+                  'document.getElementById("progress").hidden || told.push([document.getElementById("progress-text").textContent.split(",")[0], bar.value])).observe(bar, {attributes: true}); })()')
+    choose(browser, [large])
+    browser.wait('document.body.dataset.kinds && document.body.dataset.step === "ready"', 120)
+    told = browser.value('told')
+    for words in ('Reading', 'Packing'):
+        parts = [part for step, part in told if step == words]
+        check(len(set(parts)) > 5, f'{words}: {parts}')
+    check({step for step, _ in told} <= {'Reading', 'Packing', 'Finding the boundary'}, f'steps are words: {told}')
+    start(browser, path)
+    choose(browser, [large])
+    browser.wait('document.getElementById("progress-bar").value > 0')
+    choose(browser, [ARTERY])
+    ready(browser, 'artery_flow_tet_wedge.vtu')
+    check_triangles(browser, ARTERY)
+    os.remove(large)
+
+
+def test_grids_too_large_are_sentences(browser, path, folder):
+    """More than a page may have: of a header that the file does not keep, and of grids whose points and cells are not in the file."""
+    start(browser, path)
+    image = '<?xml version="1.0"?><VTKFile type="ImageData" version="1.0"><ImageData WholeExtent="{0}" Origin="0 0 0" Spacing="1 1 1"><Piece Extent="{0}"/></ImageData></VTKFile>'
+    array = '<DataArray type="{}" Name="{}" NumberOfComponents="{}" format="ascii">0 0 0</DataArray>'
+    cells = ''.join(array.format('Int64', name, 1) for name in ('connectivity', 'offsets', 'types'))
+    grids = {'header.vtu': '<?xml version="1.0"?><VTKFile type="UnstructuredGrid" version="1.0"><UnstructuredGrid><Piece NumberOfPoints="2000000000" '
+                           f'NumberOfCells="2000000000"><Points>{array.format("Float64", "points", 3)}</Points><Cells>{cells}</Cells></Piece></UnstructuredGrid></VTKFile>',
+             'image.vti': image.format('0 2000 0 2000 0 2000'), 'smaller.vti': image.format('0 600 0 600 0 600'),
+             'image.vtk': '# vtk DataFile Version 3.0\nlarge\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 1500 1500 1500\nORIGIN 0 0 0\nSPACING 1 1 1\n'}
+    for name, content in grids.items():
+        large = os.path.join(folder, name)
+        with open(large, 'w', encoding='ascii') as file:
+            file.write(content)
+        choose(browser, [large])
+        words = 'are announced' if name == 'header.vtu' else '4 GB'
+        browser.wait(f'document.getElementById("message").textContent.includes({json.dumps(words)}) && !document.getElementById("drop").hidden', 60)
+        # And then one that fits.
+        choose(browser, TETGEN)
+        ready_as_boundary(browser, 'ellipsoid_16k.node')
+
+
 def main():
-    failed = 0
     with tempfile.TemporaryDirectory(prefix='isotet-page-') as folder:
         path = os.path.join(folder, 'isotet.html')
         isotet('page', path)
-        browser = Browser()
-        try:
-            for test in [f for name, f in globals().items() if name.startswith('test_')]:
-                try:
-                    browser.errors.clear()
-                    test(browser, path, folder)
-                    check(not browser.errors, f'errors of the page: {browser.errors}')
-                    print('ok', test.__name__, flush=True)
-                except Exception:
-                    failed += 1
-                    print('FAILED', test.__name__)
-                    traceback.print_exc(file=sys.stdout)
-        finally:
-            browser.close()
-    return 1 if failed else 0
+        return run_tests([test for name, test in globals().items() if name.startswith('test_')], Browser(), path, folder)
 
 
 sys.exit(main())

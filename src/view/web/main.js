@@ -183,7 +183,7 @@ function forgetGrid() {
 
 function takeProgress({step, fraction}) {
   const running = fraction < 1 && step !== 'ready', failed = /^n(ot packed|o boundary)/.test(step);
-  const words = {read: 'Reading', pack: 'Packing', make: 'Making', split: 'Packing', boundary: 'Finding the boundary'};
+  const words = {read: 'Reading', pack: 'Packing', make: 'Making', split: 'Packing', boundary: 'Finding the boundary', check: 'Finding the boundary'};
   id('progress').hidden = !running && !failed;
   id('progress-text').textContent = failed ? step : `${words[step] || step}${app.grid ? ', the surface can be moved already' : ''}`;
   id('progress-bar').hidden = !running;
