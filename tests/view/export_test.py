@@ -4,28 +4,15 @@ import json
 import os
 import shutil
 import struct
-import subprocess
 import sys
 import tempfile
-import traceback
 import urllib.parse
 
 from chromium import Browser
+from pages import check, check_small_and_keys, isotet, run_tests
 
 GRID = 'make:kuhn:16:sphere,gyroid'
 STEPS = os.path.join(os.path.dirname(__file__), '../../data/exodus/tension_tets_stress_3steps.e')
-
-
-def check(condition, what):
-    if not condition:
-        raise AssertionError(what)
-
-
-def isotet(*words):
-    """The JSON of a command."""
-    run = subprocess.run([os.environ['ISOTET_PROGRAM'], *words, '--json', '-', '--quiet'], capture_output=True, text=True)
-    check(run.returncode == 0, f'{words}: {run.stderr}')
-    return json.loads(run.stdout)
 
 
 def export(folder, name, *words):
@@ -267,38 +254,21 @@ def test_a_broken_file_is_told(browser, folder):
 
 def test_narrow(browser, folder):
     """A phone."""
-    path, _ = export(folder, 'narrow.html', GRID, '-f', 'sphere', '--surfaces', '3')
+    path, _ = export(folder, 'narrow.html', GRID, '-f', 'sphere', '--surfaces', '15', '--color-by', 'gyroid')
     browser.resize(360, 740, 2)
     try:
         start(browser, path)
-        check(browser.value('document.documentElement.scrollWidth <= 360'), 'nothing lies beside the screen')
         x, y, w, h = browser.box('#slider')
         check(x >= 0 and x + w <= 360 and y + h < 740, 'the slider is on the screen')
+        check_small_and_keys(browser)
     finally:
         browser.resize(1280, 720)
 
 
 def main():
-    wanted = sys.argv[1:]
-    tests = [f for name, f in globals().items() if name.startswith('test_') and (not wanted or name in wanted)]
-    failed = 0
     with tempfile.TemporaryDirectory(prefix='isotet-export-') as folder:
         write_hostile_grid(folder)
-        browser = Browser()
-        try:
-            for test in tests:
-                try:
-                    browser.errors.clear()
-                    test(browser, folder)
-                    check(not browser.errors, f'errors of the page: {browser.errors}')
-                    print('ok', test.__name__, flush=True)
-                except Exception:
-                    failed += 1
-                    print('FAILED', test.__name__)
-                    traceback.print_exc(file=sys.stdout)
-        finally:
-            browser.close()
-    return 1 if failed else 0
+        return run_tests([test for name, test in globals().items() if name.startswith('test_')], Browser(), folder)
 
 
 sys.exit(main())

@@ -6,24 +6,12 @@ import os
 import subprocess
 import sys
 import tempfile
-import traceback
 
 from chromium import Browser
+from pages import check, check_small_and_keys, isotet, run_tests
 
 GRID = 'make:kuhn:16:sphere,gyroid'
 DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), '../../data')
-
-
-def check(condition, what):
-    if not condition:
-        raise AssertionError(what)
-
-
-def isotet(*words):
-    """The JSON of a command."""
-    run = subprocess.run([os.environ['ISOTET_PROGRAM'], *words, '--json', '-', '--quiet'], capture_output=True, text=True)
-    check(run.returncode == 0, f'{words}: {run.stderr}')
-    return json.loads(run.stdout)
 
 
 def start(browser, path, extra=''):
@@ -218,27 +206,21 @@ def test_heights_of_flat_reservoirs(browser, path):
     start(browser, page)
 
 
+def test_small_screens_and_keys(browser, path):
+    browser.resize(360, 740, 2)
+    try:
+        start(browser, path, '#&f=sphere&i=0.5&by=gyroid&slice=0,0,1,0.2')
+        check_small_and_keys(browser)
+    finally:
+        browser.resize(1280, 720)
+
+
 def main():
-    failed = 0
     with tempfile.TemporaryDirectory(prefix='isotet-export-') as folder:
         path = os.path.join(folder, 'grid.html')
         report = isotet('export', GRID, path, '--as', 'grid')
         check(report['fields'] == ['sphere', 'gyroid'], 'all fields are in the page')
-        browser = Browser()
-        try:
-            for test in [f for name, f in globals().items() if name.startswith('test_')]:
-                try:
-                    browser.errors.clear()
-                    test(browser, path)
-                    check(not browser.errors, f'errors of the page: {browser.errors}')
-                    print('ok', test.__name__, flush=True)
-                except Exception:
-                    failed += 1
-                    print('FAILED', test.__name__)
-                    traceback.print_exc(file=sys.stdout)
-        finally:
-            browser.close()
-    return 1 if failed else 0
+        return run_tests([test for name, test in globals().items() if name.startswith('test_')], Browser(), path)
 
 
 sys.exit(main())
