@@ -113,7 +113,7 @@ struct ContourInput {
     /// gives the same input with all cells, and is called when something needs them. `cell_fields` are of the cells that
     /// are there.
     std::function<Result<ContourInput>(const Run& run)> all_cells = {};
-    Array cell_numbers = {}; ///< then, of the cells in the whole grid, uint64: for source cells
+    Array cell_numbers = {}; ///< of the cells where they have others, uint64, as of a part of a grid: for source cells
     bool has_cells_around = false; ///< then: the filter kept those that gradient normals need, too
     /// In place of `grid` and `field`: a packed grid, of a PackedFile say. Surfaces come from its clusters as they are: the
     /// options must not ask for what was not packed.

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <isotet/contour.hpp>
+#include <isotet/contour_input.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/isotet.h>
 #include <isotet/read.hpp>
@@ -118,25 +119,12 @@ Result<ContourInput> input_of(const isotet_grid* grid, const char* field, const 
                               std::uint64_t carried_count, const Run& run) {
     if (!grid) return is_null("grid");
     if (carried_count > 0 && !carried) return is_null("carried");
-    auto found = find_field(grid->grid, field ? field : "", {}, run);
-    if (!found) return found.error();
-    ContourInput input{grid->grid, *std::move(found), {}, {}};
+    std::vector<std::string> names;
     for (std::uint64_t i = 0; i < carried_count; ++i) {
         if (!carried[i]) return is_null("carried[" + std::to_string(i) + "]");
-        const std::string name = carried[i];
-        const auto add = [&](const std::vector<Field>& from, std::vector<Field>& to) {
-            const auto at = std::ranges::find(from, name, &Field::name);
-            if (at == from.end()) return false;
-            to.push_back(*at);
-            return true;
-        };
-        if (add(grid->grid.point_fields, input.point_fields) || add(grid->grid.cell_fields, input.cell_fields))
-            continue;
-        auto computed = find_field(grid->grid, name, {}, run);
-        if (!computed) return computed.error();
-        input.point_fields.push_back({name, std::move(computed->values)});
+        names.emplace_back(carried[i]);
     }
-    return input;
+    return contour_input(grid->grid, field ? field : "", names, run);
 }
 
 /// What the caller's struct knows of the options.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include <isotet/contour_input.hpp>
 #include <isotet/fields.hpp>
 #include <isotet/linear_cells.hpp>
 #include <isotet/packed_file.hpp>
@@ -39,31 +40,14 @@ void add(std::vector<std::string>& names, const std::vector<std::string>& more) 
         if (std::ranges::find(names, name) == names.end()) names.push_back(name);
 }
 
-/// What surfaces carry of a grid that was read.
-Result<void> carry(const std::vector<std::string>& names, const Grid& grid, ContourInput& input, const Run& run) {
-    for (const std::string& name : names) {
-        const auto add_of = [&](const std::vector<Field>& from, std::vector<Field>& to) {
-            const auto at = std::ranges::find(from, name, &Field::name);
-            if (at == from.end()) return false;
-            to.push_back(*at);
-            return true;
-        };
-        if (add_of(grid.point_fields, input.point_fields) || add_of(grid.cell_fields, input.cell_fields)) continue;
-        Result<PointField> computed = find_field(grid, name, {}, run);
-        if (!computed) return computed.error();
-        input.point_fields.push_back({name, std::move(computed->values)});
-    }
-    return {};
-}
-
-Result<ContourInput> input_of(const Grid& grid, const std::string& field, const FileContourOptions& options,
-                              std::vector<std::string>& notes, const Run& run) {
-    Result<PointField> found = find_field(grid, field, {}, run);
-    if (!found) return found.error();
-    if (!found->note.empty()) notes.push_back(found->note);
-    ContourInput input{grid, *std::move(found), {}, {}};
-    if (auto carried = carry(options.with, grid, input, run); !carried) return carried.error();
-    input.grid.point_fields = input.grid.cell_fields = {};
+/// A note on the field joins those of `read`.
+Result<ContourInput> input_of(ReadResult& read, const std::string& field, const FileContourOptions& options,
+                              const Run& run) {
+    Result<ContourInput> input = contour_input(read.grid, field, options.with, run);
+    if (!input) return input;
+    if (!input->field.note.empty()) read.notes.push_back(input->field.note);
+    input->cell_numbers = read.cell_numbers;
+    input->grid.point_fields = input->grid.cell_fields = {};
     return input;
 }
 
@@ -206,16 +190,15 @@ Result<FileSession> GridFile::session(const std::string& field, const FileContou
     if (!averages && !arrays->neighbours) wanted.active_cells = active_cells(field, options.contour);
     Result<ReadResult> read = data_->read_closed(wanted, options.close_hanging_points, run);
     if (!read) return read.error();
-    Result<ContourInput> input = input_of(read->grid, field, options, read->notes, run);
+    Result<ContourInput> input = input_of(*read, field, options, run);
     if (!input) return input.error();
     if (read->cells_in_file) {
         wanted.active_cells.reset();
-        input->cell_numbers = std::move(read->cell_numbers);
         input->has_cells_around = options.contour.normals == Normals::gradient;
         input->all_cells = [data = data_, wanted, field, options](const Run& later) -> Result<ContourInput> {
             Result<ReadResult> all = data->read_closed(wanted, options.close_hanging_points, later);
             if (!all) return all.error();
-            return input_of(all->grid, field, options, all->notes, later);
+            return input_of(*all, field, options, later);
         };
     }
     Result<Contour> contour = Contour::create(*std::move(input), options.contour, run);

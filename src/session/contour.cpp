@@ -34,23 +34,6 @@ Result<void> check(const ContourOptions& options) {
     return {};
 }
 
-/// Source cells are those of the whole grid.
-void number_in_whole(const Array& numbers, std::vector<Extraction>& surfaces) {
-    if (numbers.empty()) return;
-    const auto whole = numbers.as<std::uint64_t>();
-    for (Extraction& extraction : surfaces) {
-        Array& cells = extraction.surface.source_cells;
-        if (cells.empty()) continue;
-        core::Buffer<std::int64_t> found(cells.tuples());
-        cells.visit([&](auto places) {
-            core::parallel_each(places.size(), 1 << 16, [&](std::size_t i) {
-                found[i] = static_cast<std::int64_t>(whole[static_cast<std::size_t>(places[i])]);
-            });
-        });
-        cells = std::move(found).to_array();
-    }
-}
-
 /// The input, cells of degree 1 by their linear types; where it has only some of the cells, and `options` ask for more than these can do, that with all cells.
 Result<ContourInput> input_for(ContourInput input, const ContourOptions& options, const Run& run) {
     if (input.packed) return input;
@@ -80,7 +63,6 @@ Result<std::optional<ContourResult>> extract_directly(const ContourInput& input,
     if (direct->needs_all_cells) return std::optional<ContourResult>{};
     ContourResult result;
     result.surfaces = std::move(direct->surfaces);
-    if (direct_options.active_cells_only) number_in_whole(input.cell_numbers, result.surfaces);
     result.field = std::move(direct->field);
     result.cells_left_out = direct->cells_left_out;
     result.coarse_tets = direct->coarse_tets;
@@ -164,10 +146,11 @@ Result<void> finish(const Snapshot& now, std::span<const double> isovalues, cons
             !ok)
             return ok;
     if (linear) {
-        session::map_source_cells(*linear, result.surfaces);
+        session::map_source_cells(linear->source_cells, result.surfaces);
         result.refinement = linear->refinement;
         result.cells_left_out += linear->refinement.left_out;
     }
+    session::map_source_cells(now.source.input().cell_numbers, result.surfaces);
     if (const std::optional<ValueRange> range = now.source.range()) {
         result.field.lower = range->lower;
         result.field.upper = range->upper;

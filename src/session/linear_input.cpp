@@ -85,19 +85,19 @@ Result<ContourInput> on_linear_grid(ContourInput input, const LinearGrid& linear
     return input;
 }
 
-void map_source_cells(const LinearGrid& linear, std::vector<Extraction>& surfaces) {
-    if (linear.source_cells.empty()) return;
-    const auto sources = linear.source_cells.as<std::uint64_t>();
+void map_source_cells(const Array& numbers, std::vector<Extraction>& surfaces) {
+    if (numbers.empty()) return;
+    const auto number_of = numbers.as<std::uint64_t>();
     for (Extraction& extraction : surfaces) {
         Array& cells = extraction.surface.source_cells;
         if (cells.empty()) continue;
-        core::Buffer<std::int64_t> of_user(cells.tuples());
-        cells.visit([&](auto numbers) {
-            core::parallel_each(numbers.size(), 1 << 16, [&](std::size_t i) {
-                of_user[i] = static_cast<std::int64_t>(sources[static_cast<std::size_t>(numbers[i])]);
+        core::Buffer<std::int64_t> mapped(cells.tuples());
+        cells.visit([&](auto before) {
+            core::parallel_each(before.size(), 1 << 16, [&](std::size_t i) {
+                mapped[i] = static_cast<std::int64_t>(number_of[static_cast<std::size_t>(before[i])]);
             });
         });
-        cells = std::move(of_user).to_array();
+        cells = std::move(mapped).to_array();
     }
 }
 

@@ -72,7 +72,7 @@ private:
 /// Errors   as LinearGrid::extend()
 Result<ContourInput> on_linear_grid(ContourInput input, const LinearGrid& linear, const Run& run);
 
-/// Writes the user's cell numbers over those of linear cells.
-void map_source_cells(const LinearGrid& linear, std::vector<Extraction>& surfaces);
+/// Writes other numbers, uint64, over those of cells: `numbers` of the grid that the cells are of. Empty: they are the same.
+void map_source_cells(const Array& numbers, std::vector<Extraction>& surfaces);
 
 } // namespace isotet::session

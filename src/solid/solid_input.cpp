@@ -59,6 +59,7 @@ Result<SolidInput> take_input(ContourInput given, const ContourOptions& options,
     }
     if (auto ok = check_options(given, options, is_piece); !ok) return ok.error();
     given.grid.cells = core::with_linear_names(std::move(given.grid.cells));
+    given.cell_numbers = {}; // the boundary's cells have those of the grid
     SolidInput out;
     out.user_grid = given.grid;
     out.user_grid.point_fields = {};

@@ -295,7 +295,7 @@ Result<Solid> Solids::extract(const SolidRange& range, const Run& run) {
         if (data.linear) {
             std::vector<Extraction> mapped(1);
             mapped[0].surface.source_cells = out.surface.source_cells;
-            session::map_source_cells(*data.linear, mapped);
+            session::map_source_cells(data.linear->source_cells, mapped);
             out.surface.source_cells = mapped[0].surface.source_cells;
             out.contour.refinement = data.linear->refinement;
             out.contour.cells_left_out += data.linear->refinement.left_out;

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <isotet/grid_file.hpp>
 #include <isotet/jobs/clip_files.hpp>
 #include <isotet/jobs/extract_files.hpp>
 #include <isotet/jobs/pack_file.hpp>
@@ -104,6 +105,39 @@ TEST(SourceCells, CountCellsThatTheFileHides) {
         ASSERT_TRUE(write_grid(grid, folder.file("grid.vtu")));
         EXPECT_LT(read(folder.file("grid.vtu")).value().grid.cells.count(), grid.cells.count());
         expect_numbers_of_file(folder.file("grid.vtu"), folder);
+    }
+}
+
+/// By sessions that expect their isovalues, which read active cells, and that do not.
+void expect_numbers_of_file_by_sessions(const std::string& path) {
+    for (const Method method : {Method::direct, Method::clusters})
+        for (const bool expected : {false, true})
+            for (const std::vector<std::string>& with : {std::vector<std::string>{"id"}, {}}) {
+                SCOPED_TRACE(testing::Message() << expected << " " << with.size() << " " << static_cast<int>(method));
+                FileContourOptions options;
+                options.with = with;
+                options.contour.source_cells = true;
+                options.contour.method = method;
+                options.contour.surfaces = 1;
+                if (expected) options.contour.expected_isovalues = {0.1};
+                FileSession started = GridFile::open(path).value().session("gyroid", options).value();
+                const Surface surface = started.contour.extract(0.1).value().surfaces[0].surface;
+                options.with = {"id"};
+                FileSession other = GridFile::open(path).value().session("gyroid", options).value();
+                const Surface carrying = other.contour.extract(0.1).value().surfaces[0].surface;
+                expect_equal(surface.source_cells, field_called(carrying.cell_fields, "id"));
+            }
+}
+
+TEST(SourceCells, OfSessionsOfAGridFileAreThoseOfTheFile) {
+    const test::TemporaryFolder folder;
+    for (const char* shape : {"kuhn", "mixed", "kelvin"}) {
+        Grid grid = numbered(shape);
+        std::vector<std::uint8_t> ghosts(grid.cells.count());
+        for (std::size_t i = 0; i < ghosts.size(); ++i) ghosts[i] = i < ghosts.size() / 3 ? 32 : 0; // HIDDENCELL
+        grid.cell_fields.push_back({"vtkGhostType", Array::own(std::move(ghosts))});
+        ASSERT_TRUE(write_grid(grid, folder.file("grid.vtu")));
+        expect_numbers_of_file_by_sessions(folder.file("grid.vtu"));
     }
 }
 
