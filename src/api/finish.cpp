@@ -11,6 +11,7 @@
 #include "api/attributes.hpp"
 #include "api/vertex_normals.hpp"
 #include "base/errors.hpp"
+#include "base/surface_arrays.hpp"
 #include "base/workers.hpp"
 #include "numbers/storage.hpp"
 #include "packed/packed.hpp"
@@ -184,11 +185,7 @@ MoreBytes more_bytes(const ExtractOptions& options, const Placement& placement) 
 
 std::uint64_t bytes_of(const Surface& surface) {
     std::uint64_t bytes = 0;
-    for (const Array* array : {&surface.positions, &surface.triangles, &surface.normals, &surface.edge_ends,
-                               &surface.edge_weights, &surface.source_cells})
-        bytes += array->bytes();
-    for (const auto* fields : {&surface.point_fields, &surface.cell_fields})
-        for (const Field& field : *fields) bytes += field.values.bytes();
+    core::each_array(surface, [&](const Array& array, SurfaceArray, std::string_view) { bytes += array.bytes(); });
     return bytes;
 }
 

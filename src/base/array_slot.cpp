@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/parallel.hpp"
+#include "base/surface_arrays.hpp"
 
 namespace isotet {
 
@@ -44,18 +45,9 @@ bool RememberingSink::gave(const Array& array) const {
 }
 
 void RememberingSink::bring(Surface& surface, std::size_t number) {
-    const auto bring_array = [&](Array& array, SurfaceArray which, std::string_view field = {}) {
-        if (array.empty() || gave(array)) return;
-        array = copied(array, {this, number, which, field});
-    };
-    bring_array(surface.positions, SurfaceArray::positions);
-    bring_array(surface.triangles, SurfaceArray::triangles);
-    bring_array(surface.normals, SurfaceArray::normals);
-    bring_array(surface.edge_ends, SurfaceArray::edge_ends);
-    bring_array(surface.edge_weights, SurfaceArray::edge_weights);
-    bring_array(surface.source_cells, SurfaceArray::source_cells);
-    for (Field& field : surface.point_fields) bring_array(field.values, SurfaceArray::point_field, field.name);
-    for (Field& field : surface.cell_fields) bring_array(field.values, SurfaceArray::cell_field, field.name);
+    each_array(surface, [&](Array& array, SurfaceArray which, std::string_view field) {
+        if (!array.empty() && !gave(array)) array = copied(array, {this, number, which, field});
+    });
 }
 
 } // namespace core

@@ -36,6 +36,7 @@ public:
         std::shared_ptr<void> given(bytes, bytes->data());
         last[{wanted.surface, wanted.array, std::string(wanted.field)}] = bytes->data();
         watched.emplace_back(given);
+        order.emplace_back(wanted.surface, wanted.array, wanted.field);
         return given;
     }
 
@@ -46,26 +47,19 @@ public:
     std::size_t asked = 0, most = 1'000'000;
     std::map<Key, const void*> last;
     std::vector<std::weak_ptr<void>> watched;
+    std::vector<Key> order;
 };
 
 /// How many arrays the surface has, all of them where the sink last gave memory for them.
 std::size_t arrays_in(const Segment& segment, const Surface& surface, std::size_t number) {
     std::size_t count = 0;
-    const auto look = [&](const Array& array, SurfaceArray which, const std::string& field = {}) {
+    core::each_array(surface, [&](const Array& array, SurfaceArray which, std::string_view field) {
         if (array.empty()) return;
         ++count;
-        const auto found = segment.last.find({number, which, field});
+        const auto found = segment.last.find({number, which, std::string(field)});
         ASSERT_NE(found, segment.last.end()) << static_cast<int>(which) << ' ' << field;
         EXPECT_EQ(found->second, array.data()) << static_cast<int>(which) << ' ' << field;
-    };
-    look(surface.positions, SurfaceArray::positions);
-    look(surface.triangles, SurfaceArray::triangles);
-    look(surface.normals, SurfaceArray::normals);
-    look(surface.edge_ends, SurfaceArray::edge_ends);
-    look(surface.edge_weights, SurfaceArray::edge_weights);
-    look(surface.source_cells, SurfaceArray::source_cells);
-    for (const Field& field : surface.point_fields) look(field.values, SurfaceArray::point_field, field.name);
-    for (const Field& field : surface.cell_fields) look(field.values, SurfaceArray::cell_field, field.name);
+    });
     return count;
 }
 
@@ -146,6 +140,21 @@ INSTANTIATE_TEST_SUITE_P(Kinds, SurfaceSinkTest,
                                           testing::Values(Normals::none, Normals::gradient, Normals::face,
                                                           Normals::vertex),
                                           testing::Bool()));
+
+/// What is made elsewhere is copied when all surfaces are made.
+TEST(SurfaceSink, GradientNormalsOfDirectExtractionAreMadeThere) {
+    const Grid grid = grid_of(ScalarType::float32);
+    DirectOptions options;
+    options.extract.normals = Normals::gradient;
+    const auto segment = std::make_shared<Segment>();
+    options.extract.sink = segment;
+    ASSERT_TRUE(extract_direct(grid, point_field(grid), std::vector{0.2, -0.4}, options));
+    const auto when = [&](std::size_t surface, SurfaceArray array) {
+        return std::ranges::find(segment->order, Segment::Key{surface, array, ""}) - segment->order.begin();
+    };
+    EXPECT_LT(when(0, SurfaceArray::normals), when(1, SurfaceArray::positions));
+    EXPECT_EQ(segment->asked, 6u);
+}
 
 TEST(SurfaceSink, HasEdgeEndsOfNumberedPoints) {
     Grid grid = grid_of(ScalarType::float32);

@@ -6,6 +6,8 @@
 
 #include <isotet/surface.hpp>
 
+#include "base/surface_arrays.hpp"
+
 namespace isotet::test {
 
 inline void append_bytes(std::string& out, const Array& array) {
@@ -16,13 +18,10 @@ inline void append_bytes(std::string& out, const Array& array) {
 
 inline std::string bytes_of(const Surface& s) {
     std::string out;
-    for (const Array* array : {&s.positions, &s.triangles, &s.normals, &s.edge_ends, &s.edge_weights, &s.source_cells})
-        append_bytes(out, *array);
-    for (const auto* fields : {&s.point_fields, &s.cell_fields})
-        for (const Field& field : *fields) {
-            out += field.name;
-            append_bytes(out, field.values);
-        }
+    core::each_array(s, [&](const Array& array, SurfaceArray, std::string_view field) {
+        out += field;
+        append_bytes(out, array);
+    });
     return out;
 }
 

@@ -192,20 +192,13 @@ private:
         out.raw = *std::move(surface);
         cut = {};
         if (!request_.normals) return out;
-        auto normals = gradients(source, out.raw, progress);
+        const core::ArraySlot slot = core::slot_of(request_.slots, result_.surfaces.size(), SurfaceArray::normals);
+        auto normals = gradient_normals(
+            source, sides_, mostly_negative_, [this] { return ask_for_most(); }, out.raw, slot, progress);
         if (!normals) return normals.error();
         out.raw.normals = *std::move(normals);
         if (!request_.ends) out.raw.ends = out.raw.weights = {};
         return out;
-    }
-
-    Result<Array> gradients(const VertexSource<Real>& source, const ops::RawSurface& surface,
-                            const Progress& progress) {
-        auto normals = gradient_normals(source, sides_, mostly_negative_.value_or(false), surface, progress);
-        if (normals && normals->saw_flat && !mostly_negative_ && ask_for_most())
-            normals = gradient_normals(source, sides_, true, surface, progress);
-        if (!normals) return normals.error();
-        return normals->normals;
     }
 
     bool is_as_assumed(const CutContext& context) {

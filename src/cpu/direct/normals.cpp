@@ -123,32 +123,42 @@ private:
 } // namespace
 
 template <class Real>
-Result<GradientNormals> gradient_normals(const VertexSource<Real>& source, const Sides& sides, bool mostly_negative,
-                                         const ops::RawSurface& surface, const Progress& progress) {
+Result<Array> gradient_normals(const VertexSource<Real>& source, const Sides& sides, std::optional<bool> most,
+                               const std::function<bool()>& ask_for_most, const ops::RawSurface& surface,
+                               const core::ArraySlot& slot, const Progress& progress) {
     const auto cancelled = [] { return Error{ErrorCode::cancelled, "extraction was cancelled"}; };
     const auto ends = surface.ends.as<std::int64_t>();
     const auto weights = surface.weights.as<Real>();
     const EndPoints points(source.input().grid.points.tuples(), ends);
     if (progress.cancelled()) return cancelled();
-    GradientSummer<Real> summer(source, sides, mostly_negative, points);
-    const core::Buffer<std::uint32_t> codes = source.input().cells.count() < std::uint64_t{1} << 32
-                                                  ? summer.template codes<std::uint32_t>()
-                                                  : summer.template codes<std::uint64_t>();
+    core::Buffer<std::uint32_t> codes;
+    bool saw_flat = false;
+    const auto add_up = [&](bool mostly_negative) {
+        codes.release();
+        GradientSummer<Real> summer(source, sides, mostly_negative, points);
+        codes = source.input().cells.count() < std::uint64_t{1} << 32 ? summer.template codes<std::uint32_t>()
+                                                                      : summer.template codes<std::uint64_t>();
+        saw_flat = summer.saw_flat();
+    };
+    add_up(most.value_or(false));
+    if (saw_flat && !most && ask_for_most()) add_up(true);
     if (progress.cancelled()) return cancelled();
-    core::Buffer<float> normals(3 * weights.size());
+    core::SharedBuffer<float> normals = slot.make<float>(weights.size(), 3);
     core::parallel_each(weights.size(), grain, [&](std::size_t v) {
         const auto code = [&](std::size_t end) {
             return codes[points.number(static_cast<std::uint64_t>(ends[2 * v + end]))];
         };
         const auto normal = core::vertex_normal(code(0), code(1), weights[v]);
-        for (std::size_t axis = 0; axis < 3; ++axis) normals[3 * v + axis] = static_cast<float>(normal[axis]);
+        for (std::size_t axis = 0; axis < 3; ++axis) normals.data()[3 * v + axis] = static_cast<float>(normal[axis]);
     });
-    return GradientNormals{std::move(normals).to_array(3), summer.saw_flat()};
+    return std::move(normals).to_array(3);
 }
 
-template Result<GradientNormals> gradient_normals<float>(const VertexSource<float>&, const Sides&, bool,
-                                                         const ops::RawSurface&, const Progress&);
-template Result<GradientNormals> gradient_normals<double>(const VertexSource<double>&, const Sides&, bool,
-                                                          const ops::RawSurface&, const Progress&);
+template Result<Array> gradient_normals<float>(const VertexSource<float>&, const Sides&, std::optional<bool>,
+                                               const std::function<bool()>&, const ops::RawSurface&,
+                                               const core::ArraySlot&, const Progress&);
+template Result<Array> gradient_normals<double>(const VertexSource<double>&, const Sides&, std::optional<bool>,
+                                                const std::function<bool()>&, const ops::RawSurface&,
+                                                const core::ArraySlot&, const Progress&);
 
 } // namespace isotet::cpu::direct
