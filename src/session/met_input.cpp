@@ -10,6 +10,7 @@
 #include "base/parallel.hpp"
 #include "grid/cell_faces.hpp"
 #include "grid/cells.hpp"
+#include "grid/points/used_points.hpp"
 #include "numbers/storage.hpp"
 #include "session/linear_input.hpp"
 
@@ -37,18 +38,13 @@ bool keeps_its_scale(const Array& array) {
 }
 
 /// By point: 1 where a cell that is contoured has it.
-core::Buffer<std::uint8_t> used_points(const core::CellReader& cells, const core::FaceReader& faces) {
-    core::Buffer<std::uint8_t> used(cells.points());
-    std::ranges::fill(used, std::uint8_t{0});
-    core::parallel_each(cells.count(), 1 << 13, [&](std::size_t cell) {
-        if (!core::is_polyhedron(cells, faces, cell) && !core::is_contoured(cells.type(cell))) return;
-        for (std::uint64_t i = 0; i < cells.corners(cell); ++i)
-            std::atomic_ref(used[cells.corner(cells.first(cell) + i)]).store(1, std::memory_order_relaxed);
+std::vector<std::uint8_t> used_points(const core::CellReader& cells, const core::FaceReader& faces) {
+    return core::points_of_cells(cells, [&](std::size_t cell) {
+        return core::is_polyhedron(cells, faces, cell) || core::is_contoured(cells.type(cell));
     });
-    return used;
 }
 
-ValueRange range_of(const PointField& field, const core::Buffer<std::uint8_t>& used) {
+ValueRange range_of(const PointField& field, const std::vector<std::uint8_t>& used) {
     core::ValueStatistics all;
     std::mutex mutex;
     field.values.visit([&](auto values) {
@@ -81,7 +77,7 @@ struct Ends {
 };
 
 /// Offset and origin of what is rounded to be stored come from the ends of its range: points that have them.
-void add_ends(const Array& array, const core::Buffer<std::uint8_t>& used, std::vector<std::size_t>& points) {
+void add_ends(const Array& array, const std::vector<std::uint8_t>& used, std::vector<std::size_t>& points) {
     if (array.type() != ScalarType::float64) return;
     const std::size_t width = array.components();
     const std::span<const double> values = array.as<double>();
@@ -101,7 +97,7 @@ void add_ends(const Array& array, const core::Buffer<std::uint8_t>& used, std::v
 
 /// Polyhedra with one of some points, which `used` marks by 2.
 std::vector<std::uint64_t> cells_at(const core::CellReader& cells, const core::FaceReader& faces,
-                                    const core::Buffer<std::uint8_t>& used) {
+                                    const std::vector<std::uint8_t>& used) {
     std::vector<std::uint64_t> found;
     std::mutex mutex;
     core::parallel_each(cells.count(), 1 << 13, [&](std::size_t cell) {
@@ -124,7 +120,7 @@ Result<bool> has_points(const Grid& grid, std::span<const std::size_t> points) {
     if (!cells) return cells.error();
     const auto faces = core::FaceReader::open(grid.cells);
     if (!faces) return faces.error();
-    const core::Buffer<std::uint8_t> used = used_points(*cells, *faces);
+    const std::vector<std::uint8_t> used = used_points(*cells, *faces);
     return std::ranges::all_of(points, [&](std::size_t point) { return used[point] != 0; });
 }
 
@@ -167,15 +163,15 @@ Result<std::optional<ContourInput>> MetInput::make(const ContourInput& input, co
     if (rounded(input.grid.points) || rounded(input.field.values) ||
         std::ranges::any_of(input.point_fields, rounded, &Field::values)) {
         if (auto sound = core::check_cells(input.grid, *cells, {}); !sound) return sound.error();
-        core::Buffer<std::uint8_t> used = used_points(*cells, *faces);
+        std::vector<std::uint8_t> used = used_points(*cells, *faces);
         add_ends(input.grid.points, used, ends);
         add_ends(input.field.values, used, ends);
         for (const Field& field : input.point_fields) add_ends(field.values, used, ends);
         for (const std::size_t point : ends) used[point] = 2;
         also = cells_at(*cells, *faces, used);
     }
-    auto linear =
-        linearize(input.grid, {.isovalues = next.isovalues_, .values = input.field.values, .also = std::move(also)}, run);
+    auto linear = linearize(input.grid,
+                            {.isovalues = next.isovalues_, .values = input.field.values, .also = std::move(also)}, run);
     if (!linear) return linear.error();
     if (linear->grid.cells.count() == 0) return std::optional<ContourInput>();
     next.range_ = range_of(input.field, used_points(*cells, *faces));

@@ -21,6 +21,7 @@
 #include "grid/patches.hpp"
 #include "grid/points/close_points.hpp"
 #include "grid/points/same_place.hpp"
+#include "grid/points/used_points.hpp"
 
 namespace isotet {
 
@@ -49,18 +50,6 @@ Result<void> check_other_cells(const Grid& grid, const core::CellReader& cells, 
                                                 cells.corner(i), cells.points()));
     }
     return core::check_faces(grid, cells, progress);
-}
-
-/// A byte a point: 1 where a cell that counts uses it.
-std::vector<std::uint8_t> used_points(const core::CellReader& cells) {
-    std::vector<std::uint8_t> used(cells.points());
-    core::parallel_each(cells.count(), grain, [&](std::size_t cell) {
-        if (!is_merged(cells.type(cell))) return;
-        const std::uint64_t first = cells.first(cell), end = first + cells.corners(cell);
-        for (std::uint64_t i = first; i < end; ++i)
-            std::atomic_ref(used[cells.corner(i)]).store(1, std::memory_order_relaxed);
-    });
-    return used;
 }
 
 struct Box {
@@ -153,7 +142,8 @@ Result<MergedPoints> merge(const Grid& grid, const MergeOptions& options, const 
     if (auto sound = check_other_cells(grid, *cells, progress); !sound) return sound.error();
     if (auto sound = core::check_patches(grid); !sound) return sound.error();
     progress("merge points", 0.2);
-    const std::vector<std::uint8_t> used = used_points(*cells);
+    const std::vector<std::uint8_t> used =
+        core::points_of_cells(*cells, [&](std::size_t cell) { return is_merged(cells->type(cell)); });
     std::vector<std::uint64_t> lowest;
     if (tolerance > 0) {
         const Box box = box_of(grid.points, used);

@@ -2,10 +2,12 @@
 #include "grid/points/used_points.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <limits>
 #include <type_traits>
 #include <utility>
 
+#include "base/parallel.hpp"
 #include "grid/cell_faces.hpp"
 #include "grid/cells.hpp"
 #include "grid/patches.hpp"
@@ -33,13 +35,24 @@ void renumber_faces(Cells& cells, const Number& number) {
     if (!faces || !faces->has_faces()) return;
     std::vector<std::int64_t> stream(cells.faces.size());
     for (std::size_t i = 0; i < stream.size(); ++i) stream[i] = static_cast<std::int64_t>(faces->at(i));
-    if (each_point_of_faces(*faces, cells.count(), [&](std::size_t, std::uint64_t at, std::uint64_t point) {
-            stream[at] = number(point);
-        }))
+    if (each_point_of_faces(*faces, cells.count(),
+                            [&](std::size_t, std::uint64_t at, std::uint64_t point) { stream[at] = number(point); }))
         cells.faces = Array::own(std::move(stream));
 }
 
 } // namespace
+
+std::vector<std::uint8_t> points_of_cells(const CellReader& cells,
+                                          const std::function<bool(std::size_t cell)>& counts) {
+    std::vector<std::uint8_t> used(cells.points());
+    parallel_each(cells.count(), 1 << 14, [&](std::size_t cell) {
+        if (!counts(cell)) return;
+        const std::uint64_t first = cells.first(cell), end = first + cells.corners(cell);
+        for (std::uint64_t i = first; i < end; ++i)
+            std::atomic_ref(used[cells.corner(i)]).store(1, std::memory_order_relaxed);
+    });
+    return used;
+}
 
 void mark_points_of_faces(const Cells& cells, std::vector<std::uint8_t>& used,
                           const std::function<bool(std::size_t cell)>& counts) {
