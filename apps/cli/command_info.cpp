@@ -131,6 +131,7 @@ std::string grid_table(const GridSummary& found, const std::string& path) {
 std::string first_table(const FirstView& first) {
     Table table = facts();
     const auto text = [&] {
+        if (first.empty) return std::string("nothing: no cell can be contoured");
         switch (first.draw) {
         case FirstDraw::isosurfaces: return fmt::format("isosurfaces of {}: {}", first.field, text_of(first.reason));
         case FirstDraw::field_on_boundary:

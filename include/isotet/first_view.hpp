@@ -36,6 +36,7 @@ struct FirstView {
     FirstReason reason = FirstReason::nothing;
     bool rough = false; ///< the field varies as much within cells as over the grid
     bool flat = false;  ///< the grid has flat cells alone
+    bool empty = false; ///< the grid has no cell that is contoured, and others than flat ones: nothing can be shown
     bool walls = false; ///< the field varies at the boundary alone: the cell field of the same name does not
 };
 

@@ -605,7 +605,7 @@ class PackedGrid:
 
     def __repr__(self) -> str:
         report = self._packed.report()
-        return (f"<isotet.PackedGrid: {report['points']} points, {report['tets']} tets, "
+        return (f"<isotet.PackedGrid: {report['points']} points, {len(self)} cells, "
                 f"field {self._packed.field()['name']}, {report['bytes']} bytes>")  # fmt: skip
 
 

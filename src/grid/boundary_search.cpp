@@ -71,12 +71,16 @@ bool BoundarySearch::look() {
 
 void BoundarySearch::keep(std::uint64_t first, CellType type, const Array& corners) {
     const Grid block = block_of(block_, type, corners);
-    if (const auto cells = CellReader::open(block)) keep(first, *cells, 0, cells->count());
+    const auto cells = CellReader::open(block);
+    if (cells) keep(first, *cells, 0, cells->count());
+    else broken_ = true;
 }
 
 void BoundarySearch::keep(std::uint64_t first, std::span<const std::uint8_t> types, const Array& corners) {
     const Grid block = block_of(block_, types, corners);
-    if (const auto cells = CellReader::open(block)) keep(first, *cells, 0, cells->count());
+    const auto cells = CellReader::open(block);
+    if (cells) keep(first, *cells, 0, cells->count());
+    else broken_ = true;
 }
 
 /// Whether a face of a cell may have a doubted point as its lowest one: of a tet these are the two lowest of all.

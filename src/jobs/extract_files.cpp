@@ -866,7 +866,7 @@ Result<void> ExtractRun::run() {
 
 std::string ExtractRun::way_out() const {
     std::vector<std::string_view> ways;
-    if (plan_.contour.expected_isovalues.size() > 1) ways.push_back("one isovalue at a time");
+    if (plan_.contour.expected_isovalues.size() > 1) ways.push_back(job_.field.shape ? "one surface at a time" : "one isovalue at a time");
     if (!job_.with || !job_.with->empty()) ways.push_back("a surface without fields (`with` leaves them out)");
     if (!packed_) ways.push_back("a packed file (isotet pack)");
     return ways.empty() ? "`memory` with a smaller number" : fmt::format("{}", fmt::join(ways, ", or "));

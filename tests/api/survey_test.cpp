@@ -408,6 +408,20 @@ TEST(Survey, FindsTheBoundaryOfCellsThatTakeMoreMemoryThanMayBeKept) {
     }
 }
 
+TEST(Survey, FindsThatBlocksWhichGoByAgainAreBroken) {
+    const Grid grid = make_grid({.shape = "mixed", .side = 4, .fields = {}}).value();
+    const core::CellReader cells = core::CellReader::open(grid).value();
+    for (const bool typed : {false, true}) {
+        core::BoundarySearch search(grid.points);
+        search.add(grid, cells, 0, cells.count());
+        ASSERT_TRUE(search.look());
+        const Array broken = Array::own(std::vector<float>(12)); // no point numbers
+        if (typed) search.keep(0, std::vector<std::uint8_t>{10, 10, 10}, broken);
+        else search.keep(0, CellType::tetrahedron, broken);
+        EXPECT_FALSE(search.has_kept_all());
+    }
+}
+
 TEST(Survey, FindsThatCellsWhichGoByAgainHaveOtherPoints) {
     for (const char* shape : {"shuffled", "mixed"})
         for (const std::int64_t point : {std::int64_t{-1}, std::int64_t{1} << 40}) {

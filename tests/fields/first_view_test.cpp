@@ -63,6 +63,19 @@ TEST(FirstView, PrefersNamesThatPeopleContour) {
     EXPECT_EQ(view_of(grid).field, "alpha.water");
 }
 
+TEST(FirstView, ShowsNothingOfLines) {
+    Grid grid = cube();
+    grid.point_fields = {{"T", of_points(grid, smooth)}};
+    grid.cells = {};
+    grid.cells.types = Array::own(std::vector<std::uint8_t>{3, 3, 1});
+    grid.cells.offsets = Array::own(std::vector<std::int64_t>{0, 2, 4, 5});
+    grid.cells.connectivity = Array::own(std::vector<std::int64_t>{0, 1, 1, 2, 3});
+    EXPECT_TRUE(view_of(grid).empty);
+    EXPECT_EQ(view_of(grid).draw, FirstDraw::boundary);
+    EXPECT_EQ(view_of(grid).field, "");
+    EXPECT_FALSE(view_of(cube()).empty);
+}
+
 TEST(FirstView, TakesWhatTheFileMarksBeforeNames) {
     Grid grid = cube();
     grid.point_fields = {{"T", of_points(grid, smooth)}, {"foo", of_points(grid, smooth)}};
@@ -225,12 +238,10 @@ TEST(FirstView, BearsBrokenCells) {
 }
 
 TEST(FirstCandidates, AreInTheOrderInWhichTheyAreLookedAt) {
-    const std::vector<FieldInfo> fields{{"foo", Association::point, ScalarType::float32, 1},
-                                        {"T", Association::cell, ScalarType::float32, 1},
-                                        {"T", Association::point, ScalarType::float32, 1},
-                                        {"S", Association::point, ScalarType::float32, 6},
-                                        {"id", Association::point, ScalarType::int32, 1},
-                                        {"w", Association::point, ScalarType::float32, 3, true}};
+    const std::vector<FieldInfo> fields{
+        {"foo", Association::point, ScalarType::float32, 1}, {"T", Association::cell, ScalarType::float32, 1},
+        {"T", Association::point, ScalarType::float32, 1},   {"S", Association::point, ScalarType::float32, 6},
+        {"id", Association::point, ScalarType::int32, 1},    {"w", Association::point, ScalarType::float32, 3, true}};
     const auto candidates = first_candidates(fields);
     ASSERT_EQ(candidates.size(), 4u) << "no tensor, no number";
     EXPECT_EQ(candidates[0].name, "w:mag");

@@ -466,7 +466,8 @@ def test_what_is_shown(sphere):
     assert repr(sphere) == "<isotet.Grid: 343 points, 1296 cells, fields sphere, gyroid>"
     surface = sphere.contour([0.4, 0.5], "sphere", fields=[])
     assert repr(surface) == f"<isotet.Surface: {len(surface.points)} vertices, {len(surface.triangles)} triangles, fields isovalue>"
-    assert "1296 tets, field sphere" in repr(isotet.pack(sphere, values="sphere"))
+    assert "1296 cells, field sphere" in repr(isotet.pack(sphere, values="sphere"))
+    assert "27 cells, field sphere" in repr(isotet.pack(isotet.make("hex", 3, ["sphere"])))
     session = isotet.Contour(sphere, "sphere", surfaces=100)
     assert repr(session) == "<isotet.Contour: not packed, next clusters>"
     session.prepare()

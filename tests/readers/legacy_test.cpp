@@ -245,15 +245,19 @@ TEST_P(ReadLegacyForm, StepsOverMetadataOfEveryKind) {
 }
 
 TEST_P(ReadLegacyForm, KnowsTheTypesOfVtkOfAnyAge) {
-    const std::string freefem = LegacyText(GetParam())
-                                    .start("2.0")
-                                    .tet()
-                                    .text("CELL_DATA 1\nScalars  Label int1\nLOOKUP_TABLE t\n")
-                                    .numbers<std::int32_t>({3})
-                                    .str();
-    const io::Loaded labelled = load(freefem);
-    ASSERT_EQ(grid_of(labelled).cell_fields.size(), 1U);
-    EXPECT_EQ(values_of(grid_of(labelled).cell_fields[0].values), (std::vector<double>{3}));
+    for (const char* line :
+         {"Scalars  Label int1", "SCALARS Label of a Region int1", "SCALARS Label of a Region int1 1"}) {
+        const std::string freefem = LegacyText(GetParam())
+                                        .start("2.0")
+                                        .tet()
+                                        .text(fmt::format("CELL_DATA 1\n{}\nLOOKUP_TABLE t\n", line))
+                                        .numbers<std::int32_t>({3})
+                                        .str();
+        const io::Loaded labelled = load(freefem);
+        ASSERT_EQ(grid_of(labelled).cell_fields.size(), 1U) << line;
+        EXPECT_TRUE(grid_of(labelled).cell_fields[0].name.starts_with("Label")) << line;
+        EXPECT_EQ(values_of(grid_of(labelled).cell_fields[0].values), (std::vector<double>{3})) << line;
+    }
     for (const char* type : {"long_long", "long", "vtktypeint64", "vtkTypeInt64", "__int64", "int64"}) {
         const std::string bytes = LegacyText(GetParam())
                                       .start("3.0")

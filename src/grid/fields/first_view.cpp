@@ -299,6 +299,13 @@ FirstView chosen_view(const Grid& grid, const std::vector<FieldInfo>& fields, bo
     return regions_of(grid, fields, judge);
 }
 
+/// Whether a cell has an inside that isosurfaces could be in.
+bool has_cells_to_cut(const Cells& cells) {
+    if (cells.types.type() != ScalarType::uint8 || cells.types.empty())
+        return core::has_a_volume(static_cast<std::uint8_t>(cells.uniform_type));
+    return std::ranges::any_of(cells.types.as<std::uint8_t>(), core::has_a_volume);
+}
+
 } // namespace
 
 FirstView first_view(const Grid& grid, const std::vector<FieldInfo>& fields) {
@@ -308,7 +315,9 @@ FirstView first_view(const Grid& grid, const std::vector<FieldInfo>& fields) {
 FirstView core::first_view_of_sample(const Grid& grid, const std::vector<FieldInfo>& fields,
                                      std::span<const std::uint64_t> numbers) {
     const bool flat = has_only_flat_cells(grid.cells);
-    FirstView view = chosen_view(grid, fields, flat, numbers);
+    const bool empty = !flat && !has_cells_to_cut(grid.cells);
+    FirstView view = empty ? FirstView() : chosen_view(grid, fields, flat, numbers);
+    view.empty = empty;
     view.flat = flat;
     return view;
 }

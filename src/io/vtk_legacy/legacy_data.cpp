@@ -68,7 +68,14 @@ bool is_identifier(std::string_view word) {
            std::ranges::all_of(word, [&](char c) { return is_letter(c) || (c >= '0' && c <= '9'); });
 }
 
-bool is_type(const std::string& word) { return legacy_type(lower(word)).has_value(); }
+/// A type of values, in lower case. FreeFem 3 writes "int1".
+std::string type_in(const std::string& word) {
+    std::string type = lower(word);
+    if (type.ends_with('1') && !legacy_type(type)) type.pop_back();
+    return type;
+}
+
+bool is_type(const std::string& word) { return legacy_type(type_in(word)).has_value(); }
 
 /// Of a FIELD: the name, components, tuples and the type. A name of several words must be followed by a type that is known.
 bool is_line_of_array(std::span<const std::string> words) {
@@ -176,15 +183,14 @@ std::size_t LegacyData::words_behind_name() {
 
 Result<void> LegacyData::read_named(std::uint64_t components, bool normals) {
     Header header{read_name(words_behind_name()), {}, components, tuples_, normals};
-    header.type = lower(scanner_.word());
+    header.type = type_in(scanner_.word());
     return read_array(header);
 }
 
 Result<void> LegacyData::read_scalars() {
     Header header{read_name(words_behind_name()), {}, 1, tuples_};
     scalars_.emplace_back(data_ == Data::points ? Association::point : Association::cell, header.name);
-    header.type = lower(scanner_.word());
-    if (header.type.ends_with('1') && !legacy_type(header.type)) header.type.pop_back(); // FreeFem 3 writes "int1"
+    header.type = type_in(scanner_.word());
     if (!scanner_.at_line_end() && !scanner_.number_of_line(header.components))
         return values_.before_here("not a number of components");
     const auto before = scanner_.position();
@@ -218,7 +224,7 @@ Result<void> LegacyData::read_texture_coordinates() {
     const auto dimension = values_.read_count("the dimension");
     if (!dimension) return dimension.error();
     header.components = *dimension;
-    header.type = lower(scanner_.word());
+    header.type = type_in(scanner_.word());
     return read_array(header);
 }
 
@@ -268,7 +274,7 @@ Result<bool> LegacyData::read_array_of_field(std::uint64_t left) {
         if (!tuples) return tuples.error();
         header.components = *components;
         header.tuples = *tuples;
-        header.type = lower(scanner_.word());
+        header.type = type_in(scanner_.word());
         if (is_identifier(header.type)) return {};
         return values_.before_here(fmt::format("{} is not a type", in_quotes(header.type)));
     }();
