@@ -35,8 +35,8 @@ enum class Apart : std::uint8_t {
 
 /// Calls `work` in a copy of this process, and waits for its end or a cancel.
 ///
-/// `work`   computes on memory that there is, and leaves its result in SharedMemory: other threads of this process do not
-///          run in the copy, and may hold any lock, that of the heap too; take_pages() takes no lock
+/// `work`   computes on memory that there is, and leaves its result in SharedMemory: other threads of this process do
+///          not run in the copy, and may hold any lock, that of the heap too; take_pages() takes no lock
 ISOTET_API Apart run_apart(const Progress& progress, const std::function<void()>& work);
 
 /// Memory for the work of run_apart(), which is given back at its end. Ends the process where there is none.

@@ -66,7 +66,8 @@ std::byte* map_huge_pages(std::size_t bytes) {
 }
 
 /// Maps whole pages, from a huge page's size on beginning at one where there is room for that. What is left over behind
-/// the last huge page stays in small ones, so that no more memory is used than was asked for. No data when there is none.
+/// the last huge page stays in small ones, so that no more memory is used than was asked for. No data when there is
+/// none.
 Block map_block(std::size_t bytes) {
     const std::size_t size = round_up(bytes, page_size());
     if (size < bytes || size + huge_page < size) return {};
@@ -78,8 +79,8 @@ Block map_block(std::size_t bytes) {
 /// No data also where the pages could not all be used.
 Block map_fresh(std::size_t bytes) { return fresh_memory().take(bytes) ? map_block(bytes) : Block{}; }
 
-/// Memory of malloc(): a list that grows under a lock must not come back to it by an operator new that asks how much memory
-/// is left (checked_new.cpp).
+/// Memory of malloc(): a list that grows under a lock must not come back to it by an operator new that asks how much
+/// memory is left (checked_new.cpp).
 template <class T>
 struct PlainHeap {
     using value_type = T;
@@ -97,8 +98,8 @@ class KeptBlocks {
     using Blocks = std::vector<Block, PlainHeap<Block>>;
 
 public:
-    /// The smallest block that is large enough and not more than a quarter too large, else a piece of one that is so much
-    /// larger that it was made for something else; with reuse, a piece of any.
+    /// The smallest block that is large enough and not more than a quarter too large, else a piece of one that is so
+    /// much larger that it was made for something else; with reuse, a piece of any.
     Block take(std::size_t bytes) {
         const std::lock_guard lock(mutex_);
         make_room_for_one();
@@ -115,7 +116,8 @@ public:
         return taken;
     }
 
-    /// A new block. With reuse, the oldest kept ones go where both together would raise the peak; all go for lack of room.
+    /// A new block. With reuse, the oldest kept ones go where both together would raise the peak; all go for lack of
+    /// room.
     Block map(std::size_t bytes) {
         {
             const std::lock_guard lock(mutex_);
@@ -132,7 +134,8 @@ public:
         return block;
     }
 
-    /// Keeps the block, and lets the oldest go for it. False when it is larger than all that may be kept, or not wanted.
+    /// Keeps the block, and lets the oldest go for it. False when it is larger than all that may be kept, or not
+    /// wanted.
     bool keep(Block block, bool wanted) {
         const std::lock_guard lock(mutex_);
         in_use_ -= block.bytes;
@@ -192,8 +195,8 @@ private:
         if (blocks_.size() == blocks_.capacity()) blocks_.reserve(2 * blocks_.size() + 16);
     }
 
-    /// Takes `bytes` and little more off a kept block. What is left begins at a huge page if the block does, but for what
-    /// lies between the piece and the next huge page.
+    /// Takes `bytes` and little more off a kept block. What is left begins at a huge page if the block does, but for
+    /// what lies between the piece and the next huge page.
     Block cut_off(Blocks::iterator block, std::size_t bytes) {
         const Block whole = *block;
         std::size_t piece = round_up(bytes, page_size());

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Linux ends a process that touches more memory than its control group has, without a word. So what is left is looked at
-// before memory is mapped.
+// Linux ends a process that touches more memory than its control group has, without a word. So what is left is looked
+// at before memory is mapped.
 #pragma once
 
 #include <cstddef>

@@ -33,7 +33,8 @@ std::optional<std::uint64_t> number_in(const std::string& path) {
     return value;
 }
 
-/// Bytes of files that are only cached, by a file of counters. Of version 1, "total_..." has those of groups below, too.
+/// Bytes of files that are only cached, by a file of counters. Of version 1, "total_..." has those of groups below,
+/// too.
 std::uint64_t cached_in(const std::string& path) {
     std::ifstream file(path);
     std::uint64_t value = 0, own = 0, total = 0;
@@ -168,7 +169,8 @@ Error ran_out_of_memory(std::string_view what) {
 
 void trim_heap() noexcept {
 #ifdef __GLIBC__
-    // Where another allocator has replaced malloc(), the first call makes glibc's heap, which no other call may read then.
+    // Where another allocator has replaced malloc(), the first call makes glibc's heap, which no other call may read
+    // then.
     static std::mutex one_at_a_time;
     const std::lock_guard lock(one_at_a_time);
     malloc_trim(0);

@@ -81,8 +81,8 @@ private:
     std::size_t count_;
 };
 
-/// Arenas that no call is in, kept for later ones: oneTBB keeps memory of each that a worker was in, and its threads look
-/// through all of them.
+/// Arenas that no call is in, kept for later ones: oneTBB keeps memory of each that a worker was in, and its threads
+/// look through all of them.
 class IdleArenas {
 public:
     struct Arena {

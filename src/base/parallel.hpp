@@ -12,8 +12,8 @@ namespace isotet::core {
 
 /// Runs `work` in an arena of `threads` threads (0 or less: as many as the caller's arena has; 1024 at most). Parallel
 /// algorithms called inside use that many, even more than there are cores; oneTBB's limit for the process is raised as
-/// long as the work lasts. The arena is kept for later calls. Work has the default floating-point environment, whatever that of
-/// the caller.
+/// long as the work lasts. The arena is kept for later calls. Work has the default floating-point environment, whatever
+/// that of the caller.
 ISOTET_API void with_threads(int threads, const std::function<void()>& work);
 
 /// Gives the arenas that no call is in to oneTBB, which else does not end before the process.

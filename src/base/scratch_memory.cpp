@@ -147,8 +147,8 @@ public:
             slices = bytes_ / slice + blocks_.size();
         }
         for (; slices > 0 && excess(2); --slices) drop_slice();
-        // What is still there may not be of these files, but the program, or replies of isotet-reader: then each next look
-        // comes later, up to a second.
+        // What is still there may not be of these files, but the program, or replies of isotet-reader: then each next
+        // look comes later, up to a second.
         const bool helped = slices > 0 || !excess(1);
         rest_ = helped ? 0 : std::min(2 * rest_ + 1, 511U);
         looks_to_skip_ = rest_;

@@ -21,8 +21,8 @@ void each_until_cancelled(std::size_t count, std::size_t grain, const Progress& 
     });
 }
 
-/// Calls sort(comparison), which sorts by it. After a cancel the comparison throws what is caught here, and the items are
-/// in any order.
+/// Calls sort(comparison), which sorts by it. After a cancel the comparison throws what is caught here, and the items
+/// are in any order.
 template <class Before, class Sort>
 void sort_until_cancelled(const Progress& progress, const Before& before, const Sort& sort) {
 #ifdef __wasm__ // throwing there ends all

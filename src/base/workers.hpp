@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// What WebAssembly's workers may do too (web/workers.cpp): the loops of extraction. Elsewhere they are loops as all others.
+// What WebAssembly's workers may do too (web/workers.cpp): the loops of extraction. Elsewhere they are loops as all
+// others.
 #pragma once
 
 #include <cstddef>
@@ -22,8 +23,9 @@ inline bool is_worker() {
 
 /// As parallel_ranges().
 ///
-/// `body`   in a worker takes no lock, reads no file, reports no progress, throws nothing, and neither copies nor drops a
-///          std::shared_ptr that others have: the libraries of WebAssembly are built without threads. It may take memory.
+/// `body`   in a worker takes no lock, reads no file, reports no progress, throws nothing, and neither copies nor drops
+///          a std::shared_ptr that others have: the libraries of WebAssembly are built without threads. It may take
+///          memory.
 template <class Body>
 void worker_ranges(std::size_t count, std::size_t grain, const Body& body) {
 #ifdef ISOTET_WEB_WORKERS

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// isotet as WebAssembly for other pages (js/isotet.js): one grid, from a file or from arrays, and its isosurfaces as arrays in
-// the module's memory. JavaScript calls with a JSON text, and is given one.
+// isotet as WebAssembly for other pages (js/isotet.js): one grid, from a file or from arrays, and its isosurfaces as
+// arrays in the module's memory. JavaScript calls with a JSON text, and is given one.
 #include <algorithm>
 #include <array>
 #include <cstddef>

@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// What a module with workers has beside the others (portable/web_workers.h). The C and C++ libraries were built without threads:
-// their memory is behind a lock (the linker gives calls of malloc() to __wrap_malloc()), and so is what static variables begin with.
+// What a module with workers has beside the others (portable/web_workers.h). The C and C++ libraries were built without
+// threads: their memory is behind a lock (the linker gives calls of malloc() to __wrap_malloc()), and so is what static
+// variables begin with.
 #include <atomic>
 #include <chrono>
 #include <cstddef>

@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// A worker of isotet_engine_threads.wasm (isotet_threads.js): says that it has begun, and waits in the module for work until it is ended.
+// A worker of isotet_engine_threads.wasm (isotet_threads.js): says that it has begun, and waits in the module for work
+// until it is ended.
 
 /** @param told  {module, memory, number, stack: where it ends, variables}: as beginThreads() gives them */
 function run({module, memory, number, stack, variables}, say) {

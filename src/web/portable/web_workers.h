@@ -1,8 +1,8 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Workers of JavaScript (js/isotet_threads.js) that help the thread that JavaScript calls. They wait in wait_for_work(), come in
-// through a door where there is a job, and go out when all of its pieces are taken; the first thread takes pieces as well, closes
-// the door, and waits until all are out. It spins: that of a page must not sleep. What is waited for may have trapped, so every
-// loop that waits looks at `failed`.
+// Workers of JavaScript (js/isotet_threads.js) that help the thread that JavaScript calls. They wait in
+// wait_for_work(), come in through a door where there is a job, and go out when all of its pieces are taken; the first
+// thread takes pieces as well, closes the door, and waits until all are out. It spins: that of a page must not sleep.
+// What is waited for may have trapped, so every loop that waits looks at `failed`.
 #pragma once
 
 #include <algorithm>

@@ -39,8 +39,8 @@ const std::vector<CellOfCube>& cells_of_cube(int kind) {
     return cells[static_cast<std::size_t>(kind)];
 }
 
-/// In the first half of the cubes tets, then cells of all kinds; neighbours need not fit. Whole numbers, so that there are
-/// ties with the isovalue 0, and edges of many clusters; a point without data.
+/// In the first half of the cubes tets, then cells of all kinds; neighbours need not fit. Whole numbers, so that there
+/// are ties with the isovalue 0, and edges of many clusters; a point without data.
 Result<PackedGrid> small_grid() {
     constexpr int row = side + 1;
     std::vector<float> points, values;

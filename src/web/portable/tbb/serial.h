@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// What isotet uses of oneTBB, for one thread. With workers (web_workers.h), sums are theirs too, and each has values of its own.
+// What isotet uses of oneTBB, for one thread. With workers (web_workers.h), sums are theirs too, and each has values of
+// its own.
 #pragma once
 
 #include <algorithm>
