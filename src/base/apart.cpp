@@ -57,7 +57,7 @@ bool has_ended(pid_t process, int flags) {
 
 [[noreturn]] void carry_out_as_child(pid_t parent, const std::function<void()>& work, std::atomic<bool>& done) {
 #ifdef __linux__
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL); // however this process ends, nobody would wait for the result
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL); // without this process there is no use for the result
 #endif
     if (::getppid() != parent) ::_exit(1);
     work();
