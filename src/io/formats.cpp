@@ -125,13 +125,16 @@ Result<Head> read_head(const std::string& path) {
         return Error{ErrorCode::file, fmt::format("{} is {}, but only files can be read", path, other)};
     }
     constexpr std::size_t of_others = 4096, of_hdf5 = 65536; // HDF5 has the first names behind its own tables
-    std::string bytes(of_hdf5, '\0');
-    const ssize_t count = ::pread(descriptor.number(), bytes.data(), bytes.size(), 0);
+    std::string bytes(of_others, '\0');
+    ssize_t count = ::pread(descriptor.number(), bytes.data(), bytes.size(), 0);
+    if (count > 0 && bytes.starts_with("\x89HDF")) {
+        bytes.resize(of_hdf5);
+        count = ::pread(descriptor.number(), bytes.data(), bytes.size(), 0);
+    }
     if (count < 0) return failed("cannot be read", errno);
     if (count == 0 && !is_marker(extension_of(path)))
         return Error{ErrorCode::file, fmt::format("{} is empty, so it is no grid", path)};
-    bytes.resize(
-        std::min<std::size_t>(static_cast<std::size_t>(count), bytes.starts_with("\x89HDF") ? of_hdf5 : of_others));
+    bytes.resize(static_cast<std::size_t>(count));
     return Head{std::move(bytes), false};
 }
 

@@ -365,6 +365,15 @@ Result<ReadResult> read_step(const std::string& path, const ReadOptions& options
     return result;
 }
 
+/// What is kept of a grid's files while it is read is gone behind it.
+template <class Work>
+auto with_kept_files(ReadOptions options, const Work& work) {
+    if (!options.kept) options.kept = keep_files();
+    auto result = work(options);
+    options.kept->forget();
+    return result;
+}
+
 /// The only place where a failed allocation of a reader becomes an error.
 template <class Value, class Work>
 Result<Value> without_exceptions(const std::string& path, const Run& run, const Work& work) {
@@ -395,7 +404,8 @@ Result<FileInfo> inspect(const std::string& path, const ReadOptions& options, co
 Result<SurveyedGrid> read_surveyed(const std::string& path, const ReadOptions& options, const Run& run) {
     return io::without_exceptions<SurveyedGrid>(path, run, [&](const Progress& progress) -> Result<SurveyedGrid> {
         SurveyedGrid surveyed;
-        auto read = io::read_step(path, options, progress, &surveyed);
+        auto read = io::with_kept_files(
+            options, [&](const ReadOptions& all) { return io::read_step(path, all, progress, &surveyed); });
         if (!read) return read.error();
         surveyed.read = *std::move(read);
         return surveyed;
@@ -403,8 +413,9 @@ Result<SurveyedGrid> read_surveyed(const std::string& path, const ReadOptions& o
 }
 
 Result<ReadResult> read(const std::string& path, const ReadOptions& options, const Run& run) {
-    return io::without_exceptions<ReadResult>(
-        path, run, [&](const Progress& progress) { return io::read_step(path, options, progress); });
+    return io::without_exceptions<ReadResult>(path, run, [&](const Progress& progress) {
+        return io::with_kept_files(options, [&](const ReadOptions& all) { return io::read_step(path, all, progress); });
+    });
 }
 
 } // namespace isotet

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <isotet/export.hpp>
 #include <isotet/result.hpp>
@@ -45,8 +46,12 @@ public:
     /// Errors   as open_plain_file()
     static Result<ByteSource> open(const std::string& path);
 
-    /// Borrows the text.
+    /// Borrows the text, or shares its owner.
     explicit ByteSource(std::string_view text) : text_(text), size_(text.size()) {}
+    ByteSource(std::string_view text, std::shared_ptr<const void> owner)
+        : text_(text), owner_(std::move(owner)), size_(text.size()) {}
+
+    bool is_in_memory() const noexcept { return !file_; }
 
     std::size_t size() const noexcept { return size_; }
 
@@ -71,6 +76,7 @@ private:
 
     std::shared_ptr<const OpenFile> file_; ///< or
     std::string_view text_;
+    std::shared_ptr<const void> owner_; ///< of the text
     std::size_t size_;
 };
 

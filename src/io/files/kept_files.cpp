@@ -20,11 +20,26 @@ void KeptFiles::look_at(const std::string& grid) {
     if (grid == grid_) return;
     grid_ = grid;
     kept_.clear();
+    bytes_ = 0;
+}
+
+void KeptFiles::forget() {
+    const std::lock_guard lock(mutex_);
+    kept_.clear();
+    bytes_ = 0;
+}
+
+bool KeptFiles::has_room_for(std::size_t bytes) const {
+    constexpr std::size_t most = std::size_t{64} << 20;
+    const std::lock_guard lock(mutex_);
+    return bytes <= most && bytes_ <= most - bytes;
 }
 
 void KeptFiles::keep(const std::string& path, const Identity& identity, const io::WholeFile& file) {
     const std::lock_guard lock(mutex_);
+    if (const auto before = kept_.find(path); before != kept_.end()) bytes_ -= before->second.file.text().size();
     kept_.insert_or_assign(path, Kept{identity, file});
+    bytes_ += file.text().size();
 }
 
 std::optional<io::WholeFile> KeptFiles::get(const std::string& path) const {
@@ -37,7 +52,10 @@ std::optional<io::WholeFile> KeptFiles::get(const std::string& path) const {
 std::optional<io::WholeFile> KeptFiles::take(const std::string& path) {
     auto file = get(path);
     const std::lock_guard lock(mutex_);
-    kept_.erase(path);
+    if (const auto kept = kept_.find(path); kept != kept_.end()) {
+        bytes_ -= kept->second.file.text().size();
+        kept_.erase(kept);
+    }
     return file;
 }
 
@@ -52,6 +70,26 @@ Result<WholeFile> look_into_file(const std::string& path, const ReadOptions& opt
     auto file = WholeFile::read(path, progress, most);
     if (file && identity) options.kept->keep(path, *identity, *file);
     return file;
+}
+
+Result<ByteSource> open_source(const std::string& path, const ReadOptions& options, const Progress& progress,
+                               bool (*goes_by)(std::string_view head)) {
+    constexpr std::size_t small_bytes = std::size_t{1} << 20, of_head = std::size_t{1} << 13;
+    const auto identity = options.kept ? KeptFiles::identity_of(path) : std::nullopt;
+    if (identity)
+        if (const auto kept = options.kept->get(path); kept && kept->is_whole()) return kept->source();
+    auto source = ByteSource::open(path);
+    if (!source || !identity || !options.kept->has_room_for(source->size())) return source;
+    if (source->size() > small_bytes) {
+        Scratch scratch;
+        const auto head = source->view(0, of_head, scratch);
+        if (!head) return head.error();
+        if (!goes_by(*head)) return source;
+    }
+    const auto file = WholeFile::read(path, progress);
+    if (!file) return file.error();
+    options.kept->keep(path, *identity, *file);
+    return file->source();
 }
 
 Result<WholeFile> take_file(const std::string& path, const ReadOptions& options, const Progress& progress) {

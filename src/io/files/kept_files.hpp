@@ -8,9 +8,11 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include <isotet/read.hpp>
 
+#include "io/files/byte_source.hpp"
 #include "io/files/whole_file.hpp"
 
 namespace isotet {
@@ -32,6 +34,11 @@ public:
     /// In place of what was kept of it before. `identity`   before it was read
     void keep(const std::string& path, const Identity& identity, const io::WholeFile& file);
 
+    /// Of files that need not be kept, with what is kept already.
+    bool has_room_for(std::size_t bytes) const;
+    /// All of them.
+    void forget();
+
     /// Nothing where it was not kept, or changed since.
     std::optional<io::WholeFile> get(const std::string& path) const;
     std::optional<io::WholeFile> take(const std::string& path);
@@ -44,6 +51,7 @@ private:
     mutable std::mutex mutex_;
     std::string grid_;
     std::map<std::string, Kept> kept_;
+    std::size_t bytes_ = 0; ///< of all of them
 };
 
 namespace io {
@@ -52,6 +60,12 @@ namespace io {
 /// Errors   as WholeFile::read()
 Result<WholeFile> look_into_file(const std::string& path, const ReadOptions& options, const Progress& progress,
                                  std::size_t most = WholeFile::all);
+
+/// A file of which readers fetch parts: in memory and kept, where `options` have room for it, if it is small or
+/// `goes_by()` says of its first bytes that all of it is gone through anyhow; else open.
+/// Errors   as ByteSource::open(), WholeFile::read()
+Result<ByteSource> open_source(const std::string& path, const ReadOptions& options, const Progress& progress,
+                               bool (*goes_by)(std::string_view head));
 
 /// The whole file, of which what look_into_file() kept is not read again.
 Result<WholeFile> take_file(const std::string& path, const ReadOptions& options, const Progress& progress);

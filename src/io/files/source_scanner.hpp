@@ -17,14 +17,16 @@ namespace isotet::io {
 class SourceScanner {
 private:
     static constexpr std::size_t window_bytes = std::size_t{1} << 16, longest_word = 4096;
+    static constexpr std::size_t first_bytes = 2 * longest_word; ///< behind an array, where another one may follow soon
 
     /// Calls use(scanner) with the cursor in a window of the text, and follows it.
     template <class Use>
     auto scan(const Use& use) {
         const std::size_t ahead = std::min(longest_word, left());
         if (position_ < begin_ || position_ + ahead > begin_ + window_.size()) {
+            const bool goes_on = position_ >= begin_ && position_ <= begin_ + window_.size() && !window_.empty();
             begin_ = position_;
-            const auto view = source_.view(begin_, std::min(window_bytes, left()), scratch_);
+            const auto view = source_.view(begin_, std::min(goes_on ? window_bytes : first_bytes, left()), scratch_);
             if (!view) error_ = view.error();
             window_ = view ? *view : std::string_view();
         }

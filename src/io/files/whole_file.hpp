@@ -13,6 +13,7 @@
 #include <isotet/result.hpp>
 
 #include "base/buffer.hpp"
+#include "io/files/byte_source.hpp"
 #include "io/files/plain_file.hpp"
 
 namespace isotet::io {
@@ -34,6 +35,8 @@ public:
     static Result<WholeFile> read_rest(WholeFile begin, const std::string& path, const Progress& progress);
 
     bool is_whole() const noexcept { return whole_; }
+    /// Shares the bytes.
+    ByteSource source() const { return {text(), bytes_}; }
     std::string_view text() const noexcept { return {reinterpret_cast<const char*>(bytes_->data()), bytes_->size()}; }
 
 private:

@@ -18,6 +18,7 @@
 #include "base/parallel.hpp"
 #include "io/files/escape.hpp"
 #include "io/files/index_file.hpp"
+#include "io/files/kept_files.hpp"
 #include "io/files/text_scanner.hpp"
 #include "io/files/whole_file.hpp"
 #include "io/grdecl/corner_points.hpp"
@@ -280,7 +281,7 @@ public:
 
 private:
     Result<DeckText> open_file(const std::string& path) {
-        auto whole = WholeFile::read(path, progress_);
+        auto whole = look_into_file(path, options_, progress_);
         if (!whole) return whole.error();
         if (std::ranges::find(opened_, path) == opened_.end()) opened_.push_back(path);
         auto owner = std::make_shared<const WholeFile>(std::move(*whole));

@@ -15,6 +15,7 @@
 #include "base/parallel.hpp"
 #include "grid/cells.hpp"
 #include "io/files/escape.hpp"
+#include "io/files/kept_files.hpp"
 #include "io/files/read_tuples.hpp"
 #include "io/files/text_scanner.hpp"
 #include "io/pieces/join.hpp"
@@ -119,13 +120,19 @@ Result<void> take_structured(const LegacyFile& file, Piece& piece, std::vector<s
     return {};
 }
 
-/// A file that is opened again.
+/// A file that is opened again, unless it is in memory.
 struct LegacyPath {
+    LegacyPath(std::string file, const ByteSource& source) : path(std::move(file)), size(source.size()) {
+        if (source.is_in_memory()) held = source;
+    }
+
     std::string path;
     std::size_t size;
+    std::optional<ByteSource> held = {};
 
     /// Errors   file: it was changed meanwhile
     Result<ByteSource> open() const {
+        if (held) return *held;
         auto source = ByteSource::open(path);
         if (source && source->size() != size)
             return Error{ErrorCode::file, fmt::format("{} was changed while it was read", escaped(path))};
@@ -224,8 +231,7 @@ Result<void> take_cells(const ByteSource& source, const std::string& path, Legac
         cells.cells = file.cells;
         cells.cell_type_count = file.cell_type_count;
         cells.one_type = file.one_type;
-        piece.unread =
-            std::make_shared<const LegacyCellSource>(LegacyPath{path, source.size()}, std::move(cells), progress);
+        piece.unread = std::make_shared<const LegacyCellSource>(LegacyPath{path, source}, std::move(cells), progress);
         return {};
     }
     if (file.cells.in_file) {
@@ -327,8 +333,8 @@ Result<Loaded> load_legacy(const ByteSource& source, const ReadOptions& options,
         if (field.name == vtk_xml::ghost_rank_name && field.values.tuples() == piece.cell_count())
             vtk_xml::mark_left_out(field.values, field.name, piece.left_out);
         if (!vtk_xml::is_ghost_array(field.name)) {
-            if (auto taken = take_field({path, source.size()}, *file, field, piece.unread && !are_counted(options),
-                                        progress, loaded, piece);
+            if (auto taken = take_field({path, source}, *file, field, piece.unread && !are_counted(options), progress,
+                                        loaded, piece);
                 !taken)
                 return taken.error();
         } else if (field.values.tuples() == piece.cell_count())
@@ -340,7 +346,9 @@ Result<Loaded> load_legacy(const ByteSource& source, const ReadOptions& options,
 
 Result<Loaded> load_legacy_file(const std::string& path, const ReadOptions& options, Depth depth,
                                 const Progress& progress) {
-    const auto source = ByteSource::open(path);
+    const auto source = open_source(path, options, progress, [](std::string_view head) {
+        return head.substr(0, 1024).find("\nASCII") != std::string_view::npos; // numbers of which none can be skipped
+    });
     if (!source) return source.error();
     auto loaded = load_legacy(*source, options, depth, progress, path);
     if (!loaded) return in_file(path, loaded.error());

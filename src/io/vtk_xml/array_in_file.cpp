@@ -13,10 +13,12 @@ namespace isotet::io::vtk_xml {
 ArrayInFile::ArrayInFile(std::string path, std::shared_ptr<const Document> document, const StoredArray& stored)
     : path_(std::move(path)),
       document_(std::move(document)),
+      held_(document_->source.is_in_memory() ? document_->source : ByteSource(std::string_view())),
       size_(document_->source.size()),
       stored_(stored.in(ByteSource(std::string_view()))) {}
 
 Result<StoredArray> ArrayInFile::open() const {
+    if (held_.size() == size_) return stored_.in(held_);
     const auto source = ByteSource::open(path_);
     if (!source) return source.error();
     if (source->size() != size_)

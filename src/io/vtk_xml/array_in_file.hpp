@@ -13,10 +13,11 @@
 
 namespace isotet::io::vtk_xml {
 
-/// Opens the file whenever it is asked: the pieces of a grid may be more files than a process may have open.
+/// Opens the file whenever it is asked, unless it is in memory: the pieces of a grid may be more files than a process may
+/// have open.
 class ArrayInFile {
 public:
-    /// `document`   how the file is written; its source is used here only
+    /// `document`   how the file is written; its source is taken here, if it is in memory
     ArrayInFile(std::string path, std::shared_ptr<const Document> document, const StoredArray& stored);
 
     const std::string& path() const noexcept { return path_; }
@@ -27,6 +28,7 @@ public:
 private:
     std::string path_;
     std::shared_ptr<const Document> document_;
+    ByteSource held_;  ///< in memory; else empty
     std::size_t size_; ///< of the file
     StoredArray stored_;
 };

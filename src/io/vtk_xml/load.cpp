@@ -11,6 +11,7 @@
 #include "base/parallel.hpp"
 #include "io/files/first_error.hpp"
 #include "io/files/index_file.hpp"
+#include "io/files/kept_files.hpp"
 #include "io/files/pace.hpp"
 #include "io/files/text_scanner.hpp"
 #include "io/reader.hpp"
@@ -88,6 +89,9 @@ std::string_view attribute_of(std::string_view tag, std::string_view name) {
     return {};
 }
 
+/// Tags that stand between arrays are looked for in all of the file.
+bool has_inline_data(std::string_view head) { return head.find("appended") == std::string_view::npos; }
+
 /// The time of all files that have one, if it is the same.
 std::vector<double> common_time(std::span<const Loaded> parts) {
     std::vector<double> common;
@@ -118,13 +122,13 @@ Result<Loaded> load(const ByteSource& source, std::string_view type, const ReadO
             fmt::format("this is a VTK file of type {}, not {}", in_quotes(document->type), in_quotes(type)));
     if (!document->primary()) return invalid_data(fmt::format("there is no element {}", type));
     auto loaded = load_document(document, path, options, depth, ids, progress);
-    document->source = ByteSource(std::string_view()); // cells that are read later open the file again
+    document->source = ByteSource(std::string_view()); // cells that are read later hold it, or open the file again
     return loaded;
 }
 
 Result<Loaded> load_file(const std::string& path, std::string_view type, const ReadOptions& options, Depth depth,
                          bool ids, const Progress& progress) {
-    const auto source = ByteSource::open(path);
+    const auto source = open_source(path, options, progress, has_inline_data);
     if (!source) return source.error();
     auto loaded = load(*source, type, options, depth, ids, progress, path);
     if (!loaded) return in_file(path, loaded.error());
