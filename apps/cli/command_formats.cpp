@@ -42,7 +42,7 @@ Result<ExitCode> run_formats(const FormatsCommand& command) {
                         {"writes_grid", format.writes_grid},
                         {"reads_surface", format.reads_surface},
                         {"writes_surface", format.writes_surface},
-                        {"needs_vtk", format.needs_vtk}});
+                        {"reader_process", format.reader_process}});
     }
     Json report = json_report("formats");
     report["formats"] = std::move(list);

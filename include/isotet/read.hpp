@@ -28,7 +28,7 @@ struct Format {
     std::string title;                   ///< "VTK XML unstructured grid"
     std::vector<std::string> extensions; ///< ".vtu"; lower case
     bool reads_grid = false, writes_grid = false, reads_surface = false, writes_surface = false;
-    bool needs_vtk = false; ///< read by the program isotet-reader, in a child process
+    bool reader_process = false; ///< read by the program isotet-reader, in a child process
 };
 ISOTET_API std::vector<Format> formats();
 

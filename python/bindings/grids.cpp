@@ -105,7 +105,7 @@ nb::list formats_out() {
         entry["writes_grid"] = format.writes_grid;
         entry["reads_surface"] = format.reads_surface;
         entry["writes_surface"] = format.writes_surface;
-        entry["needs_vtk"] = format.needs_vtk;
+        entry["reader_process"] = format.reader_process;
         out.append(entry);
     }
     return out;

@@ -55,7 +55,7 @@ std::vector<const GridReader*> grid_readers() {
     std::vector<const GridReader*> result;
     for (const GridReader& reader : own_readers()) result.push_back(&reader);
 #if ISOTET_IO
-    for (const GridReader& reader : vtk_readers()) result.push_back(&reader);
+    for (const GridReader& reader : confined_readers()) result.push_back(&reader);
 #endif
     return result;
 }

@@ -29,8 +29,8 @@ struct GridReader {
 /// Readers that are always there.
 std::span<const GridReader> own_readers();
 
-/// src/io/confined: with ISOTET_IO only.
-std::span<const GridReader> vtk_readers();
+/// Those whose files the program isotet-reader reads: with ISOTET_IO only.
+std::span<const GridReader> confined_readers();
 
 /// True when `options` ask for the field; other fields are not read.
 ISOTET_API bool wanted(const ReadOptions& options, Association association, std::string_view name);

@@ -22,7 +22,7 @@ std::vector<std::string> bench(const std::vector<std::string>& more) {
 
 TEST_F(Program, BenchMeasuresWhatNeedsNoDeviceAndSaysWhichToTake) {
     const json report = json_of(bench({"make:kuhn:8:sphere", "-i", "0.5,0.7"}));
-    EXPECT_EQ(report["schema"], 3);
+    EXPECT_EQ(report["schema"], 4);
     EXPECT_EQ(report["field"], "sphere");
     EXPECT_EQ(report["isovalues"], json({0.5, 0.7}));
     EXPECT_TRUE(report["device"].is_null());

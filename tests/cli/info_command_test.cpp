@@ -12,7 +12,7 @@ using nlohmann::json;
 TEST_F(Program, InfoTellsCellsFieldsAndRanges) {
     put_content(path("g.msh"), small_grid({{"p", {1, 2, 3, 4, 9}}, {"c", {-5, 7}, 0, true}}));
     const json report = json_of({"info", path("g.msh")});
-    EXPECT_EQ(report["schema"], 3);
+    EXPECT_EQ(report["schema"], 4);
     EXPECT_EQ(report["points"], 5);
     EXPECT_EQ(report["cells"], 2);
     EXPECT_EQ(report["tets"], 2);

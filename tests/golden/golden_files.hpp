@@ -15,7 +15,7 @@ namespace isotet::test {
 
 struct GoldenFile {
     const char* path;       ///< below data/
-    bool needs_vtk = false; ///< read with ISOTET_IO only
+    bool reader_process = false; ///< read with ISOTET_IO only
 
     friend void PrintTo(const GoldenFile& file, std::ostream* out) { *out << file.path; }
 };

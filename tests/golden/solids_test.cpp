@@ -16,7 +16,7 @@ class GoldenSolids : public testing::TestWithParam<GoldenFile> {};
 std::vector<GoldenFile> grids_for_solids() {
     std::vector<GoldenFile> files;
     for (const GoldenFile& file : golden_files)
-        if (!file.needs_vtk || ISOTET_GOLDEN_VTK) files.push_back(file);
+        if (!file.reader_process || ISOTET_GOLDEN_VTK) files.push_back(file);
     return files;
 }
 

@@ -39,7 +39,7 @@ protected:
     int for_grids(std::uint64_t max_tets, F&& f) {
         int grids = 0;
         for (const GoldenFile& file : golden_files) {
-            if (file.needs_vtk && !ISOTET_GOLDEN_VTK) continue;
+            if (file.reader_process && !ISOTET_GOLDEN_VTK) continue;
             SCOPED_TRACE(file.path);
             const Grid grid = read_golden(file.path).value().grid;
             PackedGrid packed =

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// The main function of tests that read through VTK: isotet-reader is found in PATH.
+// The main function of tests that read by isotet-reader: it is found in PATH.
 #include <cstdlib>
 #include <filesystem>
 #include <string>

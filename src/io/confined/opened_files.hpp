@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Every file that VTK, HDF5 and the others open passes here: the program's own open() stands before the C library's.
+// Every file that HDF5, CGNS and the readers open passes here: the program's own open() stands before the C library's.
 #pragma once
 
 #include <string>

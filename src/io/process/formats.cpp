@@ -51,7 +51,7 @@ int recognizes_ensight(Head head, std::string_view extension) {
 Format grid_format(std::string name, std::string title, std::vector<std::string> extensions) {
     Format format{std::move(name), std::move(title), std::move(extensions)};
     format.reads_grid = true;
-    format.needs_vtk = true;
+    format.reader_process = true;
     return format;
 }
 
@@ -123,7 +123,7 @@ std::vector<GridReader> all_readers(std::index_sequence<rows...>) {
 
 } // namespace
 
-std::span<const GridReader> vtk_readers() {
+std::span<const GridReader> confined_readers() {
     static const std::vector<GridReader> readers =
         all_readers(std::make_index_sequence<std::tuple_size_v<std::decay_t<decltype(table())>>>());
     return readers;
