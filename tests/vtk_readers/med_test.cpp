@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <isotet/make.hpp>
 #include <isotet/read.hpp>
 
 #include "support/places.hpp"
@@ -123,10 +124,10 @@ TEST_F(ReadMed, LinearCellsAreSoundInOneMesh) {
     {
         MedWriter file(path());
         // A cube below a pyramid, beside a wedge and a prism of six sides.
-        file.mesh("m", {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1, .5, .5, 2,
-                        2, 0, 0, 2, 0, 1, // the prism
-                        5, 0, 0, 6, 0, 0, 7, 1, 0, 6, 2, 0, 5, 2, 0, 4, 1, 0, 5, 0, 1, 6, 0, 1, 7, 1, 1, 6, 2, 1,
-                        5, 2, 1, 4, 1, 1});
+        file.mesh("m", {0, 0, 0, 1, 0, 0, 1,  1,  0, 0, 1, 0, 0, 0, 1, 1, 0, 1,
+                        1, 1, 1, 0, 1, 1, .5, .5, 2, 2, 0, 0, 2, 0, 1, // the prism
+                        5, 0, 0, 6, 0, 0, 7,  1,  0, 6, 2, 0, 5, 2, 0, 4, 1, 0,
+                        5, 0, 1, 6, 0, 1, 7,  1,  1, 6, 2, 1, 5, 2, 1, 4, 1, 1});
         file.cells("HE8", 8, {1, 4, 3, 2, 5, 8, 7, 6});
         file.cells("PY5", 5, {5, 8, 7, 6, 9});
         file.cells("PE6", 6, {2, 10, 3, 6, 11, 7});
@@ -426,8 +427,7 @@ TEST_F(ReadMed, ABrokenFieldIsLeftOutAndOthersAreRead) {
     std::vector<std::string> left_out;
     for (const LeftOut& item : result->info.left_out) left_out.push_back(item.name);
     std::ranges::sort(left_out);
-    EXPECT_EQ(left_out,
-              (std::vector<std::string>{"beyond", "faces", "nodes", "short", "type", "unknown profile"}));
+    EXPECT_EQ(left_out, (std::vector<std::string>{"beyond", "faces", "nodes", "short", "type", "unknown profile"}));
     ReadOptions options;
     options.point_fields = {"short"};
     EXPECT_FALSE(read(path(), options));
@@ -548,6 +548,26 @@ TEST(MedSamples, OfThreeKindsOfCellsAreRead) {
     EXPECT_EQ(report.cells_left_out + report.repeated_tets + report.negative_tets, 0u);
     EXPECT_EQ(result->grid.point_fields.size(), 3u);
     EXPECT_EQ(result->grid.cell_fields.size(), 3u);
+}
+
+TEST_F(ReadMed, TakesLittleMoreMemoryThanTheGridHas) {
+    const Grid made = make_grid({.shape = "kuhn", .side = 48, .fields = {}}).value();
+    const std::size_t cells = made.cells.count();
+    MedNumbers nodes; // MED's tets are those of VTK from the other side
+    for (std::size_t cell = 0; cell < cells; ++cell)
+        for (const std::size_t corner : {0, 2, 1, 3})
+            nodes.push_back(static_cast<std::int64_t>(made.cells.connectivity.at(4 * cell + corner)) + 1);
+    {
+        MedWriter file(path());
+        file.mesh("m", numbers_of(made.points));
+        file.cells("TE4", 4, nodes);
+    }
+    ReadOptions options;
+    options.memory_limit = 45'000'000;
+    const auto result = read(path(), options);
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(numbers_of(result->grid.points), numbers_of(made.points));
+    EXPECT_EQ(numbers_of(result->grid.cells.connectivity), numbers_of(made.cells.connectivity));
 }
 
 } // namespace

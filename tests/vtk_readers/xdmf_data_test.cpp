@@ -2,6 +2,7 @@
 // What DataItems, geometries and topologies of XDMF may be.
 #include <gtest/gtest.h>
 
+#include <isotet/make.hpp>
 #include <isotet/read.hpp>
 
 #include "support/temporary_folder.hpp"
@@ -279,6 +280,31 @@ TEST_F(ReadXdmfData, FollowsBaseOffsetAndOrder) {
     EXPECT_NE(error("Order='0 1 2'").find("Order"), std::string::npos);
     EXPECT_NE(error("Order='0 1 2 4'").find("Order"), std::string::npos);
     EXPECT_NE(error("NumberOfElements='3'").find("3 elements are stated, 2 are there"), std::string::npos);
+}
+
+/// As h5py cuts what it compresses: HDF5 itself would list each row of each chunk.
+TEST_F(ReadXdmfData, TakesLittleMoreMemoryThanTheGridHas) {
+    const Grid made = make_grid({.shape = "kuhn", .side = 48, .fields = {}}).value();
+    std::vector<double> points;
+    for (std::size_t i = 0; i < made.points.size(); ++i) points.push_back(made.points.at(i / 3, i % 3));
+    std::vector<std::int64_t> corners;
+    for (std::size_t i = 0; i < made.cells.connectivity.size(); ++i)
+        corners.push_back(static_cast<std::int64_t>(made.cells.connectivity.at(i)));
+    {
+        Hdf5Writer file(folder_.file("large.h5"));
+        file.stored<double>("/points", points, {points.size() / 3, 3}, {.chunk = {4000, 1}, .deflated = true});
+        file.stored<std::int64_t>("/cells", corners, {corners.size() / 4, 4}, {.chunk = {12000, 1}, .deflated = true});
+    }
+    ReadOptions options;
+    options.memory_limit = 100'000'000;
+    const auto result = read_grid("<Geometry GeometryType='XYZ'>" + xdmf_item("Format='HDF'", "large.h5:/points") +
+                                      "</Geometry>" + "<Topology TopologyType='Tetrahedron'>" +
+                                      xdmf_item("Format='HDF'", "large.h5:/cells") + "</Topology>",
+                                  options);
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(values_in(result->grid.points), points);
+    EXPECT_EQ(result->grid.cells.connectivity.type(), ScalarType::int32);
+    EXPECT_EQ(values_in(result->grid.cells.connectivity), Values(corners.begin(), corners.end()));
 }
 
 } // namespace

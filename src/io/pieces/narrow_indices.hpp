@@ -51,9 +51,9 @@ public:
     }
 
     /// Nothing when one did not fit.
-    std::optional<Array> to_array() && {
+    std::optional<Array> to_array(std::size_t components = 1) && {
         if (!fit_) return std::nullopt;
-        return std::move(values_).to_array();
+        return std::move(values_).to_array(components);
     }
 
 private:

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -14,6 +15,7 @@
 #include "io/confined/hdf5/hdf5_file.hpp"
 #include "io/confined/hdf5/hdf5_filters.hpp"
 #include "io/confined/hdf5/hdf5_handle.hpp"
+#include "io/confined/hdf5/hdf5_rows.hpp"
 #include "io/confined/hdf5/hdf5_unwritten.hpp"
 #include "io/pieces/loaded.hpp"
 
@@ -57,6 +59,17 @@ bool select(hid_t space, const Box& box, std::vector<std::uint64_t>& dimensions)
     return H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), stride.data(), count.data(), nullptr) >= 0;
 }
 
+/// All values of a data set in the file itself, one a tuple; nothing where it has no such rows.
+std::optional<Result<Array>> read_whole(const std::string& file, const std::string& name, HdfNumbers numbers) {
+    const auto rows = Hdf5Rows::open(file);
+    const auto shape = rows ? rows->shape(name) : std::nullopt;
+    if (!shape) return std::nullopt;
+    auto values = numbers == HdfNumbers::indices ? rows->read_indices(name, 0, shape->rows) : rows->read(name);
+    if (!values || values->components() == 1) return values;
+    auto owner = std::make_shared<const Array>(*values);
+    return Result(Array(values->type(), values->data(), values->size(), 1, std::move(owner)));
+}
+
 } // namespace
 
 std::optional<ScalarType> scalar_type_of(hid_t type) {
@@ -83,7 +96,8 @@ std::uint64_t ShapedValues::count() const {
     return count;
 }
 
-Result<ShapedValues> read_hdf5_array(const std::string& file, const std::string& name, const Box& box, Depth depth) {
+Result<ShapedValues> read_hdf5_array(const std::string& file, const std::string& name, const Box& box, Depth depth,
+                                     HdfNumbers numbers) {
     const auto failed = [&](std::string_view what) {
         return broken(file, fmt::format("data set \"{}\" {}", escaped(name), what));
     };
@@ -109,8 +123,15 @@ Result<ShapedValues> read_hdf5_array(const std::string& file, const std::string&
     if (count == too_many) return failed("is too large");
     result.values = Array(*type, nullptr, 0, 1, nullptr);
     if (depth == Depth::description) return result;
-    const hsize_t memory_count = count;
-    const Handle memory(H5Screate_simple(1, &memory_count, nullptr), H5Sclose);
+    if (box.count.empty() && (rank == 1 || rank == 2) && count > 0)
+        if (auto values = read_whole(file, name, numbers)) {
+            if (!*values) return values->error();
+            result.values = **std::move(values);
+            return result;
+        }
+    // Of another shape in memory HDF5 would list each row of each chunk.
+    const std::vector<hsize_t> shape(result.dimensions.begin(), result.dimensions.end());
+    const Handle memory(rank == 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(rank, shape.data(), nullptr), H5Sclose);
     return Array(result.values).visit([&](auto none) -> Result<ShapedValues> {
         using T = typename decltype(none)::value_type;
         std::vector<std::remove_const_t<T>> values(count);

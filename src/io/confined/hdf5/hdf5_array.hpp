@@ -25,10 +25,18 @@ struct ShapedValues {
     std::uint64_t count() const;
 };
 
+/// How values come into memory.
+enum class HdfNumbers : std::uint8_t {
+    as_stored,
+    indices, ///< integers of 64 bits as int32, where all fit
+};
+
 /// Reads a data set of numbers, or only its type and shape. Other files are never opened, whatever links say.
 ///
 /// Errors   invalid_data: no such file or data set, not numbers, the box does not fit; the file is shorter than it says
-Result<ShapedValues> read_hdf5_array(const std::string& file, const std::string& name, const Box& box, Depth depth);
+/// Cost     of a whole one with up to two dimensions that of Hdf5Rows::read(); else HDF5 reads
+Result<ShapedValues> read_hdf5_array(const std::string& file, const std::string& name, const Box& box, Depth depth,
+                                     HdfNumbers numbers = HdfNumbers::as_stored);
 
 /// Names of the data sets in a group; none where there is no such group.
 std::vector<std::string> data_sets_of(const std::string& file, const std::string& group);

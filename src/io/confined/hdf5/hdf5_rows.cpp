@@ -27,7 +27,8 @@ constexpr std::size_t plain_bytes = std::size_t{4} << 20;       ///< read at onc
 constexpr std::size_t block_bytes = std::size_t{1} << 18;       ///< and of those that go by
 constexpr std::uint64_t library_rows = std::uint64_t{1} << 20;  ///< that HDF5 reads at once of those that go by
 constexpr std::uint64_t window_chunks = std::uint64_t{1} << 16; ///< of which the places are known at once
-constexpr std::uint64_t many_bytes = std::uint64_t{64} << 20;   ///< asking what is free takes longer than reading fewer
+constexpr std::uint64_t most_values = std::uint64_t{1} << 50;
+constexpr std::uint64_t many_bytes = std::uint64_t{64} << 20; ///< asking what is free takes longer than reading fewer
 
 /// An open data set with its shape.
 struct DataSet {
@@ -141,7 +142,7 @@ Result<OpenDataSet> Hdf5Rows::File::open(const std::string& name, std::uint64_t 
     const RowsShape& shape = set->shape;
     if (first > shape.rows || rows > shape.rows - first)
         return wrong(name, fmt::format("has {} rows, but {} from row {} on are needed", shape.rows, rows, first));
-    if (rows > (std::uint64_t{1} << 50) / shape.columns / size_of(shape.type)) return wrong(name, "is too large");
+    if (rows > most_values / shape.columns / size_of(shape.type)) return wrong(name, "is too large");
     return set;
 }
 
@@ -222,17 +223,17 @@ Result<Array> Hdf5Rows::read_indices(const std::string& name, std::uint64_t firs
         const auto values = read(name, first, rows);
         return values ? as_int32(*values) : values;
     }
-    if (!found || found->columns != 1 || !NarrowIndices::narrows(found->type) || first > found->rows ||
-        rows > found->rows - first)
+    if (!found || !NarrowIndices::narrows(found->type) || first > found->rows || rows > found->rows - first ||
+        rows > most_values / found->columns)
         return read(name, first, rows);
-    NarrowIndices narrow(rows);
+    NarrowIndices narrow(rows * found->columns);
     const auto done = each_block(name, first, rows, [&](std::uint64_t place, const Array& block) {
         block.visit([&]<class T>(std::span<const T> values) {
             if constexpr (std::is_integral_v<T>) narrow.add(place, values);
         });
     });
     if (!done) return done.error();
-    auto array = std::move(narrow).to_array();
+    auto array = std::move(narrow).to_array(found->columns);
     return array ? *std::move(array) : read(name, first, rows);
 }
 

@@ -50,7 +50,7 @@ public:
     Result<Array> read_some(const std::string& name, std::uint64_t first, std::uint64_t rows,
                             const std::vector<std::uint64_t>& numbers) const;
 
-    /// Some values of a data set with one column, of integers of 64 bits as int32 where all fit.
+    /// The same, of integers of 64 bits as int32 where all fit.
     ///
     /// Errors   as read()
     /// Cost     as read(), and no more memory than the int32 and a few MB a thread

@@ -102,12 +102,22 @@ std::vector<std::string> MedFile::texts(const std::string& data_set) const {
     return names;
 }
 
-Result<Array> MedFile::numbers(const std::string& data_set, std::uint64_t count) const {
+Result<void> MedFile::check(const std::string& data_set, std::uint64_t count) const {
     const auto known = rows_.shape(data_set);
     if (!known || known->columns != 1) return wrong(fmt::format("\"{}\" is no list of numbers", escaped(data_set)));
     if (known->rows != count)
         return wrong(fmt::format("\"{}\" has {} numbers, but {} are needed", escaped(data_set), known->rows, count));
+    return {};
+}
+
+Result<Array> MedFile::numbers(const std::string& data_set, std::uint64_t count) const {
+    if (auto there = check(data_set, count); !there) return there.error();
     return rows_.read(data_set, 0, count);
+}
+
+Result<void> MedFile::each_block(const std::string& data_set, std::uint64_t count, const Hdf5Rows::Visit& visit) const {
+    if (auto there = check(data_set, count); !there) return there;
+    return rows_.each_block(data_set, 0, count, visit);
 }
 
 std::vector<MedStep> med_steps(const MedFile& file, const std::string& group) {

@@ -46,9 +46,13 @@ public:
     /// Errors   invalid_data: not there, no numbers, or not `count` of them; out_of_memory
     Result<Array> numbers(const std::string& data_set, std::uint64_t count) const;
     /// Nothing where there is no data set of this kind.
+    /// The same, which are not kept (Hdf5Rows::each_block()).
+    Result<void> each_block(const std::string& data_set, std::uint64_t count, const Hdf5Rows::Visit& visit) const;
+
     std::optional<RowsShape> shape(const std::string& data_set) const { return rows_.shape(data_set); }
 
 private:
+    Result<void> check(const std::string& data_set, std::uint64_t count) const;
     MedFile(std::string path, std::shared_ptr<const Hdf5File> file, Hdf5Rows rows)
         : path_(std::move(path)), file_(std::move(file)), rows_(std::move(rows)) {}
 

@@ -2,6 +2,7 @@
 #include "io/confined/med/med_mesh.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <limits>
 #include <optional>
@@ -18,6 +19,7 @@ namespace isotet::io::confined {
 namespace {
 
 constexpr std::size_t cells_at_once = std::size_t{1} << 14;
+constexpr std::size_t most_nodes = 32; ///< of a cell of a type
 
 /// What says how many cells there are: one more offset, or the nodes of them.
 std::string counted_in(const MedElement& element, const std::string& group) {
@@ -26,9 +28,7 @@ std::string counted_in(const MedElement& element, const std::string& group) {
 }
 
 /// Of any number that a file may hold.
-std::int64_t one_less(std::int64_t number) {
-    return static_cast<std::int64_t>(static_cast<std::uint64_t>(number) - 1);
-}
+std::int64_t one_less(std::int64_t number) { return static_cast<std::int64_t>(static_cast<std::uint64_t>(number) - 1); }
 
 /// Numbers of the file, from 1, as numbers from 0.
 Result<std::vector<std::int64_t>> from_zero(const MedFile& file, const std::string& data_set) {
@@ -69,15 +69,24 @@ std::optional<std::size_t> first_outside(const std::vector<std::int64_t>& nodes,
     return first == nodes.size() ? std::nullopt : std::optional<std::size_t>(first);
 }
 
+/// The same of a block of all numbers, `first` of which come before, in VTK's order. False: some are no points.
 template <class Index>
-void append_in_order(const std::vector<std::int64_t>& nodes, const MedElement& element,
-                     std::vector<Index>& connectivity) {
-    const std::size_t width = element.nodes, before = connectivity.size();
-    connectivity.resize(before + nodes.size());
-    core::parallel_ranges(nodes.size() / width, cells_at_once, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t at = begin * width; at < end * width; at += width)
-            for (std::size_t i = 0; i < width; ++i) 
-                connectivity[before + at + i] = static_cast<Index>(nodes[at + element.order[i]]);
+bool interlace_block(std::uint64_t first, const Array& block, const MedCellRun& run, std::uint64_t points, Index* to) {
+    const std::size_t width = run.element->nodes;
+    std::array<std::size_t, most_nodes> places{};
+    for (std::size_t i = 0; i < width; ++i) places[run.element->order[i]] = i;
+    return block.visit([&](auto from) {
+        bool sound = true;
+        std::uint64_t node = first / run.count, cell = first % run.count;
+        for (std::size_t i = 0; i < from.size(); ++node, cell = 0) {
+            Index* const out = to + places[node];
+            for (; cell < run.count && i < from.size(); ++cell, ++i) {
+                const std::int64_t point = one_less(static_cast<std::int64_t>(from[i]));
+                sound = sound && static_cast<std::uint64_t>(point) < points;
+                out[cell * width] = static_cast<Index>(point);
+            }
+        }
+        return sound;
     });
 }
 
@@ -120,8 +129,8 @@ Result<MedCellRun> MedMesh::run_of(const MedElement& element, const std::string&
                                        shape->rows, element.name, element.nodes));
     const auto stated = file_.integer(data_set, "NBR");
     if (!offsets && stated && static_cast<std::uint64_t>(*stated) != run.count)
-        return file_.wrong(fmt::format("\"{}\" has the nodes of {} cells, but states {}", escaped(data_set), run.count,
-                                       *stated));
+        return file_.wrong(
+            fmt::format("\"{}\" has the nodes of {} cells, but states {}", escaped(data_set), run.count, *stated));
     return run;
 }
 
@@ -179,8 +188,8 @@ Result<std::vector<std::int64_t>> MedMesh::nodes_of(const MedCellRun& run, std::
 }
 
 Result<void> MedMesh::add_polyhedra(const MedMeshPlace& place, Cells& cells) const {
-    const auto run = std::ranges::find(place.runs, med_polyhedron_type,
-                                       [](const MedCellRun& one) { return one.element->vtk_type; });
+    const auto run =
+        std::ranges::find(place.runs, med_polyhedron_type, [](const MedCellRun& one) { return one.element->vtk_type; });
     if (run == place.runs.end()) return {};
     auto points = from_zero(file_, run->group + "/NOD");
     if (!points) return points.error();
@@ -227,6 +236,18 @@ Result<void> MedMesh::add_polygon_offsets(const MedCellRun& run, std::vector<std
 }
 
 template <class Index>
+Result<void> MedMesh::read_corners(const MedCellRun& run, std::uint64_t points, Index* to) const {
+    std::atomic<bool> sound = true;
+    const auto done = file_.each_block(run.group + "/NOD", run.count * run.element->nodes,
+                                       [&](std::uint64_t first, const Array& block) {
+                                           if (!interlace_block(first, block, run, points, to)) sound = false;
+                                       });
+    if (!done || sound) return done;
+    const auto nodes = nodes_of(run, points); // says which
+    return nodes ? Result<void>() : nodes.error();
+}
+
+template <class Index>
 Result<Array> MedMesh::connectivity(const MedMeshPlace& place) const {
     std::vector<Index> all;
     std::uint64_t count = 0;
@@ -234,12 +255,15 @@ Result<Array> MedMesh::connectivity(const MedMeshPlace& place) const {
     all.reserve(count);
     for (const MedCellRun& run : place.runs) {
         if (run.element->vtk_type == med_polyhedron_type) continue;
-        const bool polygons = run.element->nodes == 0;
-        const auto nodes = polygons ? polygon_nodes(run, place.points) : nodes_of(run, place.points);
+        if (run.element->nodes > 0) {
+            const std::size_t before = all.size();
+            all.resize(before + run.count * run.element->nodes);
+            if (auto read = read_corners(run, place.points, all.data() + before); !read) return read.error();
+            continue;
+        }
+        const auto nodes = polygon_nodes(run, place.points);
         if (!nodes) return nodes.error();
-        if (!polygons) append_in_order(*nodes, *run.element, all);
-        else
-            for (const std::int64_t node : *nodes) all.push_back(static_cast<Index>(node));
+        for (const std::int64_t node : *nodes) all.push_back(static_cast<Index>(node));
     }
     return Array::own(std::move(all));
 }
@@ -250,6 +274,10 @@ Result<Cells> MedMesh::cells(const MedMeshPlace& place) const {
     auto nodes = narrow ? connectivity<std::int32_t>(place) : connectivity<std::int64_t>(place);
     if (!nodes) return nodes.error();
     cells.connectivity = *std::move(nodes);
+    if (place.runs.size() == 1 && vtk_xml::corners_of_uniform(place.runs.front().element->vtk_type)) {
+        cells.uniform_type = static_cast<CellType>(place.runs.front().element->vtk_type);
+        return cells;
+    }
     std::vector<std::int64_t> offsets{0};
     std::vector<std::uint8_t> types;
     for (const MedCellRun& run : place.runs) {
@@ -268,10 +296,11 @@ Result<Cells> MedMesh::cells(const MedMeshPlace& place) const {
 }
 
 Result<void> MedMesh::add_faces(const std::string& group, std::uint32_t nodes, std::uint64_t points,
-                                const std::map<std::int64_t, std::vector<std::string>>& groups, core::PatchList& numbers,
-                                core::PatchList& list) const {
+                                const std::map<std::int64_t, std::vector<std::string>>& groups,
+                                core::PatchList& numbers, core::PatchList& list) const {
     const auto shape = file_.shape(group + "/NOD");
-    if (!shape || !file_.has(group + "/FAM") || shape->columns != 1 || is_floating(shape->type) || shape->rows % nodes != 0)
+    if (!shape || !file_.has(group + "/FAM") || shape->columns != 1 || is_floating(shape->type) ||
+        shape->rows % nodes != 0)
         return {};
     const MedElement element{"", nodes, 0, {}};
     const auto corners = nodes_of({&element, group, 0, shape->rows / nodes}, points);
@@ -311,8 +340,7 @@ Result<std::vector<std::int64_t>> MedMesh::families(const MedMeshPlace& place) c
         if (is_floating(numbers->type()))
             return file_.wrong(fmt::format("\"{}/FAM\" holds no integers", escaped(run.group)));
         numbers->visit([&](auto from) {
-            for (std::size_t i = 0; i < from.size(); ++i)
-                families[run.first + i] = static_cast<std::int64_t>(from[i]);
+            for (std::size_t i = 0; i < from.size(); ++i) families[run.first + i] = static_cast<std::int64_t>(from[i]);
         });
     }
     return families;

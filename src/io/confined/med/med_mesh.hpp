@@ -78,6 +78,9 @@ public:
 
 private:
     Result<MedCellRun> run_of(const MedElement& element, const std::string& group) const;
+    /// Of cells of a type that has a number of nodes, from 0 and in VTK's order.
+    template <class Index>
+    Result<void> read_corners(const MedCellRun& run, std::uint64_t points, Index* to) const;
     template <class Index>
     Result<Array> connectivity(const MedMeshPlace& place) const;
     Result<void> add_faces(const std::string& group, std::uint32_t nodes, std::uint64_t points,

@@ -127,7 +127,7 @@ Result<std::string> XdmfData::file_named(pugi::xml_node item, std::string_view n
     return beside_first ? std::move(beside_first) : std::move(beside);
 }
 
-Result<ShapedValues> XdmfData::read_nested(pugi::xml_node stated, Depth depth, int level) const {
+Result<ShapedValues> XdmfData::read_nested(pugi::xml_node stated, Depth depth, int level, HdfNumbers numbers) const {
     const pugi::xml_node item = document_.resolve(stated);
     if (!item) return failed(stated, "a DataItem is missing, or refers to nothing");
     if (level > deepest_item) return failed(item, fmt::format("DataItems are nested more than {} deep", deepest_item));
@@ -135,7 +135,7 @@ Result<ShapedValues> XdmfData::read_nested(pugi::xml_node stated, Depth depth, i
         !stated_size.empty() && !stated_dimensions(item))
         return failed(item, fmt::format("a DataItem has the Dimensions \"{}\"", escaped(stated_size.substr(0, 80))));
     const std::string_view kind = item.attribute("ItemType").as_string("Uniform");
-    if (same_word(kind, "Uniform")) return read_uniform(item, depth);
+    if (same_word(kind, "Uniform")) return read_uniform(item, depth, numbers);
     if (same_word(kind, "HyperSlab")) return read_slab(item, depth, level + 1);
     if (same_word(kind, "Coordinates") || same_word(kind, "Coordinate"))
         return read_coordinates(item, depth, level + 1);
@@ -145,13 +145,13 @@ Result<ShapedValues> XdmfData::read_nested(pugi::xml_node stated, Depth depth, i
                                     escaped(kind)));
 }
 
-Result<ShapedValues> XdmfData::read_uniform(pugi::xml_node item, Depth depth) const {
+Result<ShapedValues> XdmfData::read_uniform(pugi::xml_node item, Depth depth, HdfNumbers numbers) const {
     const std::string_view format = item.attribute("Format").as_string("XML");
     const auto dimensions = stated_dimensions(item);
     if (is_hdf(format)) {
         auto values = read_heavy(
             document_.file_of(item), text_of(item), [&](std::string_view name) { return file_named(item, name); }, {},
-            depth);
+            depth, numbers);
         if (!values || !dimensions) return values;
         const ShapedValues expected{*dimensions, Array()};
         if (expected.count() != values->count())

@@ -29,9 +29,15 @@ public:
     /// The values of a DataItem, or only their type and shape. Those of a Function are float64.
     Result<ShapedValues> read(pugi::xml_node item, Depth depth) const { return read_nested(item, depth, 0); }
 
+    /// The same; integers of 64 bits may be int32 where all fit.
+    Result<ShapedValues> read_indices(pugi::xml_node item, Depth depth) const {
+        return read_nested(item, depth, 0, HdfNumbers::indices);
+    }
+
 private:
-    Result<ShapedValues> read_nested(pugi::xml_node item, Depth depth, int level) const;
-    Result<ShapedValues> read_uniform(pugi::xml_node item, Depth depth) const;
+    Result<ShapedValues> read_nested(pugi::xml_node item, Depth depth, int level,
+                                     HdfNumbers numbers = HdfNumbers::as_stored) const;
+    Result<ShapedValues> read_uniform(pugi::xml_node item, Depth depth, HdfNumbers numbers) const;
     Result<ShapedValues> read_slab(pugi::xml_node item, Depth depth, int level) const;
     Result<ShapedValues> read_coordinates(pugi::xml_node item, Depth depth, int level) const;
     Result<ShapedValues> read_function(pugi::xml_node item, Depth depth, int level) const;

@@ -110,7 +110,7 @@ ShapedValues one_after_another(const std::vector<ShapedValues>& parts) {
 } // namespace
 
 Result<ShapedValues> read_heavy(const std::string& index, std::string_view text, const FindHeavyFile& find,
-                                const Box& box, Depth depth) {
+                                const Box& box, Depth depth, HdfNumbers numbers) {
     auto parts = parts_of(text);
     if (!parts)
         return broken(index, fmt::format("\"{}\" does not name a file and a data set", escaped(text.substr(0, 80))));
@@ -122,7 +122,7 @@ Result<ShapedValues> read_heavy(const std::string& index, std::string_view text,
         if (!file) return file.error();
         const bool whole = part.box.count.empty();
         if (!whole && !box.count.empty()) return broken(index, "a HyperSlab of a part of a data set is not read");
-        auto read = read_hdf5_array(*file, part.data_set, whole ? box : part.box, depth);
+        auto read = read_hdf5_array(*file, part.data_set, whole ? box : part.box, depth, numbers);
         if (!read) return read;
         values.push_back(*std::move(read));
     }

@@ -21,6 +21,6 @@ using FindHeavyFile = std::function<Result<std::string>(std::string_view name)>;
 /// `index`   the XDMF file, for messages
 /// `box`     a part that is taken where the text itself states none
 Result<ShapedValues> read_heavy(const std::string& index, std::string_view text, const FindHeavyFile& find,
-                                const Box& box, Depth depth);
+                                const Box& box, Depth depth, HdfNumbers numbers = HdfNumbers::as_stored);
 
 } // namespace isotet::io::confined

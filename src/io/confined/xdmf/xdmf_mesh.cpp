@@ -218,7 +218,8 @@ private:
         const std::optional<std::uint64_t> count = stated ? std::optional(stated->front()) : std::nullopt;
         const bool listed = mixed || element->type == xdmf_polyhedron;
         const bool must_count = listed && !count; // only the numbers tell
-        auto values = file_.data.read(file_.document.child(topology_, "DataItem"), must_count ? Depth::arrays : depth_);
+        auto values =
+            file_.data.read_indices(file_.document.child(topology_, "DataItem"), must_count ? Depth::arrays : depth_);
         if (!values) return values.error();
         if (!listed) return uniform_cells(*element, count, *values);
         if (count) mesh_.cells = *count;
