@@ -65,6 +65,14 @@ struct LeftOut {
     std::string reason; ///< completes "is left out: ", such as "its type is 'Foo', which is not known"
 };
 
+/// How many numbers a grid has in memory that is read whole: at least these, as far as the head of its file tells; else 0.
+struct LeastCounts {
+    std::uint64_t points = 0, cells = 0;
+    std::uint64_t corners = 0; ///< of all cells
+    ScalarType coordinates = ScalarType::float32;
+    bool all_cells = false; ///< `active_cells` reads all of this format, too
+};
+
 /// What a file holds.
 struct FileInfo {
     std::string format;
@@ -77,6 +85,7 @@ struct FileInfo {
                                    ///< some were chosen and read
     std::vector<RegionName> regions; ///< names of volumes that Gmsh and Gocad have; not always all numbers have one
     std::vector<LeftOut> left_out;   ///< ReadResult::notes tell it, too
+    LeastCounts least; ///< of the step that was asked for, all blocks; zeros where blocks or regions are chosen
 };
 
 /// Only the cells that direct extraction of some isovalues needs (active_cells.hpp).

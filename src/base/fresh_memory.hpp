@@ -45,6 +45,9 @@ private:
 /// What the system, its swap and the control group have, less what this process has taken and not written to yet.
 ISOTET_API std::uint64_t unclaimed_memory();
 
+/// free_memory(), with swap.
+ISOTET_API std::uint64_t free_memory_and_swap();
+
 /// Of the process.
 ISOTET_API FreshMemory& fresh_memory();
 

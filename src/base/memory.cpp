@@ -107,6 +107,13 @@ std::uint64_t unclaimed(Swap swap) {
     return system - std::min(system, unwritten(heap.used, pages_of_process()));
 }
 
+/// What the limit on address space leaves.
+std::uint64_t free_addresses() {
+    rlimit limit{};
+    if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return unlimited;
+    return limit.rlim_cur - std::min<std::uint64_t>(limit.rlim_cur, pages_of_process().size);
+}
+
 } // namespace
 
 std::uint64_t control_group_free(const std::string& membership, const std::string& mount) {
@@ -139,13 +146,9 @@ std::uint64_t control_group_free(const std::string& membership, const std::strin
 
 std::uint64_t unclaimed_memory() { return unclaimed(Swap::counts); }
 
-std::uint64_t free_memory() {
-    const std::uint64_t least = unclaimed(Swap::does_not);
-    rlimit limit{};
-    if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return least;
-    return std::min<std::uint64_t>(least,
-                                   limit.rlim_cur - std::min<std::uint64_t>(limit.rlim_cur, pages_of_process().size));
-}
+std::uint64_t free_memory() { return std::min(unclaimed(Swap::does_not), free_addresses()); }
+
+std::uint64_t free_memory_and_swap() { return std::min(unclaimed(Swap::counts), free_addresses()); }
 
 Error too_little_memory(std::string_view what, std::uint64_t bytes) {
     return {ErrorCode::out_of_memory,

@@ -331,6 +331,7 @@ Result<FileInfo> inspect_one(const std::string& path, const ReadOptions& options
     auto info = (*reader)->inspect(path, options, progress);
     if (!info) return info;
     if (auto known = check_blocks(*info, options); !known) return known.error();
+    if (!options.blocks.empty()) info->least = {};
     if (info->cells == 0)
         for (const BlockInfo& block : info->blocks) info->cells += block.cells;
     return info;

@@ -28,6 +28,7 @@
 #include "jobs/cell_choice.hpp"
 #include "base/parallel.hpp"
 #include "jobs/refuse.hpp"
+#include "jobs/room_for_grid.hpp"
 
 namespace isotet::jobs {
 
@@ -596,6 +597,7 @@ Result<SurveyedGrid> GridSource::read_surveyed(const FieldsToRead& fields, std::
     }
     ReadOptions options = read_options_;
     choose_fields(fields, step, options);
+    if (auto room = require_room_once(fields, step, false); !room) return room.error();
     Result<SurveyedGrid> result = isotet::read_surveyed(options_.file, options, caller.run());
     if (!result) return result;
     caller.notes(result->read.notes);
@@ -642,7 +644,14 @@ Result<Grid> GridSource::read_block(const BlockInfo& block, std::size_t step, Ca
 Result<ReadResult> GridSource::read_file(const FieldsToRead& fields, std::size_t step, ReadOptions options,
                                          const Run& run) const {
     choose_fields(fields, step, options);
+    if (auto room = require_room_once(fields, step, !options.active_cells); !room) return room.error();
     return isotet::read(options_.file, options, run);
+}
+
+/// Later ones may be read while others are still there.
+Result<void> GridSource::require_room_once(const FieldsToRead& fields, std::size_t step, bool all_cells) const {
+    if (described_ != step || has_room_->exchange(true)) return {};
+    return require_room(options_.file, least_bytes_of(info_, fields, all_cells), beside_, info_.least.points);
 }
 
 void GridSource::choose_fields(const FieldsToRead& fields, std::size_t step, ReadOptions& options) const {

@@ -116,6 +116,8 @@ Result<void> PackRun::open() {
     Result<GridSource> source = GridSource::open(job_.grid, caller_);
     if (!source) return source.error();
     source_ = *std::move(source);
+    constexpr std::uint64_t packing_a_point = 38;
+    if (!scratch_) source_->require_beside({"packing", packing_a_point});
     if (auto enough = check_memory(source_->info().cells, 0); !enough) return enough;
     if (auto enough = check_scratch(source_->info().cells); !enough) return enough;
     if (auto paths = check_output_paths(source_->info().files, outputs); !paths) return paths;

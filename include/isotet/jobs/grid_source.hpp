@@ -2,6 +2,7 @@
 // Where a grid comes from: a file, or memory ("make:kuhn:64:gyroid").
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <map>
 #include <memory>
@@ -65,6 +66,12 @@ FileKinds kinds_of(const std::string& file);
 /// "'a', 'b', 'c' and 12 more".
 std::string quoted_list(const std::vector<std::string>& names);
 
+/// What a job takes for certain beside a grid that it holds.
+struct BesideGrid {
+    std::string what; ///< "packing"
+    std::uint64_t bytes_a_point = 0;
+};
+
 class GridSource {
 public:
     /// Finds out what the file holds, or what the grid to make will hold: of several steps the one that the options ask
@@ -95,6 +102,10 @@ public:
 
     /// The error for a name that is no field's: those that there are, nearest first.
     Error no_such_field(const std::string& name) const;
+
+    /// The first grid that is read, and what is taken beside it, must fit into memory as far as the head of the file tells: else
+    /// none of its arrays is read.
+    void require_beside(BesideGrid beside) { beside_ = std::move(beside); }
 
     /// A step that was read is given out by the next call that reads of the same step no more than these fields and cells.
     void keep(ReadResult read, const FieldsToRead& fields, std::size_t step);
@@ -156,6 +167,7 @@ private:
     void choose_fields(const FieldsToRead& fields, std::size_t step, ReadOptions& options) const;
 
     Result<void> look_at(std::size_t step, const Run& run);
+    Result<void> require_room_once(const FieldsToRead& fields, std::size_t step, bool all_cells) const;
 
     GridOptions options_;
     std::optional<MakeOptions> made_;
@@ -166,7 +178,9 @@ private:
     std::optional<std::size_t> described_; ///< the step whose fields info_ has; nothing: of several
     std::map<std::size_t, std::vector<FieldInfo>> step_fields_; ///< of the steps that were looked at
     ReadOptions read_options_;
-    std::shared_ptr<Kept> kept_;            ///< shared by copies: given out once
+    std::shared_ptr<Kept> kept_; ///< shared by copies: given out once
+    BesideGrid beside_;
+    std::shared_ptr<std::atomic<bool>> has_room_ = std::make_shared<std::atomic<bool>>(); ///< nothing is asked any more
     std::shared_ptr<KnownClosing> closing_; ///< of the last of several steps; shared by copies
 };
 

@@ -23,6 +23,17 @@ void leave_out(FileInfo& info, LeftOut item) {
     info.left_out.push_back(std::move(item));
 }
 
+void add(LeastCounts& all, const LeastCounts& part) {
+    if (part.points > 0) {
+        const bool narrower = size_of(part.coordinates) < size_of(all.coordinates);
+        if (all.points == 0 || narrower) all.coordinates = part.coordinates;
+    }
+    all.points += part.points;
+    all.cells += part.cells;
+    all.corners += part.corners;
+    all.all_cells = all.all_cells || part.all_cells;
+}
+
 void append(Loaded& whole, Loaded part) {
     for (FieldInfo& field : part.info.fields) announce(whole.info, std::move(field));
     for (LeftOut& item : part.info.left_out) leave_out(whole.info, std::move(item));
@@ -30,6 +41,7 @@ void append(Loaded& whole, Loaded part) {
     std::ranges::move(part.pieces, std::back_inserter(whole.pieces));
     std::ranges::move(part.notes, std::back_inserter(whole.notes));
     whole.info.cells += part.info.cells;
+    add(whole.info.least, part.info.least);
 }
 
 Error broken(const std::string& path, std::string_view what) {

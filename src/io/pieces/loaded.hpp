@@ -52,6 +52,9 @@ ISOTET_API void announce(FileInfo& info, FieldInfo field);
 /// Adds to FileInfo::left_out unless it is there with the same reason; read() makes notes of it.
 ISOTET_API void leave_out(FileInfo& info, LeftOut item);
 
+/// Adds the counts of another part of the grid. Of different coordinates the narrower ones count.
+ISOTET_API void add(LeastCounts& all, const LeastCounts& part);
+
 /// Makes the pieces of `part` further ones of `whole`, with its fields, files and notes.
 void append(Loaded& whole, Loaded part);
 

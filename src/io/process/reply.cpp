@@ -24,7 +24,7 @@
 namespace isotet::io::confined {
 namespace {
 
-constexpr std::uint64_t magic = 0x3730795f74657469; // "itet_y07", and the byte order with it
+constexpr std::uint64_t magic = 0x3830795f74657469; // "itet_y08", and the byte order with it
 constexpr std::uint64_t alignment = 64;
 
 struct Header {
@@ -101,7 +101,8 @@ public:
     }
     void describe(const FileInfo& info) {
         // A member that is not sent is an error here: this counts them.
-        [[maybe_unused]] const auto& [format, info_cells, field_infos, times, files, blocks, regions, left_out] = info;
+        [[maybe_unused]] const auto& [format, info_cells, field_infos, times, files, blocks, regions, left_out, least] =
+            info;
         out_.text(info.format);
         out_.number(info.cells);
         out_.list(info.fields, [&](const FieldInfo& field) {
@@ -128,6 +129,10 @@ public:
             out_.text(item.name);
             out_.text(item.reason);
         });
+        [[maybe_unused]] const auto& [points, cells, corners, coordinates, all_cells] = least;
+        for (const std::uint64_t count : {points, cells, corners}) out_.number(count);
+        out_.number(coordinates);
+        out_.number<std::uint8_t>(all_cells);
     }
     void describe(ReadResult& result) {
         [[maybe_unused]] const auto& [whole, info, step, cells_in_file, bounds, notes, cell_numbers] = result;
@@ -260,6 +265,11 @@ public:
             item.name = in_.text();
             item.reason = in_.text();
         });
+        LeastCounts& least = result.least;
+        for (std::uint64_t* const count : {&least.points, &least.cells, &least.corners})
+            *count = in_.number<std::uint64_t>();
+        least.coordinates = in_.enumerator(ScalarType::float64);
+        least.all_cells = in_.number<std::uint8_t>() != 0;
         return result;
     }
     ReadResult result() {

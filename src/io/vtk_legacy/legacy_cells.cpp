@@ -45,6 +45,7 @@ public:
         if (!second) return second.error();
         const auto before = values_.scanner().position();
         const bool has_offsets = lower(values_.scanner().word()) == "offsets";
+        cells.announced = has_offsets ? *second : *second - std::min(*first, *second);
         if (has_offsets) return read_offsets(cells, keyword, *first, *second);
         values_.scanner().seek(before);
         if (*first == 0 && *second == 0) return {};

@@ -47,6 +47,7 @@ struct LegacyCells {
     Array offsets;             ///< where the corners of each cell begin, and those of the last one end; or empty:
     std::uint64_t corners = 0; ///< so many of each cell
     std::uint64_t count = 0;
+    std::uint64_t announced = 0;               ///< corners of all, also where they are skipped
     bool interleaved = false;                  ///< as before version 5.1
     std::optional<CornersInFile> in_file = {}; ///< instead of `connectivity`, as LegacyWants::leave_corners allows
 

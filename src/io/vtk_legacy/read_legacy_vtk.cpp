@@ -307,7 +307,11 @@ Result<Loaded> load_legacy(const ByteSource& source, const ReadOptions& options,
     loaded.info = std::move(file->info);
     std::erase_if(loaded.info.fields, [](const FieldInfo& field) { return vtk_xml::is_ghost_array(field.name); });
     loaded.notes = std::move(file->notes);
-    if (depth == Depth::description) return loaded;
+    if (depth == Depth::description) {
+        if (file->dataset == "unstructured_grid")
+            loaded.info.least = {file->point_count, file->cell_type_count, file->cells.announced, file->points.type()};
+        return loaded;
+    }
     const auto step = choose_step(loaded.info, options);
     if (!step) return step.error();
     Piece piece;

@@ -58,7 +58,10 @@ Result<Loaded> load_document(const std::shared_ptr<Document>& shared, const std:
     Loaded loaded;
     if (auto told = announce_fields(document, *layouts, options, progress, loaded); !told) return told.error();
     loaded.info.cells = *cells;
-    if (depth == Depth::description) return loaded;
+    if (depth == Depth::description) {
+        if (unstructured) loaded.info.least = least_of_unstructured(document, *layouts, loaded.step);
+        return loaded;
+    }
     const Wanted wanted{options, loaded.step, ids, path};
     if (unstructured) {
         auto pieces = load_unstructured(shared, *layouts, wanted, progress, loaded);

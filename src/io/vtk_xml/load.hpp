@@ -74,6 +74,9 @@ Result<std::vector<Piece>> load_unstructured(const std::shared_ptr<Document>& do
 Result<Layouts> layouts_of_unstructured(const Document& document);
 Result<Layouts> layouts_of_structured(const Document& document);
 
+/// What arrays of a step hold for certain.
+LeastCounts least_of_unstructured(const Document& document, const Layouts& layouts, std::size_t step);
+
 /// How many cells a structured kind stands for.
 Result<std::uint64_t> count_structured(const Document& document);
 

@@ -468,6 +468,29 @@ Result<bool> StoredArray::holds(const Expect& expect) const {
     });
 }
 
+std::uint64_t stored_scalars(const Document& document, const DataArray& array) {
+    if (array.form == DataArray::Form::ascii || array.bits || array.text) return 0;
+    Stream stream{array.source(document), array.place, array.form == DataArray::Form::base64, {}};
+    Scratch scratch;
+    if (array.inside) {
+        const auto start =
+            stream.source.view(stream.place.begin, std::min<std::size_t>(stream.place.size(), 256), scratch);
+        if (!start) return 0;
+        stream.place.begin += static_cast<std::size_t>(std::ranges::find_if_not(*start, is_space) - start->begin());
+    }
+    const bool packed = document.codec != Codec::none;
+    const auto head = stream.view(0, (packed ? 3 : 1) * (document.wide_header ? 8 : 4), scratch);
+    if (!head) return 0;
+    ByteReader reader(*head, document.order != std::endian::native);
+    const auto next = [&] { return next_word(reader, document.wide_header); };
+    const std::uint64_t first = next(), scalar = size_of(array.type);
+    if (!packed) return first <= stream.size() ? first / scalar : 0;
+    const std::uint64_t size = next(), last = next(), most = std::uint64_t{1} << 60;
+    if (first == 0 || first > stream.size() || last > size || size > most / first) return 0;
+    const std::uint64_t bytes = (first - 1) * size + (last > 0 ? last : size);
+    return is_plausible(document.codec, stream.size(), bytes) ? bytes / scalar : 0;
+}
+
 Result<Array> filled_array(ScalarType type, std::size_t tuples, std::size_t components, const Fill& fill) {
     return with_type(type, [&](auto zero) -> Result<Array> {
         using Scalar = decltype(zero);

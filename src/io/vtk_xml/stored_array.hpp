@@ -128,6 +128,10 @@ private:
     std::vector<std::uint64_t> packed_; ///< behind data_: where each compressed block begins, and the last one ends
 };
 
+/// How many values are stored, as the bytes in front of them tell; 0 where these do not, or are not plausible. Nothing is
+/// checked that find() checks.
+std::uint64_t stored_scalars(const Document& document, const DataArray& array);
+
 /// A whole array, in memory of its own.
 Result<Array> load_array(Document& document, const DataArray& array, std::uint64_t tuples, const Progress& progress);
 

@@ -93,6 +93,26 @@ Result<Layouts> layouts_of_unstructured(const Document& document) {
     return Layouts{std::move(*points), std::move(*cells)};
 }
 
+LeastCounts least_of_unstructured(const Document& document, const Layouts& layouts, std::size_t step) {
+    const auto elements = pieces_of(document);
+    LeastCounts all;
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+        LeastCounts piece;
+        const Section points = describe_section(document, elements[i].child("Points"), step),
+                      cells = describe_section(document, elements[i].child("Cells"), step);
+        if (!points.arrays.empty()) {
+            const DataArray& array = points.arrays.front();
+            piece.points = std::min(layouts.points.tuples[i], stored_scalars(document, array) / 3);
+            if (array.type == ScalarType::float64) piece.coordinates = array.type;
+        }
+        const auto corners = std::ranges::find(cells.arrays, "connectivity", &DataArray::name);
+        if (corners != cells.arrays.end()) piece.corners = stored_scalars(document, *corners);
+        piece.cells = std::min(layouts.cells.tuples[i], piece.corners); // a cell has one at least
+        add(all, piece);
+    }
+    return all;
+}
+
 Result<std::vector<Piece>> load_unstructured(const std::shared_ptr<Document>& document, const Layouts& layouts,
                                              const Wanted& wanted, const Progress& progress, Loaded& loaded) {
     const auto elements = pieces_of(*document);

@@ -69,6 +69,7 @@ private:
                             core::PatchList& patch_numbers, Loaded& loaded) const;
     Result<void> read_patches(const CgnsZone& zone, core::PatchList& numbers, Loaded& loaded, Grid& grid) const;
     bool is_there(const CgnsZone& zone, std::size_t step) const;
+    LeastCounts least_of(const ReadOptions& options) const;
     std::size_t step_of(const CgnsZone& zone, std::size_t step) const {
         return std::min(step, std::max<std::size_t>(bases_[zone.base].times.size(), 1) - 1);
     }
@@ -88,6 +89,7 @@ private:
     const CgnsTree& tree_;
     std::vector<CgnsBase> bases_;
     std::vector<CgnsZone> zones_;
+    std::vector<CgnsCounts> counts_; ///< of each zone
     std::vector<CgnsSolutions> solutions_;
 };
 
@@ -111,6 +113,7 @@ Result<void> CgnsFile::describe(Loaded& loaded) {
         }
         loaded.info.blocks.push_back(
             {static_cast<std::int64_t>(loaded.info.blocks.size() + 1), zone.name, "zone", counts.cells});
+        counts_.push_back(counts);
         solutions_.emplace_back(tree_, zone, bases_[zone.base].times.size(), counts);
         solutions_.back().announce(loaded.info);
     }
@@ -164,12 +167,28 @@ Result<Piece> CgnsFile::read_zone(std::size_t at, const ReadOptions& options, st
     return piece;
 }
 
+/// Of the zones that are read without a choice.
+LeastCounts CgnsFile::least_of(const ReadOptions& options) const {
+    LeastCounts all;
+    for (std::size_t i = 0; i < zones_.size(); ++i) {
+        const CgnsZone& zone = zones_[i];
+        if (zone.base != usual_base() || !zone.has_points() || !is_there(zone, options.step.value_or(0))) continue;
+        const bool listed = !zone.is_structured; // elements of blocks are made
+        add(all, {zone.point_count(), listed ? counts_[i].cells : 0, listed ? counts_[i].corners : 0,
+                  ScalarType::float64, true});
+    }
+    return all;
+}
+
 Result<Loaded> CgnsFile::load(const ReadOptions& options, Depth depth) {
     Loaded loaded;
     if (auto done = describe(loaded); !done) return done.error();
     const auto chosen = chosen_blocks(loaded.info.blocks, options);
     if (!chosen) return chosen.error();
-    if (depth == Depth::description) return loaded;
+    if (depth == Depth::description) {
+        loaded.info.least = least_of(options);
+        return loaded;
+    }
     const auto step = choose_step(loaded.info, options);
     if (!step) return step.error();
     loaded.step = *step;

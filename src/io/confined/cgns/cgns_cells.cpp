@@ -47,8 +47,8 @@ private:
     const CgnsZone& zone_;
     std::uint64_t points_;
     std::vector<CgnsSection> sections_;
-    int dimension_ = 3;              ///< of the elements that are cells
-    bool by_parents_ = false;        ///< faces tell their cells, and there are no others
+    int dimension_ = 3;       ///< of the elements that are cells
+    bool by_parents_ = false; ///< faces tell their cells, and there are no others
     bool has_polyhedra_ = false;
     std::vector<CgnsFaceSection> faces_; ///< ascending
     CgnsNumbers faces_of_cells_, cell_offsets_{0};
@@ -94,7 +94,11 @@ Result<CgnsCounts> CellsReader::count() {
     if (by_parents_) counts.cells = zone_.cells.front();
     for (const CgnsSection& section : sections_) {
         counts.elements += section.count();
-        if (!by_parents_) counts.cells += section.by_dimension[static_cast<std::size_t>(dimension_)];
+        if (by_parents_) continue;
+        const std::uint64_t cells = section.by_dimension[static_cast<std::size_t>(dimension_)];
+        const CgnsElement* const element = cgns_element(section.type);
+        counts.cells += cells;
+        counts.corners += cells * (element ? element->nodes : 1);
     }
     return counts;
 }
@@ -106,7 +110,8 @@ Result<void> CellsReader::add_section(const CgnsSection& section, CgnsCells& out
         if (element.dimension != dimension_) return {};
         for (const auto node : nodes)
             if (node < 1 || static_cast<std::uint64_t>(node) > points_)
-                return section.wrong(fmt::format("has an element with point {}, but the points are 1 to {}", node, points_));
+                return section.wrong(
+                    fmt::format("has an element with point {}, but the points are 1 to {}", node, points_));
         if (element.vtk_type == 0) ++unread_[std::string(element.name)];
         list_.start(element.vtk_type, element.nodes);
         if (element.order.empty())
@@ -133,7 +138,8 @@ Result<void> CellsReader::add_polygons(const CgnsSection& section, CgnsCells& ou
         for (std::int64_t at = begin; at < end; ++at) {
             const std::int64_t point = faces->values[static_cast<std::size_t>(at)];
             if (point < 1 || static_cast<std::uint64_t>(point) > points_)
-                return section.wrong(fmt::format("has a face with point {}, but the points are 1 to {}", point, points_));
+                return section.wrong(
+                    fmt::format("has a face with point {}, but the points are 1 to {}", point, points_));
             list_.corner(static_cast<std::uint64_t>(point) - 1);
         }
         out.add_number(section.first + static_cast<std::int64_t>(i));
@@ -267,8 +273,8 @@ Result<CgnsCells> CellsReader::read(std::vector<std::string>& notes) {
     if (auto found = find_sections(); !found) return found.error();
     CgnsCells out;
     for (const CgnsSection& section : sections_) out.elements += section.count();
-    has_polyhedra_ =
-        by_parents_ || (dimension_ == 3 && std::ranges::find(sections_, cgns_nface, &CgnsSection::type) != sections_.end());
+    has_polyhedra_ = by_parents_ || (dimension_ == 3 &&
+                                     std::ranges::find(sections_, cgns_nface, &CgnsSection::type) != sections_.end());
     if (has_polyhedra_)
         if (auto read = read_face_sections(); !read) return read.error();
     if (by_parents_) {
@@ -288,7 +294,8 @@ Result<CgnsCells> CellsReader::read(std::vector<std::string>& notes) {
     for (const auto& [name, count] : unread_)
         notes.push_back(fmt::format("{} elements {} are left out: elements of this type are not read", count, name));
     if (!has_polyhedra_) return out;
-    if (auto done = write_out_faces(shared_faces(std::move(faces_of_cells_), std::move(cell_offsets_)), out.cells); !done)
+    if (auto done = write_out_faces(shared_faces(std::move(faces_of_cells_), std::move(cell_offsets_)), out.cells);
+        !done)
         return done.error();
     if (auto done = list_points_of_faces(points_, out.cells); !done) return done.error();
     return out;

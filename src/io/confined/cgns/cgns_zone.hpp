@@ -55,6 +55,7 @@ Result<Array> cgns_points(const CgnsTree& tree, const CgnsZone& zone, const std:
 struct CgnsCounts {
     std::uint64_t cells = 0;
     std::uint64_t elements = 0; ///< of all dimensions
+    std::uint64_t corners = 0;  ///< at least, of the cells
 };
 
 struct CgnsCells {

@@ -62,6 +62,7 @@ private:
     void read_variables(const EnsightTime& time);
     void give_columns(const std::string& name, EnsightField field);
     Result<Piece> piece_of(EnsightPart& part);
+    LeastCounts least() const;
 
     EnsightPlace placed(const EnsightTime::Found& found, const std::string& name) const {
         if (!found.error.empty())
@@ -132,6 +133,21 @@ void EnsightLoad::read_geometry(const EnsightTime& time) {
             throw reached_as_big > reached ? big : little;
         }
     }
+}
+
+/// Of structured parts none: their cells are made.
+LeastCounts EnsightLoad::least() const {
+    LeastCounts least;
+    least.all_cells = true;
+    for (const EnsightPart& part : grid_.parts) {
+        if (case_.is_gold || part.is_structured) least.points += part.nodes;
+        if (part.is_structured) continue;
+        least.cells += part.cells;
+        for (const auto& [type, runs] : part.elements)
+            if (const EnsightElement* const element = ensight_element(type))
+                least.corners += count_of(runs) * std::max<std::uint64_t>(element->nodes, 1);
+    }
+    return least;
 }
 
 Result<void> EnsightLoad::choose_parts() {
@@ -249,6 +265,7 @@ Result<Loaded> EnsightLoad::load() {
     const EnsightTime time(case_, *step);
     read_geometry(time);
     if (auto chosen = choose_parts(); !chosen) return chosen.error();
+    if (depth_ == Depth::description) loaded_.info.least = least();
     read_variables(time);
     for (EnsightPart& part : grid_.parts) {
         if (!part.is_wanted) continue;

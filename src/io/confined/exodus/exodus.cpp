@@ -208,6 +208,13 @@ std::size_t common_steps(const std::vector<double>& a, const std::vector<double>
     return static_cast<std::size_t>(std::ranges::mismatch(a, b).in1 - a.begin());
 }
 
+LeastCounts least_of(const ExodusFile& file) {
+    LeastCounts least{file.points(), file.cells(), 0, file.type()};
+    for (const ExodusFile::Block& block : file.blocks())
+        least.corners += block.cells * exodus_element(block.topology, block.corners).nodes;
+    return least;
+}
+
 /// What all parts hold. `opened` gets them, unless they are too many.
 Result<FileInfo> describe_parts(const std::vector<std::string>& parts, const ReadOptions& options,
                                 std::vector<std::string>& notes, std::vector<std::shared_ptr<OpenPart>>& opened) {
@@ -238,6 +245,7 @@ Result<FileInfo> describe_parts(const std::vector<std::string>& parts, const Rea
         most = std::max(most, steps);
         for (FieldInfo& field : info.fields) announce(all, std::move(field));
         for (LeftOut& item : info.left_out) leave_out(all, std::move(item));
+        add(all.least, least_of((*file)->file));
         for (const BlockInfo& block : blocks_of((*file)->file)) announce_block(all, block);
     }
     if (fewest != most)

@@ -31,7 +31,10 @@ Result<Loaded> load_grid(const std::string& path, const ReadOptions& options, De
     const auto cells = grid.count_cells(*step);
     if (!cells) return cells.error();
     loaded.info.cells = *cells;
-    if (depth == Depth::description) return loaded;
+    if (depth == Depth::description) {
+        loaded.info.least = grid.least(*step);
+        return loaded;
+    }
     if (auto done = grid.load(options, *step, "", loaded); !done) return done.error();
     if (loaded.pieces.empty()) return broken(path, "it has no part");
     return loaded;
@@ -50,6 +53,10 @@ struct CollectedGrid {
     Result<std::uint64_t> count_cells(std::size_t step) const {
         const auto* unstructured = std::get_if<HdfGrid>(&grid);
         return unstructured ? unstructured->count_cells(step) : std::get<HdfImage>(grid).cells();
+    }
+    LeastCounts least(std::size_t step) const {
+        const auto* unstructured = std::get_if<HdfGrid>(&grid);
+        return unstructured ? unstructured->least(step) : LeastCounts{};
     }
     Result<void> load(const ReadOptions& options, Loaded& loaded) const {
         if (const auto* unstructured = std::get_if<HdfGrid>(&grid))
@@ -102,6 +109,7 @@ Result<Loaded> load_collection(const std::string& path, const ReadOptions& optio
         const auto cells = (*grids)[i].count_cells(loaded.step);
         if (!cells) return cells.error();
         loaded.info.blocks.push_back({static_cast<std::int64_t>(i + 1), (*grids)[i].name, "data set", *cells});
+        if (depth == Depth::description) add(loaded.info.least, (*grids)[i].least(loaded.step));
     }
     const auto chosen = chosen_blocks(loaded.info.blocks, options);
     if (!chosen) return chosen.error();

@@ -361,6 +361,23 @@ Result<std::uint64_t> HdfGrid::count_cells(std::size_t step) const {
     return std::accumulate(cells->begin(), cells->end(), std::uint64_t{0});
 }
 
+LeastCounts HdfGrid::least(std::size_t step) const {
+    const auto place = find_step(step);
+    const auto parts = place ? find_partitions(*place) : Result<std::vector<HdfPartition>>(place.error());
+    const auto points = rows_.shape(group_ + "Points"), corners = rows_.shape(group_ + "Connectivity"),
+               types = rows_.shape(group_ + "Types");
+    LeastCounts all;
+    if (!parts || !points || !corners || !types) return all;
+    for (const HdfPartition& part : *parts) {
+        all.points += part.points;
+        all.cells += part.cells;
+        all.corners += part.corners;
+    }
+    if (all.points > points->rows || all.cells > types->rows || all.corners > corners->rows) return {}; // it is broken
+    if (points->type != ScalarType::float32) all.coordinates = ScalarType::float64;
+    return all;
+}
+
 Result<void> HdfGrid::load(const ReadOptions& options, std::size_t step, const std::string& name,
                            Loaded& loaded) const {
     const auto place = find_step(step);

@@ -54,6 +54,8 @@ public:
     Result<void> announce_all(FileInfo& info) const;
     /// Of one step.
     Result<std::uint64_t> count_cells(std::size_t step) const;
+    /// The same; zeros where they cannot be told.
+    LeastCounts least(std::size_t step) const;
     /// Adds one piece a partition. `name` begins the names of the pieces. A field that cannot be read is left out.
     Result<void> load(const ReadOptions& options, std::size_t step, const std::string& name, Loaded& loaded) const;
 

@@ -41,6 +41,7 @@ private:
     Result<void> find_groups(Placed& placed);
     void announce_blocks();
     Result<std::vector<bool>> chosen();
+    void tell_least(const std::vector<bool>& chosen);
     Result<void> read_patches(const Placed& placed, Grid& grid);
     Result<Piece> read_mesh(std::size_t at, const std::vector<bool>& chosen, std::size_t first_group);
 
@@ -173,6 +174,16 @@ Result<Piece> MedLoader::read_mesh(std::size_t at, const std::vector<bool>& chos
     return piece;
 }
 
+void MedLoader::tell_least(const std::vector<bool>& chosen) {
+    for (std::size_t i = 0; i < meshes_.size(); ++i) {
+        if (meshes_.size() > 1 && !chosen[i]) continue;
+        const MedMeshPlace& place = meshes_[i].place;
+        LeastCounts least{place.points, place.cells, 0, ScalarType::float64, true};
+        for (const MedCellRun& run : place.runs) least.corners += run.count * run.element->nodes;
+        add(loaded_.info.least, least);
+    }
+}
+
 Result<Loaded> MedLoader::load(Depth depth) {
     choose_times();
     fields_.announce_all(loaded_.info);
@@ -187,7 +198,10 @@ Result<Loaded> MedLoader::load(Depth depth) {
     announce_blocks();
     const auto choice = chosen();
     if (!choice) return choice.error();
-    if (depth == Depth::description) return std::move(loaded_);
+    if (depth == Depth::description) {
+        tell_least(*choice);
+        return std::move(loaded_);
+    }
     std::size_t first_group = meshes_.size() > 1 ? meshes_.size() : 0;
     for (std::size_t i = 0; i < meshes_.size(); ++i) {
         const std::size_t groups = meshes_[i].groups.size();

@@ -98,6 +98,7 @@ private:
             const bool whole = depth_ == Depth::arrays && chosen_[i];
             auto mesh = read_block(blocks_[i], whole ? Depth::arrays : Depth::description);
             if (!mesh) return mesh.error();
+            if (depth_ == Depth::description && !levels_) add(loaded_.info.least, least_of(*mesh));
             if (whole) {
                 NamedPiece& piece = pieces.emplace_back(Piece(), blocks_[i].name, blocks_[i].points, mesh->edges);
                 piece.piece.name = fmt::format("{} {}", file_.path, blocks_[i].name);
@@ -111,6 +112,11 @@ private:
             loaded_.pieces.push_back(std::move(piece.piece));
         }
         return levels_ ? join_levels() : Result<void>{};
+    }
+    /// Of an image none: it is made.
+    static LeastCounts least_of(const XdmfMesh& mesh) {
+        if (mesh.corners == 0) return {};
+        return {mesh.points, mesh.cells, mesh.corners, mesh.coordinates, true};
     }
     Result<XdmfMesh> read_block(const XdmfBlock& block, Depth depth) {
         auto mesh = read_mesh(file_, block.geometry, block.topology, depth, loaded_.notes);

@@ -128,6 +128,7 @@ private:
         if (values->count() % axes != 0)
             return wrong(fmt::format("{} coordinates are no multiple of {}", values->count(), axes));
         mesh_.points = values->count() / axes;
+        if (values->values.type() == ScalarType::float64) mesh_.coordinates = ScalarType::float64;
         if (depth_ == Depth::arrays) mesh_.grid.points = in_space(values->values, axes);
         return {};
     }
@@ -238,6 +239,7 @@ private:
         if (corners == 0 || values.count() % corners != 0)
             return wrong(fmt::format("{} corners of cells are no multiple of {}", values.count(), corners));
         mesh_.cells = values.count() / corners;
+        mesh_.corners = values.count();
         if (count && *count != mesh_.cells)
             return wrong(fmt::format("{} elements are stated, {} are there", *count, mesh_.cells));
         if (depth_ == Depth::description) return {};

@@ -35,6 +35,8 @@ struct XdmfFile {
 /// What a Topology and a Geometry describe; for a description without their arrays.
 struct XdmfMesh {
     std::uint64_t points = 0, cells = 0;
+    std::uint64_t corners = 0; ///< at least, of cells that are listed
+    ScalarType coordinates = ScalarType::float32;
     Grid grid = {};
     std::map<std::string, pugi::xml_node> fields = {}; ///< those that were read, by association and name
     std::optional<XdmfImage> image = {};               ///< where the points are evenly spaced, the axes those of space
