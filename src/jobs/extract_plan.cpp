@@ -104,16 +104,39 @@ std::optional<ReadActiveCells> plan_active_cells(const ExtractJob& job, const Ex
     return active;
 }
 
+/// `steps`   how many of them
+ContourOptions contour_options_of(const ExtractJob& job, std::size_t steps) {
+    ContourOptions options;
+    options.method = job.method;
+    if (job.engine == EngineChoice::reference) options.engine = reference_engine();
+    options.precision = job.precision;
+    options.ties = job.keep_degenerate ? Ties::keep : Ties::merge;
+    options.normals = job.normals;
+    options.edge_ends = job.edge_ends;
+    options.source_cells = job.source_cells;
+    options.split_cells = job.split_cells;
+    options.refine = job.refine;
+    options.exact_vertices = job.exact_vertices;
+    const std::size_t named = job.isovalues.size() + job.shares.size();
+    const std::size_t isovalues = named == 0 ? std::max<std::uint64_t>(job.levels, 1) : named;
+    options.surfaces = isovalues * steps;
+    if (!job.snap && !job.solid && job.shares.empty()) options.expected_isovalues = job.isovalues;
+    return options;
+}
+
 bool names_isovalues(const ExtractJob& job) { return !job.isovalues.empty() || !job.shares.empty() || job.levels > 0; }
+
+bool uses_device(const ExtractJob& job) {
+    return job.engine == EngineChoice::vulkan || (!job.device.name.empty() && job.device.name != "none");
+}
 
 /// What does not go together with solids.
 Result<void> check_solid(const ExtractJob& job) {
     if (!job.solid) return {};
-    const bool device = job.engine == EngineChoice::vulkan || (!job.device.name.empty() && job.device.name != "none");
     for (const auto& [asked, option] : {std::pair{job.exact_vertices, "`exact_vertices`"},
                                         {job.keep_degenerate, "`keep_degenerate`"},
                                         {job.normals == Normals::gradient, "`normals` gradient"},
-                                        {device, "a device"}})
+                                        {uses_device(job), "a device"}})
         if (asked) return refusal("`solid` was asked for, which does not go with {}", option);
     if (job.solid->kind == SolidChoice::Kind::between && names_isovalues(job))
         return refusal("`solid` has its own two isovalues, but others were given");
@@ -185,6 +208,18 @@ Result<std::string> plan_collection(const ExtractJob& job, const ExtractPlan& pl
     return collection;
 }
 
+namespace {
+
+/// Whether active cells will do, as far as is known before the field is.
+bool streams(const ExtractJob& job, const GridSource& source) {
+    if (uses_device(job)) return false;
+    ExtractPlan plan;
+    plan.contour = contour_options_of(job, job.all_steps ? std::max<std::size_t>(source.info().times.size(), 1) : 1);
+    return plan_active_cells(job, plan).has_value();
+}
+
+} // namespace
+
 Result<void> choose_first_of(ExtractJob& job, GridSource& source, ExtractPlan& plan, Caller& caller) {
     ChoiceWish wish{job.all_steps ? Steps::all : Steps::one, job.field};
     if (job.field.shape) { // any step has it
@@ -201,6 +236,7 @@ Result<void> choose_first_of(ExtractJob& job, GridSource& source, ExtractPlan& p
         wish.field = job.field;
     }
     wish.only_field_will_do = true;
+    wish.streams = streams(job, source);
     if (!job.with && plan.holds_fields) wish.also.point.reset();
     const Result<FirstChoice> choice = choose_first(source, job.grid, wish, caller, caller.run());
     if (!choice) return choice.error();
@@ -283,20 +319,7 @@ Result<ExtractPlan> plan_extract(ExtractJob& job, GridSource& source, Caller& ca
         return refusal("`piece` was asked for, but '{}' has derivatives, which follow from all cells around a point",
                        plan.field.name);
 
-    plan.contour.method = job.method;
-    if (job.engine == EngineChoice::reference) plan.contour.engine = reference_engine();
-    plan.contour.precision = job.precision;
-    plan.contour.ties = job.keep_degenerate ? Ties::keep : Ties::merge;
-    plan.contour.normals = job.normals;
-    plan.contour.edge_ends = job.edge_ends;
-    plan.contour.source_cells = job.source_cells;
-    plan.contour.split_cells = job.split_cells;
-    plan.contour.refine = job.refine;
-    plan.contour.exact_vertices = job.exact_vertices;
-    const std::size_t named = job.isovalues.size() + job.shares.size();
-    const std::size_t isovalues = named == 0 ? std::max<std::uint64_t>(job.levels, 1) : named;
-    plan.contour.surfaces = isovalues * plan.steps.size();
-    if (!job.snap && !job.solid && job.shares.empty()) plan.contour.expected_isovalues = job.isovalues;
+    plan.contour = contour_options_of(job, plan.steps.size());
     plan.active_cells = plan_active_cells(job, plan);
     return plan;
 }

@@ -43,13 +43,18 @@ private:
         const Result<FoundField> found = choose_field(source_, wish_.field);
         if (!found) return is_missing(found.error());
         FieldsToRead read{found->point, found->cell};
-        const Result<ReadResult> some = read_with_twins(read, step);
-        if (!some && some.error().code == ErrorCode::invalid_argument) return is_missing(some.error());
-        if (!some) return some.error();
-        was_there_ = true;
-        missing_.reset();
-        source_.keep(*some, read, step);
-        return field_varies(some->grid, found->name);
+        streams_ = may_stream() && found->cell.empty() && !found->neighbours;
+        for (;;) {
+            const Result<SurveyedGrid> some = read_with_twins(read, step);
+            if (!some && some.error().code == ErrorCode::invalid_argument) return is_missing(some.error());
+            if (!some) return some.error();
+            was_there_ = true;
+            missing_.reset();
+            const auto varies = core::field_varies_in_sample(some->read.grid, found->name, some->sampled);
+            keep(*some, read, step);
+            if (varies) return *varies;
+            streams_ = false;
+        }
     }
 
     Result<bool> look_at_surveyed(std::size_t step) {
@@ -60,20 +65,26 @@ private:
         return shows_a_field();
     }
 
+    /// Formats whose cells are counted tell how many corners there are.
+    bool may_stream() const {
+        const LeastCounts& least = source_.info().least;
+        return wish_.streams && least.corners > 0 && !least.all_cells;
+    }
+
     bool shows_a_field() const {
         return !view_.walls && (view_.draw == FirstDraw::isosurfaces || view_.draw == FirstDraw::field_on_boundary);
     }
 
     /// With the cell fields that have names of point fields, which tell whether these vary at the walls alone; without them
     /// where they cannot be read.
-    Result<ReadResult> read_with_twins(FieldsToRead& read, std::size_t step) {
+    Result<SurveyedGrid> read_with_twins(FieldsToRead& read, std::size_t step) {
         FieldsToRead both = read;
         for (const FieldInfo& field : source_.info().fields)
             if (read.point && read.cell && field.association == Association::cell &&
                 std::ranges::find(*read.point, field.name) != read.point->end())
                 add_names(*both.cell, {field.name});
         if (both != read) {
-            Result<ReadResult> some = read_with_others(both, step);
+            Result<SurveyedGrid> some = read_with_others(both, step);
             if (some || some.error().code == ErrorCode::cancelled || some.error().code == ErrorCode::out_of_memory) {
                 read = std::move(both);
                 return some;
@@ -96,28 +107,51 @@ private:
             ++named;
         }
         if (named > 0 && fields.size() > most_at_first) {
-            const Result<ReadResult> some = read_with_twins(read, step);
+            const Result<SurveyedGrid> some = look([&] { return read_with_twins(read, step); });
             if (!some) return some.error();
-            view_ = first_view(some->grid, fields);
             if (!view_.rough && !view_.walls &&
                 (view_.reason == FirstReason::marked || view_.reason == FirstReason::name)) {
-                source_.keep(*some, read, step);
+                keep(*some, read, step);
                 return true;
             }
         }
-        const Result<ReadResult> some = source_.read_some({}, step, caller_, run_);
+        read = {};
+        const Result<SurveyedGrid> some = look([&] { return read_it(read, step); });
         if (!some) return some.error();
-        view_ = first_view(some->grid, fields);
-        source_.keep(*some, {}, step);
+        keep(*some, read, step);
         return shows_a_field();
     }
 
-    Result<ReadResult> read_with_others(FieldsToRead& read, std::size_t step) {
+    /// The view of what `read_fields()` reads; all cells where a sample does not tell.
+    template <class ReadFields>
+    Result<SurveyedGrid> look(const ReadFields& read_fields) {
+        for (streams_ = may_stream();; streams_ = false) {
+            Result<SurveyedGrid> some = read_fields();
+            if (!some) return some;
+            bool is_sure = true;
+            view_ = core::first_view_of_sample(some->read.grid, source_.info().fields, some->sampled, &is_sure);
+            if (is_sure) return some;
+        }
+    }
+
+    void keep(const SurveyedGrid& some, const FieldsToRead& fields, std::size_t step) {
+        if (!some.report) source_.keep(some.read, fields, step);
+    }
+
+    Result<SurveyedGrid> read_it(const FieldsToRead& fields, std::size_t step) {
+        if (streams_) return source_.read_sample(fields, step, caller_, run_);
+        Result<ReadResult> some = source_.read_some(fields, step, caller_, run_);
+        if (!some) return some.error();
+        return SurveyedGrid{*std::move(some)};
+    }
+
+    Result<SurveyedGrid> read_with_others(FieldsToRead& read, std::size_t step) {
+        if (streams_) return read_it(read, step); // what is not kept need not have the others
         for (const auto& [names, more] : {std::pair(&read.point, &wish_.also.point), {&read.cell, &wish_.also.cell}}) {
             if (!*more) names->reset();
             else if (*names) add_names(**names, **more);
         }
-        return source_.read_some(read, step, caller_, run_);
+        return read_it(read, step);
     }
 
     GridSource& source_;
@@ -126,6 +160,7 @@ private:
     const Run& run_;
     FirstView view_;
     bool has_looked_ = false, was_there_ = false;
+    bool streams_ = false; ///< cells of the step at hand are not kept
     std::optional<Error> missing_;
 };
 

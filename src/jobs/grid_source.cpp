@@ -552,19 +552,52 @@ Result<ReadResult> GridSource::read_cells(const FieldsToRead& fields, std::size_
     if (auto added = add_blocks(*result, with_choices); !added) return added.error();
     if (auto chosen = choose(*result, caller); !chosen) return chosen.error();
     if (choices_) leave(result->grid.cell_fields, fields.cell);
+    return finish(*std::move(result), fields, caller, run);
+}
+
+/// All of its cells were read, and none is chosen any more.
+Result<ReadResult> GridSource::finish(ReadResult read, const FieldsToRead& fields, Caller& caller,
+                                      const Run& run) const {
     if (knows_blocks_ && !fields.blocks && !names_blocks(fields))
-        std::erase_if(result->grid.cell_fields, [](const Field& field) { return field.name == block_field_name; });
+        std::erase_if(read.grid.cell_fields, [](const Field& field) { return field.name == block_field_name; });
     if (options_.merge_points) {
-        Result<Grid> joined = merged(result->grid, {*options_.merge_points, options_.merge_values}, caller, run);
+        Result<Grid> joined = merged(read.grid, {*options_.merge_points, options_.merge_values}, caller, run);
         if (!joined) return joined.error();
-        result->grid = *std::move(joined);
+        read.grid = *std::move(joined);
     } else {
-        caller.note(coincident_points_note(result->grid, run));
+        caller.note(coincident_points_note(read.grid, run));
     }
-    Result<Grid> grid = closed(std::move(result->grid), options_.hanging_points, closing_.get(), caller, run);
+    Result<Grid> grid = closed(std::move(read.grid), options_.hanging_points, closing_.get(), caller, run);
     if (!grid) return grid.error();
-    result->grid = *std::move(grid);
-    return result;
+    read.grid = *std::move(grid);
+    return read;
+}
+
+/// Whether cells are chosen or changed, or not read from a file that has them one after another.
+bool GridSource::needs_all_cells(const FieldsToRead& fields) const {
+    return made_ || surface_ || is_packed_file() || options_.merge_points || !options_.cells.empty() ||
+           names_blocks(fields);
+}
+
+Result<SurveyedGrid> GridSource::read_sample(const FieldsToRead& fields, std::size_t step, Caller& caller,
+                                             const Run& run) const {
+    const bool interpolates = options_.hanging_points == HangingChoice::interpolate;
+    if (needs_all_cells(fields) || interpolates || fields.blocks || kept_) {
+        Result<ReadResult> all = read_some(fields, step, caller, run);
+        if (!all) return all.error();
+        return SurveyedGrid{*std::move(all)};
+    }
+    ReadOptions options = read_options_;
+    choose_fields(fields, step, options);
+    if (auto room = require_room_once(fields, step, false); !room) return room.error();
+    Result<SurveyedGrid> some = isotet::read_surveyed(options_.file, options, run);
+    if (!some) return some;
+    caller.notes(some->read.notes);
+    if (some->report) return some;
+    Result<ReadResult> whole = finish(std::move(some->read), fields, caller, run);
+    if (!whole) return whole.error();
+    some->read = *std::move(whole);
+    return some;
 }
 
 Result<Grid> GridSource::read(const FieldsToRead& fields, std::size_t step, Caller& caller, const Run& run) const {
@@ -589,8 +622,7 @@ Result<SurveyedGrid> GridSource::read_surveyed(const FieldsToRead& fields, std::
         const std::lock_guard lock(kept_->mutex);
         if (kept_->surveyed && kept_->step == step) return *std::exchange(kept_->surveyed, std::nullopt);
     }
-    if (made_ || surface_ || is_packed_file() || options_.merge_points || !options_.cells.empty() ||
-        names_blocks(fields)) {
+    if (needs_all_cells(fields)) {
         Result<ReadResult> all = read_cells(fields, step, CellsToRead::all, caller, caller.run());
         if (!all) return all.error();
         return SurveyedGrid{*std::move(all)};

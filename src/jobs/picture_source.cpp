@@ -148,6 +148,8 @@ std::string PictureSource::needed_field() const {
 Result<void> PictureSource::choose_steps_and_view(Caller& caller) {
     ChoiceWish wish{job_.all_steps ? Steps::all : Steps::one,
                     {needed_field(), wants_surfaces() && job_.field.cell_field}};
+    const std::size_t steps = job_.all_steps ? std::max<std::size_t>(source_->info().times.size(), 1) : 1;
+    wish.streams = wants_surfaces() && options_with_active_cells(steps).has_value();
     for (const std::string& name : {job_.color_by, job_.boundary_color_by}) {
         if (name.empty()) continue;
         const Result<FoundField> found = choose_field(*source_, {name, false});
@@ -346,26 +348,32 @@ Result<void> PictureSource::take_first_view(bool& contours, std::string& field, 
 /// The cells that do where nothing but a few isosurfaces is drawn; nothing where all are needed.
 std::optional<ReadActiveCells> PictureSource::active_cells(const Contents& contents, const FoundField& field,
                                                            const FieldsToRead& read) const {
-    const bool draws_more =
-        contents.model || !job_.slices.empty() || draws_volume(job_) || job_.solid || job_.method.draw;
+    if (needs_all_cells_ || contents.model || field.neighbours || !read.cell->empty()) return std::nullopt;
+    const auto options = options_with_active_cells(steps_.size());
+    if (!options) return std::nullopt;
+    ReadActiveCells active{field.name, job_.isovalues, {}};
+    active.options.extract.normals = options->normals;
+    active.bounds = job_.boundary == 0.0;
+    if (!active.bounds) active.boundary = streamed_boundary_;
+    if (job_.isovalues.empty()) active.choose = levels_of(job_);
+    return active;
+}
+
+/// Where nothing but a few isosurfaces is drawn, as far as options say.
+std::optional<ContourOptions> PictureSource::options_with_active_cells(std::size_t steps) const {
+    const bool draws_more = !job_.slices.empty() || draws_volume(job_) || job_.solid || job_.method.draw;
     const bool chosen = job_.isovalues.empty(); // by the values
-    const bool decided_later = !job_.shares.empty() || !job_.sweep.empty() || (chosen && steps_.size() > 1);
+    const bool decided_later = !job_.shares.empty() || !job_.sweep.empty() || (chosen && steps > 1);
     ContourOptions options;
     options.method = job_.method.extract;
     options.expected_isovalues = job_.isovalues;
     if (chosen) options.expected_isovalues.resize(job_.levels > 0 ? job_.levels : default_levels);
     options.surfaces = options.expected_isovalues.size();
     options.normals = job_.shade_by == ShadeBy::gradient ? Normals::gradient : Normals::none;
-    if (needs_all_cells_ || draws_more || decided_later || options.surfaces > ActiveCellFilter::max_isovalues ||
-        !job_.stretch.empty() || may_stretch() || field.neighbours || !read.cell->empty() ||
-        !Contour::can_do_with_active_cells(options))
+    if (draws_more || decided_later || options.surfaces > ActiveCellFilter::max_isovalues || !job_.stretch.empty() ||
+        may_stretch() || !Contour::can_do_with_active_cells(options))
         return std::nullopt;
-    ReadActiveCells active{field.name, job_.isovalues, {}};
-    active.options.extract.normals = options.normals;
-    active.bounds = job_.boundary == 0.0;
-    if (!active.bounds) active.boundary = streamed_boundary_;
-    if (chosen) active.choose = levels_of(job_);
-    return active;
+    return options;
 }
 
 /// Fills in the grid: all cells or, if they do, active ones.

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include <isotet/contour.hpp>
 #include <isotet/jobs/draw_files.hpp>
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/first_choice.hpp>
@@ -53,6 +54,7 @@ private:
     Result<Contents> read_contents(std::size_t step, bool on_cpu, Caller& caller);
     std::optional<ReadActiveCells> active_cells(const Contents& contents, const FoundField& field,
                                                 const FieldsToRead& read) const;
+    std::optional<ContourOptions> options_with_active_cells(std::size_t steps) const;
     Result<void> read_cells(const FieldsToRead& fields, std::size_t step, const std::optional<ReadActiveCells>& active,
                             Contents& contents, Caller& caller);
     bool has_cell_field(const FoundField& colored, std::size_t step) const;

@@ -124,7 +124,9 @@ const std::vector<MadeFile>& made_files() {
         {"constant temperature", {{"T", constant}, {"c", smooth}, {"rate", other}}, {{"c"}, isosurfaces}},
         {"a level set", {{"gradient", smooth, 3}, {"levelset"}, {"curvature", noise}}, {{"levelset"}, isosurfaces}},
         {"a reservoir",
-         {{"FIPNUM", halves, 1, cell}, {"PRESSURE", smooth, 1, cell}, {"SWAT", smooth, 1, cell},
+         {{"FIPNUM", halves, 1, cell},
+          {"PRESSURE", smooth, 1, cell},
+          {"SWAT", smooth, 1, cell},
           {"PERMX", noise, 1, cell}},
          {{"SWAT", "PRESSURE"}, isosurfaces}},
         {"a scan", {{"labels", halves, 1, cell}, {"HU", smooth}}, {{"HU"}, isosurfaces}},
@@ -197,14 +199,16 @@ TEST(FirstChoice, IsThatOfAPersonForNearlyAllFiles) {
         const FirstView view = shown_first(path);
         ++all;
         if (is_right(view, wanted) && view.draw == wanted.draw) ++right;
-        else wrong.push_back(fmt::format("{}: '{}' drawn as {}, a person would take {}", what, view.field,
-                                         static_cast<int>(view.draw), fmt::join(wanted.fields, " or ")));
+        else
+            wrong.push_back(fmt::format("{}: '{}' drawn as {}, a person would take {}", what, view.field,
+                                        static_cast<int>(view.draw), fmt::join(wanted.fields, " or ")));
     };
     for (const RealFile& file : real_files())
         if (test::is_read_here(file.path))
             look(file.path, test::source_folder().string() + "/data/" + file.path, file.wanted);
     for (const MadeFile& file : made_files()) look(file.what, write_made(file, folder.file("made.vtu")), file.wanted);
-    EXPECT_GE(20 * right, 19 * all) << right << " of " << all << " are right:\n" << fmt::to_string(fmt::join(wrong, "\n"));
+    EXPECT_GE(20 * right, 19 * all) << right << " of " << all << " are right:\n"
+                                    << fmt::to_string(fmt::join(wrong, "\n"));
     if (test::is_read_here("a.e")) {
         EXPECT_GE(all, 40u);
     }
@@ -287,6 +291,47 @@ TEST_F(FirstStep, IsTheSameForExtractAndInfo) {
     EXPECT_EQ(summary.step, 1u);
     EXPECT_EQ(summary.fields.at(0).components.at(0).upper, 3);
     EXPECT_EQ(summary.first.field, "T");
+}
+
+/// A constant field, then one that varies, each with other fields beside it.
+std::vector<std::string> files_of_steps(const test::TemporaryFolder& folder, const std::string& shape,
+                                        const char* ending) {
+    std::vector<std::string> files;
+    for (int step = 0; step < 3; ++step) {
+        Grid grid = make_grid({.shape = shape, .side = 20, .fields = {"gyroid", "sphere"}}).value();
+        const std::vector<float> same(grid.points.tuples(), 1);
+        grid.point_fields.push_back({"late", step == 0 ? Array::own(same) : grid.point_fields[0].values});
+        files.push_back(folder.file(fmt::format("{}{}{}", shape, step, ending)));
+        EXPECT_TRUE(write_grid(grid, files.back()));
+    }
+    return files;
+}
+
+TEST_F(FirstStep, IsFoundWhileCellsStayInTheirFiles) {
+    const ReadActiveCells active{"gyroid", {0.2}, {}};
+    for (const char* shape : {"kuhn", "mixed"})
+        for (const std::string field : {"", "gyroid", "late", "gyroid + sphere"}) {
+            SCOPED_TRACE(testing::Message() << shape << " '" << field << "'");
+            std::vector<std::string> files = files_of_steps(folder, shape, ".vtu");
+            GridOptions options;
+            options.file = files[0];
+            options.more_files = {files[1], files[2]};
+            std::vector<FirstChoice> choices;
+            for (const bool streams : {true, false}) {
+                GridSource source = GridSource::open(options, listener).value();
+                ChoiceWish wish{Steps::one, {field}};
+                wish.streams = streams;
+                choices.push_back(choose_first(source, options, wish, listener, listener.run()).value());
+                const auto read = source.read_active({}, choices.back().steps[0], active, listener);
+                ASSERT_TRUE(read) << read.error().message;
+                EXPECT_EQ(read->cells_in_file.has_value(), streams) << "else the first look has kept them";
+            }
+            EXPECT_EQ(choices[0].steps, choices[1].steps);
+            EXPECT_EQ(choices[0].steps[0], field == "late" ? 1u : 0u);
+            EXPECT_EQ(choices[0].view.field, choices[1].view.field);
+            EXPECT_EQ(choices[0].view.draw, choices[1].view.draw);
+            EXPECT_EQ(choices[0].view.reason, choices[1].view.reason);
+        }
 }
 
 TEST_F(FirstStep, OfASeriesWhoseLastFileIsBrokenIsTheFirst) {

@@ -25,11 +25,12 @@ struct ChoiceWish {
     FieldsToRead also{std::vector<std::string>(), std::vector<std::string>()}; ///< will be read in any case
     bool needs_view = true;       ///< where no field is named; else it is not looked for
     bool only_field_will_do = false; ///< the only field of a file is taken unseen
+    bool streams = false; ///< cells will be read by GridSource::read_active(): none is kept, where a sample tells as much
     bool surveys = false;            ///< the grid will be read by GridSource::read_surveyed(), with all fields
 };
 
 /// Chooses the step that the options ask for; else the first one, the second or the last, where a field varies, and
-/// notes which. What is read for that is kept by `source`; where step and field are known without it, nothing is read.
+/// notes which. What is read for that is kept by `source`, if it has all cells; where step and field are known without it, nothing is read.
 ///
 /// Errors   as choose_steps(), choose_field() and of reading
 Result<FirstChoice> choose_first(GridSource& source, const GridOptions& options, const ChoiceWish& wish, Caller& caller,

@@ -125,6 +125,9 @@ public:
     /// The same, for looking at fields: of a packed file some cells, spread evenly (ReadResult::cells_in_file).
     Result<ReadResult> read_some(const FieldsToRead& fields, std::size_t step, Caller& caller, const Run& run) const;
 
+    /// read_some(), but of files whose cells can be counted while they go by only a sample of these (SurveyedGrid::report).
+    Result<SurveyedGrid> read_sample(const FieldsToRead& fields, std::size_t step, Caller& caller, const Run& run) const;
+
     /// The same, for what is counted and looked at alone: of the cells only counts and a sample, where that can be done. No
     /// hanging points are looked for then.
     Result<SurveyedGrid> read_surveyed(const FieldsToRead& fields, std::size_t step, Caller& caller) const;
@@ -154,9 +157,11 @@ private:
     enum class CellsToRead : std::uint8_t { all, some };
     Result<ReadResult> read_cells(const FieldsToRead& fields, std::size_t step, CellsToRead cells, Caller& caller,
                                   const Run& run) const;
+    Result<ReadResult> finish(ReadResult read, const FieldsToRead& fields, Caller& caller, const Run& run) const;
     Result<ReadResult> read_unclosed(const FieldsToRead& fields, std::size_t step, CellsToRead cells, Caller& caller,
                                      const Run& run) const;
     Result<void> open_made(const GridOptions& options);
+    bool needs_all_cells(const FieldsToRead& fields) const;
     Result<void> take_choices();
     bool names_blocks(const FieldsToRead& fields) const;
     Result<void> add_blocks(ReadResult& read, const FieldsToRead& fields) const;

@@ -131,10 +131,15 @@ public:
 
     bool is_one_cell_thick() { return cells().is_one_cell_thick(); }
 
+    /// False once a field had no value in the cells of a sample.
+    bool is_sure() const { return is_sure_; }
+
 private:
     /// Whether a cell with a volume has a value; all are looked at where those of the sample have none.
     bool has_values_in_cells(const Array& values, Association association) {
-        if (cells().has_values(values, association) || !sampled_.empty()) return true;
+        if (cells().has_values(values, association)) return true;
+        is_sure_ = is_sure_ && sampled_.empty();
+        if (!sampled_.empty()) return true;
         const auto all = core::CellReader::open(grid_);
         if (!all) return true;
         const core::Scalar scalar{0, values.components() > 1};
@@ -170,6 +175,7 @@ private:
     const Grid& grid_;
     std::span<const std::uint64_t> sampled_;
     std::optional<core::CellCornersSample> cells_;
+    bool is_sure_ = true;
 };
 
 FirstView view_of(const FirstCandidate& candidate, FirstDraw draw, FirstReason reason) {
@@ -254,9 +260,7 @@ std::vector<FieldInfo> describe_fields(const Grid& grid) {
 
 namespace {
 
-FirstView chosen_view(const Grid& grid, const std::vector<FieldInfo>& fields, bool flat,
-                      std::span<const std::uint64_t> sampled) {
-    Judge judge(grid, sampled);
+FirstView chosen_view(const Grid& grid, const std::vector<FieldInfo>& fields, bool flat, Judge& judge) {
     std::vector<FirstCandidate> candidates = first_candidates(fields);
     add_named_as_regions(fields, candidates);
     const FirstDraw surfaces =
@@ -313,20 +317,29 @@ FirstView first_view(const Grid& grid, const std::vector<FieldInfo>& fields) {
 }
 
 FirstView core::first_view_of_sample(const Grid& grid, const std::vector<FieldInfo>& fields,
-                                     std::span<const std::uint64_t> numbers) {
+                                     std::span<const std::uint64_t> numbers, bool* is_sure) {
     const bool flat = has_only_flat_cells(grid.cells);
     const bool empty = !flat && !has_cells_to_cut(grid.cells);
-    FirstView view = empty ? FirstView() : chosen_view(grid, fields, flat, numbers);
+    Judge judge(grid, numbers);
+    FirstView view = empty ? FirstView() : chosen_view(grid, fields, flat, judge);
     view.empty = empty;
     view.flat = flat;
+    if (is_sure) *is_sure = judge.is_sure();
     return view;
 }
 
 bool field_varies(const Grid& grid, std::string_view name) {
+    return core::field_varies_in_sample(grid, name, {}).value_or(true);
+}
+
+std::optional<bool> core::field_varies_in_sample(const Grid& grid, std::string_view name,
+                                                 std::span<const std::uint64_t> numbers) {
     const Result<PointField> field = find_field(grid, name);
     if (!field) return false;
-    Judge judge(grid);
-    if (!judge.judge(field->values, Association::point).varies) return false;
+    Judge judge(grid, numbers);
+    const bool varies = judge.judge(field->values, Association::point).varies;
+    if (!judge.is_sure()) return std::nullopt;
+    if (!varies) return false;
     const std::string array(field_called(grid.point_fields, std::string(name)) ? name
                                                                                : name.substr(0, name.rfind(':')));
     return !varies_at_walls_alone(grid, {array, Association::point, {array}, {}});
