@@ -219,6 +219,13 @@ TEST(FirstView, ColoursTheBoundaryOfAGridThatIsOneCellThick) {
     EXPECT_FALSE(view_of(grid).rough);
 }
 
+TEST(FirstView, DoesNotTakeACubeForOneThatIsOneCellThick) {
+    for (const auto& [shape, side] : {std::pair{"kuhn", 64u}, {"kuhn", 32u}, {"hex", 64u}}) {
+        const Grid grid = make_grid({.shape = shape, .side = side, .fields = {"gyroid"}}).value();
+        EXPECT_EQ(view_of(grid).draw, FirstDraw::isosurfaces) << shape << " of " << side;
+    }
+}
+
 TEST(FirstView, DoesNotTakeCoarseGridsForNoise) {
     Grid grid = cube(2);
     grid.point_fields = {{"foo", of_points(grid, smooth)}};
