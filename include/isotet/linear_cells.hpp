@@ -129,6 +129,7 @@ struct LinearizeOptions {
     std::vector<double> isovalues = {};
     Array values = {};
     std::vector<std::uint64_t> also = {}; ///< user's cells that stay though no isovalue meets them, ascending
+    bool around = false; ///< polyhedra that share a point with a cell that is met stay, too: for gradients
 };
 
 /// True when some cells are polyhedra with faces, prisms of five or six sides, or of a degree above 1: linearize() makes

@@ -654,7 +654,7 @@ IsosurfaceOptions PictureSource::scene_options(Contents& contents, const std::ve
     options.has_cells_around = options.all_cells && job_.shade_by == ShadeBy::gradient;
     options.boundary = std::move(contents.boundary);
     options.packed = std::move(contents.packed);
-    if (options.all_cells) options.expected_isovalues = isovalues;
+    if (job_.sweep.empty() && !draws_volume(job_)) options.expected_isovalues = isovalues;
     if (!job_.stretch.empty()) options.grid.points = stretched(options.grid.points, factors_of(job_.stretch));
     options.surfaces = job_.sweep.empty() ? isovalues.size() : static_cast<std::uint64_t>(job_.sweep[2]);
     options.method = job_.method.extract;

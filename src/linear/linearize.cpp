@@ -63,6 +63,14 @@ public:
     MetCells(const core::CellReader& cells, const LinearizeOptions& options)
         : cells_(cells), values_(options.values), isovalues_(options.isovalues) {
         std::ranges::sort(isovalues_);
+        if (options.around && !isovalues_.empty()) mark_points();
+    }
+
+    /// Whether a corner is one of a cell that is met; false where none are marked.
+    bool is_around(std::size_t cell) const {
+        for (std::uint64_t i = 0; i < cells_.corners(cell) && !marked_.empty(); ++i)
+            if (marked_[cells_.corner(cells_.first(cell) + i)]) return true;
+        return false;
     }
 
     /// `corner_values`   memory to be used again
@@ -89,9 +97,23 @@ public:
     }
 
 private:
+    void mark_points() {
+        marked_ = core::Buffer<std::uint8_t>(cells_.points());
+        std::ranges::fill(marked_, std::uint8_t{0});
+        core::parallel_ranges(cells_.count(), 1 << 13, [&](std::size_t begin, std::size_t end) {
+            std::vector<double> corner_values;
+            for (std::size_t cell = begin; cell < end; ++cell) {
+                if (!meets(cell, corner_values)) continue;
+                for (std::uint64_t i = 0; i < cells_.corners(cell); ++i)
+                    std::atomic_ref(marked_[cells_.corner(cells_.first(cell) + i)]).store(1, std::memory_order_relaxed);
+            }
+        });
+    }
+
     const core::CellReader& cells_;
     const Array& values_;
     std::vector<double> isovalues_;
+    core::Buffer<std::uint8_t> marked_; ///< by point
 };
 
 Result<void> check_selection(const Grid& grid, const LinearizeOptions& options) {
@@ -124,7 +146,7 @@ LinearGrid split_blocks(const Grid& grid, const core::CellReader& cells, const c
             const std::size_t last = std::min(cells.count(), (b + 1) * cells_per_block);
             for (std::size_t cell = b * cells_per_block; cell < last; ++cell) {
                 const bool is_split = polyhedra && core::is_polyhedron(cells, faces, cell);
-                if (is_split && !options.isovalues.empty() && !met.meets(cell, corner_values) &&
+                if (is_split && !options.isovalues.empty() && !met.meets(cell, corner_values) && !met.is_around(cell) &&
                     !std::ranges::binary_search(options.also, cell))
                     ++parts.report.unmet;
                 else if (is_split) splitter.split(cell, parts);
@@ -205,7 +227,7 @@ Result<LinearGrid> split_by_degree_first(const Grid& grid, const core::CellReade
                                          const LinearizeOptions& options, const Progress& progress) {
     LinearGrid quadratic = split_blocks(grid, cells, faces, options, std::nullopt, progress);
     if (progress.cancelled()) return linearizing_cancelled();
-    auto points = quadratic.extend(grid.points, {.threads = core::threads_here()});
+    auto points = quadratic.extend(grid.points);
     if (!points) return points.error();
     quadratic.grid.points = *std::move(points);
     auto listed = with_lattice_faces(cells, faces, quadratic, progress);
@@ -214,7 +236,7 @@ Result<LinearGrid> split_by_degree_first(const Grid& grid, const core::CellReade
     auto linear = split_in_order(quadratic.grid, options, LargeFaces::triangles, progress);
     if (!linear) return linear;
     LinearGrid out = composed(quadratic, *std::move(linear));
-    points = out.extend(grid.points, {.threads = core::threads_here()});
+    points = out.extend(grid.points);
     if (!points) return points.error();
     out.grid.points = *std::move(points);
     return out;
@@ -243,7 +265,7 @@ Result<LinearGrid> split_in_order(const Grid& grid, const LinearizeOptions& opti
     const auto types = out.grid.cells.types.as<std::uint8_t>();
     if (out.report.unmet == 0 && std::ranges::none_of(types, core::is_contoured) && !has_curved_cells(grid.cells))
         return nothing_left(grid, out.report);
-    auto points = out.extend(grid.points, {.threads = core::threads_here()});
+    auto points = out.extend(grid.points);
     if (!points) return points.error();
     out.grid.points = *std::move(points);
     progress("linearize", 1);

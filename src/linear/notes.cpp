@@ -8,7 +8,7 @@ namespace isotet {
 std::vector<std::string> LinearizeReport::notes() const {
     std::vector<std::string> out;
     if (unmet > 0)
-        out.push_back(fmt::format("{} of {} polyhedra have values on both sides of an isovalue: {} were split around a "
+        out.push_back(fmt::format("{} of {} polyhedra matter to the isovalues: {} were split around a "
                                   "point inside (docs/cells.md)",
                                   polyhedra, polyhedra + unmet, centred));
     else if (centred > 0)

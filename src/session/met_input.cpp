@@ -132,11 +132,11 @@ bool MetInput::suits(const ContourInput& input, const ContourOptions& options) {
     const auto plain = [](const Field& field) { return keeps_its_scale(field.values); };
     const ScalarType points = input.grid.points.type();
     return !options.expected_isovalues.empty() && options.surfaces > 0 && method == Method::direct &&
-           options.engine->extracts_directly() && !gradients && !options.edge_ends && !options.exact_vertices &&
-           !options.frame && input.grid.point_numbers.empty() &&
-           (points == ScalarType::float32 || points == ScalarType::float64) && input.field.cell_values.empty() &&
-           has_cells_to_linearize(input.grid.cells) && !has_curved_cells(input.grid.cells) &&
-           keeps_its_scale(input.field.values) && std::ranges::all_of(input.point_fields, plain);
+           options.engine->extracts_directly() && !options.edge_ends && !options.exact_vertices && !options.frame &&
+           input.grid.point_numbers.empty() && (points == ScalarType::float32 || points == ScalarType::float64) &&
+           input.field.cell_values.empty() && has_cells_to_linearize(input.grid.cells) &&
+           !has_curved_cells(input.grid.cells) && keeps_its_scale(input.field.values) &&
+           std::ranges::all_of(input.point_fields, plain);
 }
 
 bool MetInput::is_good_for(std::span<const double> isovalues) const {
@@ -171,7 +171,11 @@ Result<std::optional<ContourInput>> MetInput::make(const ContourInput& input, co
         also = cells_at(*cells, *faces, used);
     }
     auto linear = linearize(input.grid,
-                            {.isovalues = next.isovalues_, .values = input.field.values, .also = std::move(also)}, run);
+                            {.isovalues = next.isovalues_,
+                             .values = input.field.values,
+                             .also = std::move(also),
+                             .around = options.normals == Normals::gradient},
+                            run);
     if (!linear) return linear.error();
     if (linear->grid.cells.count() == 0) return std::optional<ContourInput>();
     next.range_ = range_of(input.field, used_points(*cells, *faces));

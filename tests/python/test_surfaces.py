@@ -355,7 +355,7 @@ def test_of_polyhedra_only_those_are_split_that_the_isovalue_meets():
     once = grid.contour(0.7, "sphere")
     session = isotet.Contour(grid, "sphere", method="direct")
     assert same(once, session.contour(0.7))
-    assert "have values on both sides of an isovalue" in once.notes[0]
+    assert "matter to the isovalues" in once.notes[0]
 
 
 def test_centres_of_polyhedra_take_their_cells_values():
