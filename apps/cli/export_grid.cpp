@@ -77,6 +77,7 @@ PackJob pack_job_of(const ExportCommand& command, const FirstChoice& choice, con
     job.out = out;
     job.cell_field = command.field.cell_field;
     job.scalars_only = true; // pages tell of fields one by one
+    job.coordinates_do = true;
     if (command.field.name.empty()) return job;
     job.fields = {command.field.name};
     if (!command.color_by.empty() && command.color_by != command.field.name) job.fields.push_back(command.color_by);

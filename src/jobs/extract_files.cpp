@@ -40,6 +40,7 @@ public:
     ExtractNumbers take_numbers() { return std::move(numbers_); }
     /// What needs less memory.
     std::string way_out() const;
+    bool reworks_cells() const;
 
 private:
     Result<void> open();
@@ -320,6 +321,9 @@ Result<bool> ExtractRun::load(std::size_t step) {
     coarse_tets_ = 0;
     ContourInput input{grid_, *std::move(field), std::move(fields->point), std::move(fields->cell)};
     if (job_.field.shape && plan_.contour.refine) plan_.contour.refine->carried = input.point_fields;
+    if (plan_.active_cells && plan_.active_cells->choose)
+        if (auto chosen = plan_.active_cells->choose(input.field)) // else the field has no value, which is told later
+            plan_.contour.expected_isovalues = *std::move(chosen);
     if (*cells_in_file) {
         input.all_cells = [this, step, all = input](const Run& run) mutable -> Result<ContourInput> {
             caller_.detail(fmt::format("reading all cells of step {}", step));
@@ -332,6 +336,8 @@ Result<bool> ExtractRun::load(std::size_t step) {
             all.cell_fields = std::move(of_all->cell);
             return all;
         };
+        caller_.detail(fmt::format("{} of {} cells were kept: the isovalues meet no others", grid_.cells.count(),
+                                   **cells_in_file));
         input.cell_numbers = active_numbers_;
         input.has_cells_around = plan_.contour.normals == Normals::gradient;
     }
@@ -368,6 +374,13 @@ Result<void> ExtractRun::prepare_and_look(std::size_t step) {
     return choose_values(step);
 }
 
+/// Whether a packed grid does not do.
+bool ExtractRun::reworks_cells() const {
+    return job_.piece || job_.solid || plan_.touched || job_.volumes || !job_.shares.empty() || job_.exact_vertices ||
+           job_.split_cells || job_.grid.merge_points || !job_.grid.displace.empty() || !job_.grid.cells.empty() ||
+           job_.method == Method::direct || job_.engine == EngineChoice::reference;
+}
+
 /// Opens the grid as a packed file, where surfaces as the job asks for them come from its chunks.
 Result<void> ExtractRun::open_packed() {
     const auto interpolates_unless = [&](bool refused, const char* why) -> Result<void> {
@@ -381,10 +394,6 @@ Result<void> ExtractRun::open_packed() {
     Result<PackedFile> file = PackedFile::open(job_.grid.file, {job_.memory.value_or(0)}, caller_.run());
     if (!file) return file.error();
     const PackedFileInfo& info = file->info();
-    const bool reworks_cells = job_.piece || job_.solid || plan_.touched || job_.volumes || !job_.shares.empty() ||
-                               job_.exact_vertices || job_.split_cells || job_.grid.merge_points ||
-                               !job_.grid.displace.empty() || !job_.grid.cells.empty() ||
-                               job_.method == Method::direct || job_.engine == EngineChoice::reference;
     const bool needs_gradients = job_.normals == Normals::gradient;
     const auto has_field = [&](const PackedFieldInfo& field) {
         if (job_.field.shape) return !needs_gradients;
@@ -395,7 +404,7 @@ Result<void> ExtractRun::open_packed() {
     };
     const bool has_all = std::ranges::any_of(info.fields, has_field) && (!job_.source_cells || info.source_cells) &&
                          (!plan_.carried || std::ranges::all_of(plan_.carried->components, is_packed)) && !plan_.color;
-    if (reworks_cells || !has_all) {
+    if (reworks_cells() || !has_all) {
         caller_.note(note_of_unpacking(info));
         return interpolates_unless(true, "what else was asked for needs all of the packed file, or is not packed");
     }
@@ -868,10 +877,15 @@ Result<void> ExtractRun::run() {
 
 std::string ExtractRun::way_out() const {
     std::vector<std::string_view> ways;
-    if (plan_.contour.expected_isovalues.size() > 1) ways.push_back(job_.field.shape ? "one surface at a time" : "one isovalue at a time");
-    if (!job_.with || !job_.with->empty()) ways.push_back("a surface without fields (`with` leaves them out)");
-    if (!packed_) ways.push_back("a packed file (isotet pack)");
-    return ways.empty() ? "`memory` with a smaller number" : fmt::format("{}", fmt::join(ways, ", or "));
+    if (job_.isovalues.size() > 1)
+        ways.push_back(job_.field.shape ? "one surface at a time" : "one isovalue at a time");
+    const bool leaves_out = job_.with && std::ranges::all_of(*job_.with, &std::string::empty);
+    if (!leaves_out && plan_.out_holds_fields) ways.push_back("a surface without fields (`with` leaves them out)");
+    if (job_.snap) ways.push_back("an isovalue as it is (without `snap`)");
+    if (!packed_ && !reworks_cells()) ways.push_back("a packed file (isotet pack)");
+    if (packed_) ways.push_back("`memory` with a smaller number");
+    if (ways.empty()) ways.push_back("a part of the grid (`block`)");
+    return fmt::format("{}", fmt::join(ways, ", or "));
 }
 
 } // namespace

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <isotet/active_cells.hpp>
+#include <isotet/range_levels.hpp>
 #include <isotet/fields.hpp>
 #include <isotet/jobs/first_choice.hpp>
 #include <isotet/jobs/number_text.hpp>
@@ -91,16 +92,21 @@ bool looks_around(const FoundField& field) { return !field.cell.empty() || field
 std::optional<ReadActiveCells> plan_active_cells(const ExtractJob& job, const ExtractPlan& plan) {
     const bool looks_around_others = (plan.color && looks_around(*plan.color)) ||
                                      (plan.carried && std::ranges::any_of(plan.carried->components, looks_around));
-    const bool needs_all = looks_around(plan.field) || job.piece || job.solid || job.volumes || job.grid.merge_points ||
-                           !job.grid.cells.empty();
-    if (needs_all || looks_around_others || plan.contour.expected_isovalues.size() > ActiveCellFilter::max_isovalues ||
-        !Contour::can_do_with_active_cells(plan.contour))
+    const bool chosen = job.isovalues.empty(); // by the values
+    ContourOptions options = plan.contour;
+    if (chosen) options.expected_isovalues.resize(std::max<std::uint64_t>(job.levels, 1));
+    const bool needs_all = looks_around(plan.field) || job.snap || !job.shares.empty() ||
+                           (chosen && plan.steps.size() > 1) || job.piece || job.solid || job.volumes ||
+                           job.grid.merge_points || !job.grid.cells.empty();
+    if (needs_all || looks_around_others || options.expected_isovalues.size() > ActiveCellFilter::max_isovalues ||
+        !Contour::can_do_with_active_cells(options))
         return std::nullopt;
-    ReadActiveCells active{plan.field.name, plan.contour.expected_isovalues, {}, job.field.shape};
+    ReadActiveCells active{plan.field.name, job.isovalues, {}, job.field.shape};
     active.options.precision = plan.contour.precision;
     active.options.extract.ties = plan.contour.ties;
     active.options.extract.source_cells = plan.contour.source_cells;
     active.options.extract.normals = plan.contour.normals;
+    if (chosen) active.choose = RangeLevels{.count = options.expected_isovalues.size(), .whole_range = true};
     return active;
 }
 

@@ -186,10 +186,11 @@ Result<void> PackRun::take_all_fields() {
     if (names_.empty()) {
         const auto first = choose_first(*source_, job_.grid, {Steps::one, {}, {}, true, true}, caller_, caller_.run());
         if (!first) return first.error();
-        if (first->view.field.empty())
+        if (first->view.field.empty() && !job_.coordinates_do)
             return refusal("the grid has no field to pack with; `fields` x packs a coordinate");
-        names_ = {first->view.field};
-        caller_.note(note_of_field(first->view));
+        names_ = {first->view.field.empty() ? "x" : first->view.field};
+        caller_.note(first->view.field.empty() ? "the grid has no field to show: the coordinate x is shown"
+                                               : note_of_field(first->view));
         std::erase_if(others, [&](const FieldInfo& field) { return field.name == names_.front(); });
     }
     std::vector<std::string> left_out;

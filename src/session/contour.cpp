@@ -320,10 +320,11 @@ Result<FieldReport> Contour::field(const Run& run) {
         if (data.source.is_curved()) return data.field_of_curved();
         if (auto ok = data.prepare(0, run); !ok) return ok.error();
         if (data.method_of_next(0) == Method::clusters) return data.state.packed()->field();
-        if (data.source.input().all_cells)
+        Result<std::optional<ContourResult>> looked = extract_directly(data.source.input(), data.options, {}, run);
+        if (looked && !*looked) {
             if (auto ok = data.get_all_cells(run); !ok) return ok.error();
-        const Result<std::optional<ContourResult>> looked =
-            extract_directly(data.source.input(), data.options, {}, run);
+            looked = extract_directly(data.source.input(), data.options, {}, run);
+        }
         if (!looked) return looked.error();
         data.look.range = (*looked)->field;
         if (const std::optional<ValueRange> range = data.source.range()) {

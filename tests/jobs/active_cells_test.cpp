@@ -135,6 +135,54 @@ TEST(ActiveCellsOfFiles, AreOfAnyNumberOfIsovaluesWithTheirNumbers) {
         }
 }
 
+TEST(ActiveCellsOfFiles, AreOfIsovaluesThatFollowFromTheValues) {
+    const test::TemporaryFolder folder;
+    const std::string file = folder.file("grid.vtu");
+    for (const char* shape : {"shuffled", "hex", "mixed"})
+        for (const char* field : {"gyroid", "integer"})
+            for (const std::uint64_t levels : {0, 1, 5}) {
+                SCOPED_TRACE(testing::Message() << shape << " " << field << " " << levels);
+                ASSERT_TRUE(write_grid(made(shape, 12), file));
+                ExtractJob job = active_job(file, folder.file("active.vtp"));
+                job.field.name = field;
+                job.isovalues.clear();
+                job.levels = levels;
+                Listener listener, other;
+                EXPECT_EQ(extract_files(job, listener).value().method, Method::direct);
+                EXPECT_FALSE(was_read_twice(listener));
+                EXPECT_TRUE(std::ranges::any_of(listener.details, [](const std::string& detail) {
+                    return detail.find("cells were kept") != std::string::npos;
+                }));
+                EXPECT_TRUE(test::content_of(job.out) == reference_file(job, folder));
+                job.engine = EngineChoice::reference;
+                EXPECT_TRUE(extract_files(job, other));
+                EXPECT_EQ(listener.noted, other.noted) << "the range and its middle";
+            }
+}
+
+/// The range is that of used points: all cells are read where others have its ends.
+TEST(ActiveCellsOfFiles, AreReadAgainWhereAPointWithoutCellHasTheLargestValue) {
+    const test::TemporaryFolder folder;
+    const std::string file = folder.file("grid.vtu");
+    Grid grid = made("shuffled", 12);
+    const auto places = grid.points.as<float>();
+    std::vector<float> points(places.begin(), places.end()), values;
+    points.insert(points.end(), {0.31F, 0.32F, 0.33F});
+    for (std::size_t i = 0; i < grid.point_fields[0].values.tuples(); ++i)
+        values.push_back(static_cast<float>(grid.point_fields[0].values.at(i)));
+    values.push_back(100);
+    grid.points = Array::own(std::move(points), 3);
+    grid.point_fields = {{"gyroid", Array::own(std::move(values))}};
+    ASSERT_TRUE(write_grid(grid, file));
+    ExtractJob job = active_job(file, folder.file("active.vtp"));
+    job.isovalues.clear();
+    Listener listener;
+    const ExtractNumbers numbers = extract_files(job, listener).value();
+    EXPECT_TRUE(was_read_twice(listener));
+    EXPECT_LT(numbers.surfaces.at(0).isovalue, 2);
+    EXPECT_TRUE(test::content_of(job.out) == reference_file(job, folder));
+}
+
 TEST(ActiveCellsOfFiles, AreAmongCellsWithoutVolume) {
     const test::TemporaryFolder folder;
     Grid grid = made("mixed", 8);
@@ -386,7 +434,8 @@ TEST(ActiveCellsOfFiles, WithoutAnyCellSayThatNoneCanBeContoured) {
     const auto result = extract_files(job, listener);
     ASSERT_FALSE(result);
     EXPECT_EQ(result.error().code, ErrorCode::invalid_data);
-    EXPECT_NE(result.error().message.find("no cell that can be contoured"), std::string::npos) << result.error().message;
+    EXPECT_NE(result.error().message.find("no cell that can be contoured"), std::string::npos)
+        << result.error().message;
 }
 
 TEST(ActiveCellsOfFiles, AreNotReadAloneWhereOthersMatter) {

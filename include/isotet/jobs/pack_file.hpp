@@ -25,6 +25,7 @@ struct PackJob {
                                      ///< there are none the one that is shown first. A vector is packed as its components
                                      ///< and its magnitude
     std::vector<std::string> cell_fields; ///< packed as they are; source cells are packed, too
+    bool coordinates_do = false; ///< where the grid has no field
     bool scalars_only = false;            ///< no vectors, and what is left out is not noted: for callers that say it themselves
     bool cell_field = false;              ///< as FieldChoice
     Precision precision = Precision::float32;

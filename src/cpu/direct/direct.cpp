@@ -90,7 +90,8 @@ private:
     Result<void> look_only(const Progress& progress) {
         if (auto ok = core::check_cells(input_.grid, input_.cells, progress); !ok) return ok.error();
         if (auto ok = require_a_tet(); !ok) return ok.error();
-        survey_used_points();
+        if (request_.active_cells_only) survey_as_assumed();
+        else survey_used_points();
         for (std::size_t cell = 0; cell < input_.cells.count(); ++cell)
             result_.cells_left_out += !core::is_contoured(input_.cells.type(cell));
         return {};
@@ -201,17 +202,29 @@ private:
         return out;
     }
 
+    /// The survey of all points, where those that decide are used: active filters keep a cell of each.
+    void survey_as_assumed() {
+        survey_ = survey_points<Real>(input_, nullptr);
+        find_sides(input_, survey_, 0, core::store_isovalue<Real>(0, survey_.field.storage), request_.ties,
+                   Watch::deciding, sides_);
+        see_used_points(input_.cells, request_.split_cells, sides_);
+        if (!is_survey_of_used()) survey_used_points();
+    }
+
+    /// Whether points that were not seen decide on nothing.
+    bool is_survey_of_used() {
+        settled_ = true;
+        if (!any_unseen(sides_)) return true;
+        PointSurvey without_them = survey_points<Real>(input_, &sides_);
+        if (!without_them.decides_as(survey_)) return false;
+        survey_ = std::move(without_them);
+        return true;
+    }
+
     bool is_as_assumed(const CutContext& context) {
-        if (!settled_) {
-            settled_ = true;
-            if (any_unseen(sides_)) {
-                const PointSurvey without_them = survey_points<Real>(input_, &sides_);
-                if (!without_them.decides_as(survey_)) {
-                    survey_used_points();
-                    return false;
-                }
-                survey_ = without_them;
-            }
+        if (!settled_ && !is_survey_of_used()) {
+            survey_used_points();
+            return false;
         }
         return !(context.saw_flat && !mostly_negative_ && ask_for_most());
     }

@@ -8,7 +8,10 @@
 namespace isotet {
 
 Result<std::vector<double>> RangeLevels::operator()(const PointField& field) const {
-    return within(typical_range(field.values), field);
+    if (!whole_range) return within(typical_range(field.values), field);
+    const auto statistics = statistics_of(field.values);
+    if (!statistics) return statistics.error();
+    return within({(*statistics)[0].lower, (*statistics)[0].upper}, field);
 }
 
 Result<std::vector<double>> RangeLevels::within(const ValueRange& range, const PointField& field) const {

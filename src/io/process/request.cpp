@@ -14,7 +14,7 @@
 namespace isotet::io::confined {
 namespace {
 
-constexpr std::uint32_t request_version = 0x6973000a;
+constexpr std::uint32_t request_version = 0x6973000b;
 
 using Names = std::optional<std::vector<std::string>>;
 
@@ -88,12 +88,14 @@ std::shared_ptr<StreamedBoundary> decode_boundary(Decoder& in) {
 void encode_choice(Encoder& out, const RangeLevels* levels) {
     out.number<std::uint64_t>(levels ? levels->count : 0);
     out.number(levels ? levels->rounding : LevelRounding::none);
+    out.number<std::uint8_t>(levels && levels->whole_range);
 }
 
 void decode_choice(Decoder& in, ReadActiveCells& active) {
     RangeLevels levels;
     levels.count = in.number<std::uint64_t>();
     levels.rounding = in.enumerator(LevelRounding::short_decimals);
+    levels.whole_range = in.number<std::uint8_t>() != 0;
     if (levels.count > ActiveCellFilter::max_isovalues) return in.fail();
     if (levels.count > 0) active.choose = levels;
 }
