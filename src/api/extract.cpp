@@ -88,7 +88,7 @@ Result<std::vector<Extraction>> extract(const PackedGrid& packed, std::span<cons
             const auto whole = core::whole_of(data, progress);
             if (!whole) return whole.error();
             data = *whole;
-            auto unpacked = api::with_unpacked_fields(std::move(all), {core::threads_here(), progress});
+            auto unpacked = api::with_unpacked_fields(std::move(all), {.progress = progress});
             if (!unpacked) return unpacked.error();
             all = *std::move(unpacked);
         }

@@ -41,7 +41,7 @@ Result<SpectrumSource> SpectrumSource::open(const Grid& grid, const PointField& 
                                             const Progress& progress) {
     if (auto ok = check_measured_field(grid, field); !ok) return ok.error();
     if (has_cells_to_linearize(grid.cells)) {
-        const Run inner{.threads = core::threads_here(), .progress = progress};
+        const Run inner{.progress = progress};
         const auto linear = linearize(grid, {}, inner);
         if (!linear) return linear.error();
         Result<Array> values = linear->extend(field.values, inner);
@@ -51,7 +51,7 @@ Result<SpectrumSource> SpectrumSource::open(const Grid& grid, const PointField& 
     const auto cells = core::CellReader::open(grid);
     if (!cells) return cells.error();
     if (auto ok = core::check_cells(grid, *cells, progress); !ok) return ok.error();
-    const auto statistics = statistics_of(field.values, {.threads = core::threads_here(), .progress = {}});
+    const auto statistics = statistics_of(field.values);
     if (!statistics) return statistics.error();
     SpectrumSource source(grid, *cells);
     double most = std::max(std::abs(around.lower), std::abs(around.upper));

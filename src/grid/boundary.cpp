@@ -50,8 +50,7 @@ Result<Surface> boundary_of(const Grid& grid, const Run& run) {
     return core::carry_out("finding the boundary", run, [&](const Progress& progress) -> Result<Surface> {
         if (has_only_flat_cells(grid.cells)) return core::sheet_of(grid, progress);
         if (!has_cells_to_linearize(grid.cells)) return core::boundary_of_grid(grid, progress);
-        const auto linear =
-            linearize({grid.points, grid.cells, {}, {}}, {}, {.threads = core::threads_here(), .progress = progress});
+        const auto linear = linearize({grid.points, grid.cells, {}, {}}, {}, {.progress = progress});
         if (!linear) return linear.error();
         return core::boundary_of_grid(linear->grid, progress);
     });

@@ -86,7 +86,7 @@ Result<LinearGrid> in_users_order(LinearGrid&& sorted, const Grid& user, const c
                                       ? users_indices<std::int32_t>(connectivity, original)
                                       : users_indices<std::int64_t>(connectivity, original);
     if (out.derived.count() > 0) out.derived.points = users_indices<std::uint64_t>(out.derived.points, original);
-    auto points = out.extend(user.points, {.threads = core::threads_here()});
+    auto points = out.extend(user.points);
     if (!points) return points.error();
     out.grid.points = *std::move(points);
     out.grid.point_numbers = *std::move(numbers);

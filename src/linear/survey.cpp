@@ -89,8 +89,7 @@ Result<GridReport> survey_as_linear(const Grid& grid, const SurveyOptions& optio
         if (!counted) return counted.error();
         if (*counted) return **std::move(counted);
     }
-    const auto linear = isotet::linearize({grid.points, grid.cells, {}, {}}, {},
-                                          {.threads = core::threads_here(), .progress = progress});
+    const auto linear = isotet::linearize({grid.points, grid.cells, {}, {}}, {}, {.progress = progress});
     if (!linear) return linear.error();
     auto report = core::survey_linear_cells(linear->grid, options, progress);
     if (!report) return report;

@@ -66,7 +66,7 @@ Result<std::vector<double>> relative_volumes(const Grid& grid, const Run& run) {
         if (!cells) return cells.error();
         if (grid.point_numbers.empty() && !has_curved_cells(grid.cells))
             return volumes_of_cells(grid, *cells, progress);
-        const auto linear = linearize(grid, {}, {.threads = core::threads_here(), .progress = progress});
+        const auto linear = linearize(grid, {}, {.progress = progress});
         if (!linear) return linear.error();
         return volumes_by_source(*linear, progress);
     });

@@ -109,7 +109,7 @@ Result<std::vector<std::uint64_t>> boundary_cells(const Surface& boundary, const
         return std::vector<std::uint64_t>(known.begin(), known.end());
     }
     return core::carry_out("finding cells at the boundary", run, [&](const Progress& progress) {
-        return scene::cells_at(boundary, grid, {.threads = core::threads_here(), .progress = progress});
+        return scene::cells_at(boundary, grid, {.progress = progress});
     });
 }
 

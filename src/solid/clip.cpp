@@ -83,7 +83,8 @@ Array with_turned_tets(const Cells& curved, const LinearGrid& linear, const Grid
         core::Buffer<std::remove_cvref_t<decltype(typed[0])>> out(typed.size());
         std::ranges::copy(typed, out.begin());
         core::parallel_each(cells.count(), 1 << 14, [&](std::size_t cell) {
-            if (cells.type(cell) != static_cast<std::uint8_t>(CellType::tetrahedron) || !is_of_curved_cell(cell)) return;
+            if (cells.type(cell) != static_cast<std::uint8_t>(CellType::tetrahedron) || !is_of_curved_cell(cell))
+                return;
             auto* const corners = out.data() + cells.first(cell);
             core::Tet tet;
             for (std::size_t k = 0; k < 4; ++k) tet[k] = static_cast<std::uint64_t>(corners[k]);
@@ -124,8 +125,8 @@ core::Buffer<std::uint8_t> flags_of(const Array& values, const FieldReport& fiel
             const bool is_below = has_lower && value < lower.value, is_above = has_upper && value >= upper.value;
             const bool tied = is_above ? value == upper.tied : has_lower && value == lower.tied;
             const std::uint8_t side = is_above ? flag::above : is_below ? flag::below : flag::inside;
-            out[point] = static_cast<std::uint8_t>(side | (tied ? flag::tied : 0) |
-                                                   (core::is_nan(value) ? flag::no_data : 0));
+            out[point] =
+                static_cast<std::uint8_t>(side | (tied ? flag::tied : 0) | (core::is_nan(value) ? flag::no_data : 0));
         });
     });
     return out;
@@ -141,8 +142,7 @@ Result<WarpedFaces> find_warped(const Grid& grid, const Array& values, const Pro
         if (face.count < 4) return true;
         std::array<solid::Place3, 4> corners;
         for (std::size_t k = 0; k < 4; ++k) corners[k] = points[all->points[face.places[k]]];
-        return !solid::is_warped(corners,
-                                 solid::rounding_of(grid.points.type()) * solid::largest_coordinate(corners));
+        return !solid::is_warped(corners, solid::rounding_of(grid.points.type()) * solid::largest_coordinate(corners));
     });
     std::ranges::stable_sort(all->faces, {}, &solid::BoundaryFace::cell);
     out.boundary = *std::move(all);
@@ -155,7 +155,8 @@ class ClipRun {
 public:
     ClipRun(const ContourInput& input, const ContourOptions& options, const SolidRange& range,
             const core::CellReader& cells, const solid::CellFacts& facts, ContourResult contour)
-        : input_(input), options_(options), range_(range), cut_{input.grid, cells, facts, {}, {}, {}, {}, 0, nullptr, {}, {}} {
+        : input_(input), options_(options), range_(range), cut_{input.grid, cells, facts,   {}, {}, {},
+                                                                {},         0,     nullptr, {}, {}} {
         for (std::size_t i = 0; i < contour.surfaces.size(); ++i) {
             const bool is_lower = i == 0 && std::isfinite(range.lower);
             surfaces_[is_lower ? 0 : 1] = std::exchange(contour.surfaces[i].surface, {});
@@ -184,8 +185,8 @@ public:
     Result<void> set_warped(const WarpedFaces& warped) {
         cut_.warped = &warped;
         if (!warped.boundary.faces.empty())
-            cut_.cap = options_.precision == Precision::float32 ? cap_of_warped<float>(warped)
-                                                                : cap_of_warped<double>(warped);
+            cut_.cap =
+                options_.precision == Precision::float32 ? cap_of_warped<float>(warped) : cap_of_warped<double>(warped);
         cut_.places.apexes = cut_.cap.apexes.size();
         cut_.first_apex.assign(warped.boundary.faces.size() + 1, 0);
         for (const solid::Apex& apex : cut_.cap.apexes) ++cut_.first_apex[apex.face + 1];
@@ -343,7 +344,7 @@ Clipper::~Clipper() = default;
 
 Result<Clipper> Clipper::create(ContourInput given, const ContourOptions& options, const Run& run) {
     return core::carry_out("starting to clip", run, [&](const Progress& progress) -> Result<Clipper> {
-        const Run inside{core::threads_here(), progress};
+        const Run inside{.progress = progress};
         const Cells user_cells = given.grid.cells;
         if (options.normals != Normals::none) return invalid_argument("cells have no normals, but some were asked for");
         Result<solid::SolidInput> taken = solid::take_input(std::move(given), options, inside);
@@ -360,8 +361,7 @@ Result<Clipper> Clipper::create(ContourInput given, const ContourOptions& option
         if (!cells) return cells.error();
         if (auto sound = core::check_cells(data->input.grid, *cells, progress); !sound) return sound.error();
         if (data->linear && !options.split_cells && has_curved_cells(user_cells)) {
-            data->input.grid.cells.connectivity =
-                with_turned_tets(user_cells, *data->linear, data->input.grid, *cells);
+            data->input.grid.cells.connectivity = with_turned_tets(user_cells, *data->linear, data->input.grid, *cells);
             cells = core::CellReader::open(data->input.grid);
             if (!cells) return cells.error();
         }
@@ -385,7 +385,7 @@ Result<ClippedGrid> Clipper::clip(const SolidRange& range, const ClipOptions& op
     if (!data_) return moved_from("the clipper");
     return core::carry_out("clipping", run, [&](const Progress& progress) -> Result<ClippedGrid> {
         Data& data = *data_;
-        const Run inside{core::threads_here(), progress};
+        const Run inside{.progress = progress};
         if (auto ok = solid::check_range(range); !ok) return ok.error();
         Result<ContourResult> contour = data.contour->extract(solid::ends_of_range(range), inside);
         if (!contour) return contour.error();

@@ -37,10 +37,10 @@ struct Solids::Data {
     std::optional<Contour> contour; ///< of the linear cells, with edge ends
     solid::BoundaryFaces boundary;
     solid::BoundaryPoints points;
-    std::vector<Field> user_cell_fields;   ///< of the user's cells
+    std::vector<Field> user_cell_fields; ///< of the user's cells
     std::vector<PatchName> patch_names;
     double grid_volume = 0;
-    std::vector<std::string> notes; ///< of making cells linear, told once
+    std::vector<std::string> notes;              ///< of making cells linear, told once
     std::optional<std::array<double, 3>> origin; ///< of volumes of a piece
     std::uint64_t ghosts = 0;                    ///< cells of other pieces
     std::optional<Contour> of_ghosts;            ///< of these alone
@@ -193,7 +193,7 @@ Result<Solids> Solids::create_piece(ContourInput piece, const Array& ghosts, con
 
 Result<Solids> Solids::make(ContourInput given, const Array* ghosts, const ContourOptions& options, const Run& run) {
     return core::carry_out("starting to make solids", run, [&](const Progress& progress) -> Result<Solids> {
-        const Run inside{core::threads_here(), progress};
+        const Run inside{.progress = progress};
         const ContourInput user = ghosts ? given : ContourInput{};
         Result<solid::SolidInput> taken = solid::take_input(std::move(given), options, inside, ghosts != nullptr);
         if (!taken) return taken.error();
@@ -252,7 +252,7 @@ Result<Solid> Solids::extract(const SolidRange& range, const Run& run) {
         if (auto ok = solid::check_range(range); !ok) return ok.error();
         const std::vector<double> isovalues = solid::ends_of_range(range);
         Solid out;
-        const Run inside{core::threads_here(), progress};
+        const Run inside{.progress = progress};
         Result<ContourResult> result = data.contour->extract(isovalues, inside);
         if (!result) return result.error();
         out.contour = *std::move(result);
@@ -263,12 +263,13 @@ Result<Solid> Solids::extract(const SolidRange& range, const Run& run) {
         if (vertices > std::numeric_limits<std::uint32_t>::max())
             return invalid_data(
                 fmt::format("the solid has up to {} vertices, but must have fewer than 2^32", vertices));
-        if (auto ok = core::require_memory("closing the isosurface", bytes_to_close(data.input, data.boundary, vertices)); !ok)
+        if (auto ok =
+                core::require_memory("closing the isosurface", bytes_to_close(data.input, data.boundary, vertices));
+            !ok)
             return ok.error();
-        solid::Cap cap =
-            data.options.precision == Precision::float32
-                ? cap_of<float>(data.boundary, data.points, data.input, out.contour.field, range, shells)
-                : cap_of<double>(data.boundary, data.points, data.input, out.contour.field, range, shells);
+        solid::Cap cap = data.options.precision == Precision::float32
+                             ? cap_of<float>(data.boundary, data.points, data.input, out.contour.field, range, shells)
+                             : cap_of<double>(data.boundary, data.points, data.input, out.contour.field, range, shells);
         out.surface = solid::assemble(shells, cap, data.input, data.user_cell_fields, data.options);
         out.isosurface_triangles = out.surface.triangle_count() - cap.triangles.size();
         if (!data.origin) // what is open where pieces meet is closed by the others

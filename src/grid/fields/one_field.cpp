@@ -50,7 +50,7 @@ Result<Array> average_field(const Grid& grid, const Field& field, Scalar scalar,
         return values;
     };
     if (has_cells_to_linearize(grid.cells)) { // which checks the cells, too
-        const auto volumes = relative_volumes(bare, {.threads = threads_here(), .progress = progress});
+        const auto volumes = relative_volumes(bare, {.progress = progress});
         if (!volumes) return volumes.error();
         return averaged(*volumes);
     }

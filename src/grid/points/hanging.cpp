@@ -265,8 +265,7 @@ namespace isotet {
 Result<std::uint64_t> count_hanging_points(const Grid& grid, const Run& run) {
     return core::carry_out("looking for hanging points", run, [&](const Progress& progress) -> Result<std::uint64_t> {
         if (!has_cells_to_linearize(grid.cells)) return core::count_in_linear(grid, progress);
-        const auto linear =
-            linearize({grid.points, grid.cells, {}, {}}, {}, {.threads = core::threads_here(), .progress = progress});
+        const auto linear = linearize({grid.points, grid.cells, {}, {}}, {}, {.progress = progress});
         if (!linear) return linear.error();
         return core::count_in_linear(linear->grid, progress);
     });

@@ -146,12 +146,12 @@ Result<ReadResult> read_isotet(const std::string& path, const ReadOptions& optio
     const auto step = choose_step(result.info, options);
     if (!step) return step.error();
     result.step = *step;
-    const Run run{core::threads_here(), progress};
+    const Run run{.progress = progress};
     // Cell fields are by the user's cells, which a sample does not tell.
     const bool some = options.some_cells > 0 && (!options.cell_fields || options.cell_fields->empty());
     if (!some)
-        if (auto fits =
-                core::require_memory(fmt::format("all of {}, unpacked,", path), unpacked_bytes(directory, *step, options));
+        if (auto fits = core::require_memory(fmt::format("all of {}, unpacked,", path),
+                                             unpacked_bytes(directory, *step, options));
             !fits)
             return fits.error();
     const auto load = loader(*source, some, progress);

@@ -16,7 +16,7 @@ Result<bool> take_boundary(core::BoundarySearch&& search, const Array& points, S
     auto found = std::move(search).finish(progress);
     if (!found) return found.error();
     if (found->cells.count() > 0) {
-        const Run run{core::threads_here(), {nullptr, progress.cancel}};
+        const Run run{.progress = {nullptr, progress.cancel}};
         const Result<bool> hang = has_hanging_points({points, std::move(found->cells), {}, {}}, found->surface, run);
         if (!hang) return hang.error();
         if (*hang) return false;

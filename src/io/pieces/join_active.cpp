@@ -313,7 +313,7 @@ private:
 
     template <class PassAgain>
     Result<bool> may_have_hanging_points(const Grid& active, const PassAgain& pass_again) const {
-        const Run run{core::threads_here(), {nullptr, progress_.cancel}};
+        const Run run{.progress = {nullptr, progress_.cancel}};
         const ReadActiveCells& asked = *options_.active_cells;
         const Result<PointField> field = active_field(active, asked);
         if (!field) return field.error();

@@ -108,7 +108,7 @@ Result<double> field_bound(const LinearGrid& linear, const Array& values, const 
                             "of the {} points",
                             values.tuples(), values.components(), linear.user_points));
         if (linear.refined.children.empty()) return 0.0;
-        auto longer = linear.extend(values, {.threads = core::threads_here(), .progress = {}});
+        auto longer = linear.extend(values);
         if (!longer) return longer.error();
         const Array known(longer->type(), longer->data(), linear.user_points + linear.derived.count(), 1,
                           std::make_shared<Array>(*longer));

@@ -25,7 +25,7 @@ namespace isotet::linear {
 namespace {
 
 constexpr int max_level = 6, max_level_of_quotients = 3; ///< near the apex of a pyramid halves have half of the error
-constexpr std::size_t coordinates = 3, fields = 4; ///< the field, then x, y, z
+constexpr std::size_t coordinates = 3, fields = 4;       ///< the field, then x, y, z
 
 /// The tets of one cell stand together.
 struct CellTets {
@@ -50,10 +50,10 @@ struct OwnTet {
 };
 
 struct OwnErrors {
-    double value = 0, length = 0, edge = 0; ///< of the field; of places; the longest edge
+    double value = 0, length = 0, edge = 0;         ///< of the field; of places; the longest edge
     double value_rounding = 0, length_rounding = 0; ///< what of these may be rounding
-    std::array<double, 10> bezier{};        ///< of the field
-    double lower = 0, upper = 0;            ///< of its values
+    std::array<double, 10> bezier{};                ///< of the field
+    double lower = 0, upper = 0;                    ///< of its values
 };
 
 /// The functions of one cell after another.
@@ -465,8 +465,7 @@ private:
         const auto first = rows.first.as<std::uint64_t>(), of = rows.points.as<std::uint64_t>();
         const std::uint64_t count = first[row + 1] - first[row];
         for (std::uint64_t i = first[row]; i < first[row + 1]; ++i)
-            add(of[i], weight * (rows.weights.empty() ? 1 / static_cast<double>(count)
-                                                      : rows.weights.as<double>()[i]));
+            add(of[i], weight * (rows.weights.empty() ? 1 / static_cast<double>(count) : rows.weights.as<double>()[i]));
     }
 
     const LinearGrid& before_;
@@ -477,7 +476,8 @@ private:
 };
 
 /// Rows of weights, as many as there are, behind others.
-DerivedPoints with_rows(const DerivedPoints& before, const std::vector<std::vector<std::pair<std::uint64_t, double>>>& rows) {
+DerivedPoints with_rows(const DerivedPoints& before,
+                        const std::vector<std::vector<std::pair<std::uint64_t, double>>>& rows) {
     std::vector<std::uint64_t> first{0}, points;
     std::vector<double> weights;
     if (before.count() > 0) {
@@ -586,7 +586,8 @@ private:
                 }
         QuadraticTet out{};
         for (std::size_t i = 0; i < 4; ++i) out[i] = tet[at[i]];
-        for (std::size_t e = 0; e < 6; ++e) out[4 + e] = tet[4u + tet_edge_of[at[tet_edges[e][0]]][at[tet_edges[e][1]]]];
+        for (std::size_t e = 0; e < 6; ++e)
+            out[4 + e] = tet[4u + tet_edge_of[at[tet_edges[e][0]]][at[tet_edges[e][1]]]];
         return out;
     }
 
@@ -782,8 +783,8 @@ Result<OwnBounds> follow_own_functions(const Grid& user, LinearGrid& before, Qua
             std::array<std::uint32_t, 4> steps{};
             std::uint32_t rest = whole_weight;
             for (std::size_t k = 0; k < 4 && node.corners[k] != mean_node; ++k) {
-                const auto corner = static_cast<std::size_t>(
-                    std::ranges::find(tets.tets[node.tet], node.corners[k]) - tets.tets[node.tet].begin());
+                const auto corner = static_cast<std::size_t>(std::ranges::find(tets.tets[node.tet], node.corners[k]) -
+                                                             tets.tets[node.tet].begin());
                 const bool is_last = k == 3 || node.corners[k + 1] == mean_node;
                 steps[corner] = is_last ? rest : node.weights[k];
                 rest -= steps[corner];
@@ -798,7 +799,7 @@ Result<OwnBounds> follow_own_functions(const Grid& user, LinearGrid& before, Qua
     before.refinement.curved_cells = tets.curved; // its derived points are no centres of polyhedra
     Array user_points(before.grid.points.type(), before.grid.points.data(), before.user_points, 3,
                       std::make_shared<Array>(before.grid.points));
-    auto placed = before.extend(user_points, {.threads = core::threads_here(), .progress = {}});
+    auto placed = before.extend(user_points);
     if (!placed) return placed.error();
     before.grid.points = *std::move(placed);
     return bounds;

@@ -57,7 +57,7 @@ Result<CarriedFields> carried_at_nodes(const RefineOptions& options, const Linea
         if (field.values.tuples() != before.user_points)
             return invalid_argument(fmt::format("the carried field '{}' has {} tuples, but there are {} points",
                                                 field.name, field.values.tuples(), before.user_points));
-        auto extended = before.extend(field.values, {.threads = core::threads_here(), .progress = {}});
+        auto extended = before.extend(field.values);
         if (!extended) return extended.error();
         out.arrays.push_back(*std::move(extended));
         for (std::size_t k = 0; k < field.values.components(); ++k) {
@@ -186,7 +186,7 @@ Result<LinearGrid> refined(const Grid& user, LinearGrid before, const Array* fie
     CarriedFields carried;
     double tolerance = 0;
     if (field) {
-        auto extended = before.extend(*field, {.threads = core::threads_here(), .progress = {}});
+        auto extended = before.extend(*field);
         if (!extended) return extended.error();
         longer = *std::move(extended);
         values = NodeValues(longer, tets->hidden);
@@ -207,7 +207,7 @@ Result<LinearGrid> refined(const Grid& user, LinearGrid before, const Array* fie
         if (!found) return found.error();
         own = *std::move(found);
         if (before.grid.points.tuples() != longer.tuples()) {
-            extended = before.extend(*field, {.threads = core::threads_here(), .progress = {}});
+            extended = before.extend(*field);
             if (!extended) return extended.error();
             longer = *std::move(extended);
             values = NodeValues(longer, tets->hidden);
@@ -289,7 +289,7 @@ Result<LinearGrid> refined(const Grid& user, LinearGrid before, const Array* fie
     if (before.derived.count() > 0)
         user_points = Array(user_points.type(), user_points.data(), before.user_points, 3,
                             std::make_shared<Array>(before.grid.points));
-    auto placed = out.extend(user_points, {.threads = core::threads_here(), .progress = {}});
+    auto placed = out.extend(user_points);
     if (!placed) return placed.error();
     out.grid.points = *std::move(placed);
     progress("refine", 1);

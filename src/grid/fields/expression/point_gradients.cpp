@@ -134,7 +134,7 @@ Result<Array> point_gradients(const Grid& grid, const Array& values, const Progr
     Grid linear{grid.points, grid.cells, {}, {}, grid.point_numbers};
     Array extended = values;
     if (has_cells_to_linearize(grid.cells)) {
-        const Run run{threads_here(), progress};
+        const Run run{.progress = progress};
         auto made = linearize(linear, {}, run);
         if (!made) return made.error();
         auto continued = made->extend(values, run);
