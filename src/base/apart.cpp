@@ -31,6 +31,8 @@ void* map_shared_or_own(std::size_t bytes, int kind) {
     return data == MAP_FAILED ? nullptr : data;
 }
 
+thread_local bool is_starting = false;
+
 /// Keeps signals from this thread, and from a process that it starts: that one runs no handler, and says nothing.
 class NoSignals {
 public:
@@ -67,6 +69,8 @@ bool has_ended(pid_t process, int flags) {
 
 } // namespace
 
+bool starts_apart() noexcept { return is_starting; }
+
 SharedMemory::SharedMemory(std::size_t bytes) : data_(map_shared_or_own(bytes, MAP_SHARED)), bytes_(bytes) {}
 SharedMemory::~SharedMemory() {
     if (data_) ::munmap(data_, bytes_);
@@ -87,7 +91,9 @@ Apart run_apart(const Progress& progress, const std::function<void()>& work) {
     pid_t child = 0;
     {
         const NoSignals blocked;
+        is_starting = true;
         child = ::fork();
+        is_starting = false;
         if (child == 0) carry_out_as_child(parent, work, done);
     }
     if (child < 0) return Apart::refused;
@@ -104,6 +110,7 @@ Apart run_apart(const Progress& progress, const std::function<void()>& work) {
 
 #else
 
+bool starts_apart() noexcept { return false; }
 SharedMemory::SharedMemory(std::size_t bytes) : bytes_(bytes) {}
 SharedMemory::~SharedMemory() = default;
 void* take_pages(std::size_t) { std::abort(); }

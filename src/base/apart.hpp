@@ -39,6 +39,9 @@ enum class Apart : std::uint8_t {
 ///          not run in the copy, and may hold any lock, that of the heap too; take_pages() takes no lock
 ISOTET_API Apart run_apart(const Progress& progress, const std::function<void()>& work);
 
+/// Whether this thread is starting such a process: what is called around fork() then leaves all as it is.
+ISOTET_API bool starts_apart() noexcept;
+
 /// Memory for the work of run_apart(), which is given back at its end. Ends the process where there is none.
 ISOTET_API void* take_pages(std::size_t bytes);
 

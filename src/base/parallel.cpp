@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "base/parallel.hpp"
+#include "base/apart.hpp"
 
 #ifndef __wasm__
 #include <pthread.h>
@@ -132,7 +133,9 @@ private:
     static std::atomic<IdleArenas*>& kept() {
         static std::atomic<IdleArenas*> arenas = [] {
 #ifndef __wasm__
-            ::pthread_atfork(nullptr, nullptr, [] { kept().store(new IdleArenas); });
+            ::pthread_atfork(nullptr, nullptr, [] {
+                if (!starts_apart()) kept().store(new IdleArenas);
+            });
 #endif
             return new IdleArenas;
         }();

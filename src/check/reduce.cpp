@@ -117,7 +117,6 @@ public:
                 meshopt_setAllocator(core::take_pages, [](void*) {});
                 *outcome = simplify(left);
             });
-            if (ended == core::Apart::failed) throw std::bad_alloc();
             if (ended == core::Apart::done) {
                 indices.assign(left, left + outcome->indices);
                 return outcome->error;

@@ -151,7 +151,7 @@ Result<void> ExtractRun::open() {
     if (!source) return source.error();
     source_ = *std::move(source);
     if (job_.solid) source_->require_beside({"finding the boundary", 9});
-    else if (job_.method == Method::clusters) source_->require_beside({"packing", 38});
+    else if (job_.method == Method::clusters && !job_.piece) source_->require_beside({"packing", 38});
     if (auto paths = check_output_paths(source_->info().files, with_others(job_, fixed_name ? job_.out : "")); !paths)
         return paths;
     Result<ExtractPlan> plan = plan_extract(job_, *source_, caller_);

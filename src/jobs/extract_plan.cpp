@@ -220,7 +220,8 @@ namespace {
 bool streams(const ExtractJob& job, const GridSource& source) {
     if (uses_device(job)) return false;
     ExtractPlan plan;
-    plan.contour = contour_options_of(job, job.all_steps ? std::max<std::size_t>(source.info().times.size(), 1) : 1);
+    plan.steps.resize(job.all_steps ? std::max<std::size_t>(source.info().times.size(), 1) : 1);
+    plan.contour = contour_options_of(job, plan.steps.size());
     return plan_active_cells(job, plan).has_value();
 }
 

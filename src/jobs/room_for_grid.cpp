@@ -29,6 +29,12 @@ std::uint64_t all_that_is_free(std::uint64_t needed) {
     return needed > free && core::drop_kept_blocks() > 0 ? core::free_memory_and_swap() : free;
 }
 
+/// 2^48 where it is more, as a broken head may ask for.
+std::uint64_t product(std::uint64_t count, std::uint64_t bytes) {
+    constexpr std::uint64_t most = std::uint64_t{1} << 48;
+    return bytes > 0 && count > most / bytes ? most : count * bytes;
+}
+
 } // namespace
 
 GridBytes least_bytes_of(const FileInfo& info, const FieldsToRead& fields, bool all_cells) {
@@ -36,23 +42,25 @@ GridBytes least_bytes_of(const FileInfo& info, const FieldsToRead& fields, bool 
     const LeastCounts& least = info.least;
     const bool has_cells = all_cells || least.all_cells;
     GridBytes bytes;
-    bytes.points = least.points * 3 * size_of(least.coordinates);
-    if (has_cells) bytes.cells = std::max(least.corners, least.cells) * a_corner;
-    if (info.times.size() > 1) return bytes; // a step may lack fields
+    bytes.points = product(least.points, 3 * size_of(least.coordinates));
+    if (has_cells) bytes.cells = product(std::max(least.corners, least.cells), a_corner);
+    const bool of_other_meshes = info.format == "med" || info.format == "cgns"; // have fields, which are told of, too
+    if (info.times.size() > 1 || of_other_meshes) return bytes;                 // a step may lack fields
     for (const FieldInfo& field : info.fields) {
         const bool of_points = field.association == Association::point;
         if (!is_named(of_points ? fields.point : fields.cell, field) || (!of_points && !has_cells)) continue;
-        bytes.values += (of_points ? least.points : least.cells) * field.components * size_of(field.type);
+        bytes.values += product(of_points ? least.points : least.cells, field.components * size_of(field.type));
     }
     return bytes;
 }
 
 Result<void> require_room(const std::string& file, const GridBytes& grid, const BesideGrid& beside,
                           std::uint64_t points) {
-    const std::vector<std::pair<std::uint64_t, std::string_view>> parts{{grid.points, "points"},
-                                                                        {grid.cells, "cells"},
-                                                                        {grid.values, "values of fields"},
-                                                                        {beside.bytes_a_point * points, beside.what}};
+    const std::vector<std::pair<std::uint64_t, std::string_view>> parts{
+        {grid.points, "points"},
+        {grid.cells, "cells"},
+        {grid.values, "values of fields"},
+        {product(points, beside.bytes_a_point), beside.what}};
     std::uint64_t all = 0;
     std::vector<std::string> list;
     for (const auto& [bytes, what] : parts) {

@@ -60,10 +60,10 @@ Result<void> check_high_degree(const Grid& grid, const core::CellReader& cells, 
 /// Which polyhedra have values on both sides of an isovalue, or one that is not finite.
 class MetCells {
 public:
-    MetCells(const core::CellReader& cells, const LinearizeOptions& options)
+    MetCells(const core::CellReader& cells, const LinearizeOptions& options, const Progress& progress)
         : cells_(cells), values_(options.values), isovalues_(options.isovalues) {
         std::ranges::sort(isovalues_);
-        if (options.around && !isovalues_.empty()) mark_points();
+        if (options.around && !isovalues_.empty()) mark_points(progress);
     }
 
     /// Whether a corner is one of a cell that is met; false where none are marked.
@@ -97,10 +97,10 @@ public:
     }
 
 private:
-    void mark_points() {
+    void mark_points(const Progress& progress) {
         marked_ = core::Buffer<std::uint8_t>(cells_.points());
         std::ranges::fill(marked_, std::uint8_t{0});
-        core::parallel_ranges(cells_.count(), 1 << 13, [&](std::size_t begin, std::size_t end) {
+        core::parallel_pieces(cells_.count(), 1 << 13, progress, [&](std::size_t begin, std::size_t end) {
             std::vector<double> corner_values;
             for (std::size_t cell = begin; cell < end; ++cell) {
                 if (!meets(cell, corner_values)) continue;
@@ -134,7 +134,7 @@ LinearGrid split_blocks(const Grid& grid, const core::CellReader& cells, const c
                         const LinearizeOptions& options, std::optional<LargeFaces> polyhedra,
                         const Progress& progress) {
     const bool narrow = grid.points.tuples() < std::uint64_t{1} << 31;
-    const MetCells met(cells, options);
+    const MetCells met(cells, options, progress);
     const std::size_t cells_per_block = cells_of_block(cells.count());
     std::vector<KeptParts> blocks((cells.count() + cells_per_block - 1) / cells_per_block);
     core::parallel_ranges(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {

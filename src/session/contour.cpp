@@ -47,6 +47,10 @@ Result<ContourInput> input_for(ContourInput input, const ContourOptions& options
         if (!all) return all;
         input = *std::move(all);
     }
+    if (const Array& numbers = input.cell_numbers;
+        !numbers.empty() && (numbers.type() != ScalarType::uint64 || numbers.size() != input.grid.cells.count()))
+        return invalid_argument(fmt::format("there are {} cell numbers of {}, but {} cells, and numbers are of uint64",
+                                            numbers.size(), name_of(numbers.type()), input.grid.cells.count()));
     input.grid.cells = core::with_linear_names(std::move(input.grid.cells));
     return input;
 }

@@ -80,12 +80,24 @@ TEST_F(ActiveInput, IsCompletedForAnotherIsovalue) {
     EXPECT_EQ(asked, 1);
 }
 
-TEST_F(ActiveInput, IsCompletedForTheRangeOfTheField) {
+TEST_F(ActiveInput, HasTheRangeOfTheField) {
     Contour contour = Contour::create(some({0.1}), options({0.1})).value();
     const FieldReport found = contour.field().value(), wanted = Contour::create(all()).value().field().value();
     EXPECT_EQ(found.lower, wanted.lower);
     EXPECT_EQ(found.upper, wanted.upper);
-    EXPECT_EQ(asked, 1);
+    EXPECT_EQ(asked, 0);
+}
+
+TEST_F(ActiveInput, HasANumberOfEachCell) {
+    for (const std::size_t count : {1, 10'000'000})
+        for (const bool narrow : {false, true}) {
+            ContourInput input = some({0.1});
+            input.cell_numbers = narrow ? Array::own(std::vector<std::uint32_t>(input.grid.cells.count()))
+                                        : Array::own(std::vector<std::uint64_t>(count));
+            const auto contour = Contour::create(std::move(input), options({0.1}));
+            ASSERT_FALSE(contour);
+            EXPECT_EQ(contour.error().code, ErrorCode::invalid_argument);
+        }
 }
 
 TEST_F(ActiveInput, IsCompletedForOptionsThatNeedAllCells) {

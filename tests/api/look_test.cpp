@@ -115,8 +115,9 @@ TEST(Looks, BeginNoThreadWhereThereIsToBeOne) {
     EXPECT_EQ(count_cells_by_type(grid.cells, one).at(10), std::size_t{3} << 20);
     EXPECT_GT(estimate_coincident_points(grid, one).points, 0u);
     EXPECT_TRUE(may_have_coincident_points(grid.points, one));
-    EXPECT_EQ(rounding_of(grid.points, one), 1e-6);
+    const double rounding = rounding_of(grid.points, one);
     EXPECT_EQ(threads(), before);
+    EXPECT_EQ(rounding, rounding_of(grid.points));
 }
 
 TEST(BoundaryOfAGrid, IsTheCubeAndTheSameForAnyThreadCount) {

@@ -111,7 +111,8 @@ using Work = std::function<Result<void>(const std::string& file, const std::stri
         job.grid.file = file;
         job.out = out + ".vtp";
         job.field.name = "gyroid";
-        job.levels = 3; // which follow from all values
+        job.isovalues = {0.1};
+        job.snap = true; // by all values
         const auto numbers = extract_files(job, listener);
         return numbers ? Result<void>() : numbers.error();
     });

@@ -1,6 +1,9 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "io/files/kept_files.hpp"
 
+#include <functional>
+#include <memory>
+
 #include <sys/stat.h>
 
 namespace isotet {
@@ -29,10 +32,17 @@ void KeptFiles::forget() {
     bytes_ = 0;
 }
 
-bool KeptFiles::has_room_for(std::size_t bytes) const {
+bool KeptFiles::reserve(std::size_t bytes) {
     constexpr std::size_t most = std::size_t{64} << 20;
     const std::lock_guard lock(mutex_);
-    return bytes <= most && bytes_ <= most - bytes;
+    if (bytes > most || bytes_ + reserved_ > most - bytes) return false;
+    reserved_ += bytes;
+    return true;
+}
+
+void KeptFiles::release(std::size_t bytes) {
+    const std::lock_guard lock(mutex_);
+    reserved_ -= bytes;
 }
 
 void KeptFiles::keep(const std::string& path, const Identity& identity, const io::WholeFile& file) {
@@ -79,7 +89,10 @@ Result<ByteSource> open_source(const std::string& path, const ReadOptions& optio
     if (identity)
         if (const auto kept = options.kept->get(path); kept && kept->is_whole()) return kept->source();
     auto source = ByteSource::open(path);
-    if (!source || !identity || !options.kept->has_room_for(source->size())) return source;
+    const std::size_t size = source ? static_cast<std::size_t>(source->size()) : 0;
+    if (!source || !identity || !options.kept->reserve(size)) return source;
+    const std::unique_ptr<KeptFiles, std::function<void(KeptFiles*)>> reserved(
+        options.kept.get(), [size](KeptFiles* kept) { kept->release(size); });
     if (source->size() > small_bytes) {
         Scratch scratch;
         const auto head = source->view(0, of_head, scratch);

@@ -35,7 +35,9 @@ public:
     void keep(const std::string& path, const Identity& identity, const io::WholeFile& file);
 
     /// Of files that need not be kept, with what is kept already.
-    bool has_room_for(std::size_t bytes) const;
+    bool reserve(std::size_t bytes);
+    /// What was reserved is kept now, or not needed.
+    void release(std::size_t bytes);
     /// All of them.
     void forget();
 
@@ -52,6 +54,7 @@ private:
     std::string grid_;
     std::map<std::string, Kept> kept_;
     std::size_t bytes_ = 0; ///< of all of them
+    std::size_t reserved_ = 0;
 };
 
 namespace io {

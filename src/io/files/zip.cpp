@@ -131,7 +131,7 @@ Result<std::string> packed_content(std::string_view content, const Progress& pro
         switch (size ? core::run_apart(progress, [&] { *size = pack(bytes); }) : core::Apart::refused) {
         case core::Apart::done: return std::string(bytes, *size);
         case core::Apart::cancelled: return Error{ErrorCode::cancelled, "packing an archive was cancelled"};
-        case core::Apart::failed: return no_memory_to_pack();
+        case core::Apart::failed:
         case core::Apart::refused: break;
         }
     }
