@@ -683,7 +683,7 @@ Result<ReadResult> GridSource::read_file(const FieldsToRead& fields, std::size_t
 /// Later ones may be read while others are still there.
 Result<void> GridSource::require_room_once(const FieldsToRead& fields, std::size_t step, bool all_cells) const {
     if (described_ != step || has_room_->exchange(true)) return {};
-    const bool keeps_points = !options_.merge_points && options_.cells.empty() && info_.files.size() == 1;
+    const bool keeps_points = !options_.merge_points && options_.cells.empty() && info_.files.size() <= 1;
     return require_room(options_.file, least_bytes_of(info_, fields, all_cells), keeps_points ? beside_ : BesideGrid(),
                         info_.least.points);
 }

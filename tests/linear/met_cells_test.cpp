@@ -178,6 +178,13 @@ TEST(MetCells, AreThoseOnly) {
         << result.notes[0];
     EXPECT_LT(session.linear_grid()->grid.cells.count(), 22u * 300);
 
+    ContourOptions around = expecting; // gradients need cells at the points of those
+    around.normals = Normals::gradient;
+    Contour beside = Contour::create({grid, field, {}, {}}, around).value();
+    ASSERT_TRUE(beside.extract(0.5));
+    EXPECT_GT(beside.linear_grid()->grid.cells.count(), session.linear_grid()->grid.cells.count());
+    EXPECT_LT(beside.linear_grid()->grid.cells.count(), 22u * 800);
+
     const ContourResult other = session.extract(0.7).value(); // one that was not expected
     EXPECT_EQ(session.linear_grid()->grid.cells.count(), 22u * 1024);
     expecting.expected_isovalues.clear();
@@ -221,7 +228,6 @@ TEST(MetCells, AreNotChosenWhereOthersDecide) {
     const PointField field{"x", Array::own(std::move(x)), false, {}};
     EXPECT_FALSE(splits_all(field, {}));
     EXPECT_FALSE(splits_all(field, {.normals = Normals::face}));
-    EXPECT_FALSE(splits_all(field, {.normals = Normals::gradient}));
     EXPECT_TRUE(splits_all(field, {.edge_ends = true})) << "rows of the table of all";
     std::vector<std::int32_t> integers(grid.points.tuples(), 1);
     EXPECT_TRUE(splits_all({"f", Array::own(std::move(integers)), false, {}}, {})) << "rounded by the range of all";
