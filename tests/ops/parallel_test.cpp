@@ -75,7 +75,7 @@ std::size_t resident() {
 TEST(WithThreads, TakesNoMemoryForEachCall) {
     const auto call = [](int times) {
         for (int i = 0; i < times; ++i)
-            with_threads(2, [] { parallel_ranges(64, 1, [](std::size_t, std::size_t) { std::this_thread::yield(); }); });
+            with_threads(2, [] { parallel_ranges(8, 1, [](std::size_t, std::size_t) { std::this_thread::yield(); }); });
     };
     call(500);
     const std::size_t before = resident();
