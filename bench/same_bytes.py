@@ -33,7 +33,7 @@ CASES = {
     "faces.png": ["render", "{}", "--size", "160x120", "--boundary", "0.3", "--levels", "2", "--normals", "gradient"],
     "info.json": ["info", "--survey", "--json", "{}"],
 }
-TIMES = re.compile(rb'"[a-z_]*(seconds|bytes|threads|predicted[a-z_]*)": *[^,}\n]*')
+TIMES = re.compile(rb'"[a-z_]*(seconds|bytes|threads|schema|predicted[a-z_]*)": *[^,}\n]*')
 
 
 def run(program, grid, name, folder):
