@@ -11,9 +11,9 @@
 
 namespace isotet {
 
-/// Isovalues that follow from the values of a field: levels in the range that they mostly lie in (typical_range()), or in that
-/// of all finite ones. As
-/// ReadActiveCells::choose it goes to the reader processes, too; of any other function these read all cells.
+/// Isovalues that follow from the values of a field: levels in the range that they mostly lie in (typical_range()), or in
+/// that of all finite ones. As ReadActiveCells::choose it goes to the reader processes, too; of any other function these
+/// read all cells.
 struct RangeLevels {
     std::uint64_t count = 1;
     LevelRounding rounding = LevelRounding::none;

@@ -89,7 +89,7 @@ Result<ByteSource> open_source(const std::string& path, const ReadOptions& optio
     if (identity)
         if (const auto kept = options.kept->get(path); kept && kept->is_whole()) return kept->source();
     auto source = ByteSource::open(path);
-    const std::size_t size = source ? static_cast<std::size_t>(source->size()) : 0;
+    const std::size_t size = source ? source->size() : 0;
     if (!source || !identity || !options.kept->reserve(size)) return source;
     const std::unique_ptr<KeptFiles, std::function<void(KeptFiles*)>> reserved(
         options.kept.get(), [size](KeptFiles* kept) { kept->release(size); });

@@ -34,11 +34,11 @@ public:
     /// In place of what was kept of it before. `identity`   before it was read
     void keep(const std::string& path, const Identity& identity, const io::WholeFile& file);
 
-    /// Of files that need not be kept, with what is kept already.
+    /// Room for a file that need not be kept. False where there is none beside what is kept and reserved.
     bool reserve(std::size_t bytes);
     /// What was reserved is kept now, or not needed.
     void release(std::size_t bytes);
-    /// All of them.
+    /// Forgets all files.
     void forget();
 
     /// Nothing where it was not kept, or changed since.
