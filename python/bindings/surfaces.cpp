@@ -162,7 +162,7 @@ void add_surfaces(nb::module_& module) {
         .def_prop_ro("cell_fields", [](const Surface& self) { return fields_out(self.cell_fields); })
         .def_prop_ro("vertex_count", &Surface::vertex_count)
         .def_prop_ro("triangle_count", &Surface::triangle_count)
-        .def("area", &area, nb::call_guard<nb::gil_scoped_release>());
+        .def("area", [](const Surface& self) { return area(self); }, nb::call_guard<nb::gil_scoped_release>());
 
     module.def(
         "check",

@@ -1,6 +1,7 @@
 # Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 """Chromium without a window, driven through its DevTools pipe: descriptors 3 and 4, JSON ended by a zero byte."""
 import base64
+import glob
 import json
 import os
 import select
@@ -158,6 +159,20 @@ class Browser:
 
     def type(self, text):
         self.call('Input.insertText', text=text)
+
+    def downloads(self, folder):
+        """Files that pages offer go there."""
+        self.call('Browser.setDownloadBehavior', behavior='allow', downloadPath=folder)
+
+    def downloaded(self, path, limit=30):
+        """Waits for a file of downloads() to be whole, and returns its bytes: an empty one holds the name until then."""
+        end = time.monotonic() + limit
+        while not (os.path.exists(path) and os.path.getsize(path)) or glob.glob(os.path.join(glob.escape(os.path.dirname(path)), '*.crdownload')):
+            if time.monotonic() > end:
+                raise AssertionError(f'{path} was not downloaded within {limit} s')
+            time.sleep(0.02)
+        with open(path, 'rb') as file:
+            return file.read()
 
     def picture(self, path=None):
         data = base64.b64decode(self.call('Page.captureScreenshot', format='png')['data'])

@@ -149,7 +149,7 @@ def test_files(browser, folder):
     start(browser, path)
     saved = os.path.join(folder, 'downloads')
     os.mkdir(saved)
-    browser.call('Page.setDownloadBehavior', behavior='allow', downloadPath=saved)
+    browser.downloads(saved)
     for kind, ending in [('surface.stl', 'stl'), ('surface.glb', 'glb'), ('seen.png', 'png')]:
         browser.click('#save-open')
         browser.value(f'(() => {{ const s = document.getElementById("save-kind"); s.value = "{kind}"; s.dispatchEvent(new Event("change")); }})()')
@@ -157,15 +157,7 @@ def test_files(browser, folder):
         browser.click('#save-go')
         browser.wait('document.getElementById("save-told").textContent.startsWith("Downloaded")')
         browser.click('#save-close')
-    files = {}
-    for ending in ('stl', 'glb', 'png'):
-        name = os.path.join(saved, f'a.{ending}')
-        for _ in range(200):
-            if os.path.exists(name):
-                break
-            browser.value('new Promise((done) => setTimeout(done, 50))')
-        with open(name, 'rb') as file:
-            files[ending] = file.read()
+    files = {ending: browser.downloaded(os.path.join(saved, f'a.{ending}')) for ending in ('stl', 'glb', 'png')}
     check(struct.unpack('<I', files['stl'][80:84])[0] == report['triangles'], 'the STL has all triangles')
     check(len(files['stl']) == 84 + 50 * report['triangles'], 'and ends with them')
     magic, version, length, room, _ = struct.unpack('<5I', files['glb'][:20])
@@ -186,17 +178,14 @@ def test_files_of_the_boundary(browser, folder):
     browser.wait('document.body.dataset.kinds === "boundary"')
     saved = os.path.join(folder, 'boundaries')
     os.mkdir(saved)
-    browser.call('Page.setDownloadBehavior', behavior='allow', downloadPath=saved)
+    browser.downloads(saved)
     browser.click('#save-open')
     browser.value('(() => { const s = document.getElementById("save-kind"); s.value = "surface.stl"; s.dispatchEvent(new Event("change")); })()')
     browser.value('document.getElementById("save-name").value = "a.stl"')
     browser.click('#save-go')
     browser.wait('document.getElementById("save-told").textContent.startsWith("Downloaded")')
     told = browser.value('document.getElementById("facts").textContent')
-    for _ in range(200):
-        if os.path.exists(os.path.join(saved, 'a.stl')):
-            break
-        browser.value('new Promise((done) => setTimeout(done, 50))')
+    browser.downloaded(os.path.join(saved, 'a.stl'))
     written = isotet('check', os.path.join(saved, 'a.stl'))['triangles']
     check(f'{written:,} triangles' in told, f'{written} triangles were written: {told}')
 

@@ -163,7 +163,7 @@ def test_solids(browser, path):
 def test_files_of_what_is_shown(browser, path):
     """Surfaces; the boundary where it is shown alone; a sentence where nothing is."""
     with tempfile.TemporaryDirectory(prefix='isotet-saved-') as folder:
-        browser.call('Page.setDownloadBehavior', behavior='allow', downloadPath=folder)
+        browser.downloads(folder)
 
         def save(name):
             browser.click('#save-open')
@@ -176,10 +176,7 @@ def test_files_of_what_is_shown(browser, path):
             if not told.startswith('Downloaded'):
                 return told
             file = os.path.join(folder, name)
-            for _ in range(200):
-                if os.path.exists(file):
-                    break
-                browser.value('new Promise((done) => setTimeout(done, 50))')
+            browser.downloaded(file)
             return isotet('check', file)['triangles']
 
         start(browser, path)

@@ -254,7 +254,7 @@ def test_names_of_saved_files(browser, folder):
     isotet('export', grid, path, '--as', 'surfaces', '-i', '1.6', f'--field=n{PARTS[2]}')
     load(browser, path)
     usual = elements(browser)
-    browser.call('Page.setDownloadBehavior', behavior='allow', downloadPath=saved)
+    browser.downloads(saved)
     hostile = ['../../out', '/etc/out', '<img src=x onerror=hacked=1>', '..\\out', 'a\u202e', '\u2028', '${hacked=1}', 'javascript:hacked=1', '', '%2e%2e%2fout', 'A' * 400]
     for kind, ending in [('surface.stl', 'stl'), ('surface.glb', 'glb'), ('seen.png', 'png')]:
         browser.click('#save-open')

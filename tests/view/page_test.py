@@ -914,7 +914,7 @@ def test_the_first_value_of_a_field_over_decades(browser, viewer):
 def test_surfaces_of_all_time_steps(browser, viewer):
     """As a command line that writes a file for each, and as one file."""
     with Viewer(STEPS) as other, tempfile.TemporaryDirectory() as folder:
-        browser.call('Browser.setDownloadBehavior', behavior='allow', downloadPath=folder)
+        browser.downloads(folder)
         start(browser, other)
         browser.click('#copy-steps')
         browser.click('#copy-extract')
@@ -929,11 +929,7 @@ def test_surfaces_of_all_time_steps(browser, viewer):
         name = browser.value('document.getElementById("save-name").value')
         browser.click('#save-go')
         browser.wait(f'document.getElementById("save-told").textContent === "Downloaded: {name}"')
-        deadline = time.time() + 20
-        while not os.path.exists(f'{folder}/{name}') and time.time() < deadline:
-            time.sleep(0.05)
-        with open(f'{folder}/{name}', 'rb') as file:
-            check(file.read(4) == b'glTF', 'it is GLB')
+        check(browser.downloaded(f'{folder}/{name}').startswith(b'glTF'), 'it is GLB')
         browser.call('Page.navigate', url='about:blank')
 
 
@@ -1414,7 +1410,7 @@ def test_downloads(browser, viewer):
     type_value(browser, '0.7')
     at_rest(browser, 0.7)
     with tempfile.TemporaryDirectory() as folder:
-        browser.call('Page.setDownloadBehavior', behavior='allow', downloadPath=folder)
+        browser.downloads(folder)
         browser.click('#save-open')
         browser.wait('document.getElementById("save").open')
 
@@ -1423,11 +1419,7 @@ def test_downloads(browser, viewer):
             check(browser.value('document.getElementById("save-name").value') == name, browser.value('document.getElementById("save-name").value'))
             browser.click('#save-go')
             browser.wait(f'document.getElementById("save-told").textContent === "Downloaded: {name}"')
-            end = time.monotonic() + 20
-            while not os.path.exists(f'{folder}/{name}') and time.monotonic() < end:
-                time.sleep(0.02)
-            with open(f'{folder}/{name}', 'rb') as file:
-                return file.read()
+            return browser.downloaded(f'{folder}/{name}')
 
         stem = GRID.replace(':', '_').replace(',', '_') + '-sphere-0.7'
         width, height, _ = pixels(download('seen.png', f'{stem}.png'))
