@@ -22,7 +22,7 @@ endif()
 # What belongs to isotet_extras and isotet_jobs, which are not installed, stays here.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/isotet DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
     FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h"
-    PATTERN jobs EXCLUDE PATTERN text.hpp EXCLUDE PATTERN search.hpp EXCLUDE PATTERN grid_bench.hpp EXCLUDE PATTERN isosurface_scene.hpp EXCLUDE)
+    PATTERN jobs EXCLUDE PATTERN paper EXCLUDE PATTERN text.hpp EXCLUDE PATTERN isosurface_scene.hpp EXCLUDE)
 install(FILES ${PROJECT_BINARY_DIR}/include/isotet/version.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/isotet)
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/isotet-config.cmake.in ${PROJECT_BINARY_DIR}/isotet-config.cmake

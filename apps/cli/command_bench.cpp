@@ -2,12 +2,12 @@
 // `isotet bench`: methods and search indexes against each other.
 #include <algorithm>
 
-#include <isotet/jobs/measure_methods.hpp>
+#include <isotet/paper/measure_methods.hpp>
 
-#include "bench_report.hpp"
+#include "output/bench_report.hpp"
 #include "commands.hpp"
-#include "console.hpp"
-#include "json_output.hpp"
+#include "output/console.hpp"
+#include "output/json_output.hpp"
 
 namespace isotet::cli {
 

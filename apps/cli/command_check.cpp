@@ -8,10 +8,10 @@
 #include <isotet/jobs/number_text.hpp>
 
 #include "commands.hpp"
-#include "console.hpp"
-#include "json_output.hpp"
-#include "packed_report.hpp"
-#include "report.hpp"
+#include "output/console.hpp"
+#include "output/json_output.hpp"
+#include "output/packed_report.hpp"
+#include "output/report.hpp"
 
 namespace isotet::cli {
 
@@ -36,7 +36,9 @@ std::string check_table(const CheckedFiles& checked, const CheckJob& job) {
     table.row({"surface", fmt::format("{}{} ({})", job.surface, others, checked.format)});
     table.row({"vertices", grouped(report.vertices)});
     table.row({"triangles", grouped(report.triangles)});
-    table.row({"closed", !report.closed ? "no" : report.double_sheets > 0 ? "yes, but for walls: double sheets" : "yes"});
+    table.row({"closed", !report.closed             ? "no"
+                         : report.double_sheets > 0 ? "yes, but for walls: double sheets"
+                                                    : "yes"});
     const auto count = [&](const char* what, std::uint64_t number, const std::string& remark = {}) {
         table.row({what, grouped(number) + (remark.empty() ? "" : " (" + remark + ")")});
     };

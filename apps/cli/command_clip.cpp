@@ -8,9 +8,9 @@
 #include <isotet/jobs/number_text.hpp>
 
 #include "commands.hpp"
-#include "console.hpp"
-#include "json_output.hpp"
-#include "report.hpp"
+#include "output/console.hpp"
+#include "output/json_output.hpp"
+#include "output/report.hpp"
 
 namespace isotet::cli {
 
@@ -34,15 +34,16 @@ std::string clip_table(const ClipNumbers& numbers) {
     if (files) head.push_back("file");
     table.row(std::move(head));
     for (const ClipStepNumbers& step : numbers.steps) {
-        std::vector<std::string> row{grouped(step.points),    grouped(step.cells),       grouped(step.whole_cells),
-                                     grouped(step.cut_cells), grouped(step.polyhedra),   grouped(step.tied_points),
+        std::vector<std::string> row{grouped(step.points),           grouped(step.cells),     grouped(step.whole_cells),
+                                     grouped(step.cut_cells),        grouped(step.polyhedra), grouped(step.tied_points),
                                      seconds_text(step.clip_seconds)};
         if (times) row.insert(row.begin(), step.time ? shortest(*step.time) : "");
         if (files) row.push_back(step.file);
         table.row(std::move(row));
     }
     Table facts_of_grid = facts();
-    facts_of_grid.row({"grid", fmt::format("{} ({}), {}", numbers.grid, numbers.format, counted(numbers.cells, "cell"))});
+    facts_of_grid.row(
+        {"grid", fmt::format("{} ({}), {}", numbers.grid, numbers.format, counted(numbers.cells, "cell"))});
     if (numbers.cells_left_out > 0)
         facts_of_grid.row({"", fmt::format("{} cells left out", grouped(numbers.cells_left_out))});
     facts_of_grid.row({"field", fmt::format("{} {}, range {} to {}{}", numbers.field.name, range_text(numbers.range),

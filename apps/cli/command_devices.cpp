@@ -8,9 +8,9 @@
 #include <isotet/jobs/output_names.hpp>
 
 #include "commands.hpp"
-#include "console.hpp"
-#include "json_output.hpp"
-#include "report.hpp"
+#include "output/console.hpp"
+#include "output/json_output.hpp"
+#include "output/report.hpp"
 
 namespace isotet::cli {
 

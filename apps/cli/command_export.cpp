@@ -15,14 +15,14 @@
 #include <isotet/write.hpp>
 
 #include "commands.hpp"
-#include "console.hpp"
+#include "output/console.hpp"
 #include "export_grid.hpp"
-#include "json_output.hpp"
-#include "report.hpp"
-#include "stopwatch.hpp"
-#include "text.hpp"
-#include "view/saved_grid.hpp"
-#include "view/saved_surfaces.hpp"
+#include "output/json_output.hpp"
+#include "output/report.hpp"
+#include "output/stopwatch.hpp"
+#include "output/text.hpp"
+#include "view/export/saved_grid.hpp"
+#include "view/export/saved_surfaces.hpp"
 #include "view_input.hpp"
 
 namespace isotet::cli {

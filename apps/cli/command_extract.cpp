@@ -5,9 +5,9 @@
 #include <isotet/jobs/slice_files.hpp>
 
 #include "commands.hpp"
-#include "console.hpp"
+#include "output/console.hpp"
 #include "each_file.hpp"
-#include "extract_report.hpp"
+#include "output/extract_report.hpp"
 
 namespace isotet::cli {
 

@@ -4,9 +4,9 @@
 #include <isotet/read.hpp>
 
 #include "commands.hpp"
-#include "console.hpp"
-#include "json_output.hpp"
-#include "report.hpp"
+#include "output/console.hpp"
+#include "output/json_output.hpp"
+#include "output/report.hpp"
 
 namespace isotet::cli {
 

@@ -13,12 +13,12 @@
 #include <isotet/jobs/number_text.hpp>
 
 #include "commands.hpp"
-#include "console.hpp"
+#include "output/console.hpp"
 #include "each_file.hpp"
-#include "info_chart.hpp"
-#include "json_output.hpp"
-#include "packed_report.hpp"
-#include "report.hpp"
+#include "output/info_chart.hpp"
+#include "output/json_output.hpp"
+#include "output/packed_report.hpp"
+#include "output/report.hpp"
 
 namespace isotet::cli {
 
@@ -340,14 +340,11 @@ Json json_of(const GridSummary& found, const std::string& path) {
         report["boundary_faces"] = grid.boundary_faces;
         report["quads_on_triangles"] = grid.quads_on_triangles;
         report["hanging_points"] = found.hanging_points;
-        report["hanging"] = {{"points", found.hanging.points},
-                             {"levels", found.hanging.levels},
-                             {"cells", found.hanging.cells},
-                             {"faces", found.hanging.faces},
-                             {"near_faces", found.hanging.near_faces},
-                             {"largest_distance", found.hanging.largest_distance},
-                             {"open_faces", found.hanging.open_faces},
-                             {"curved_cells", found.hanging.curved_cells}};
+        report["hanging"] = {
+            {"points", found.hanging.points},         {"levels", found.hanging.levels},
+            {"cells", found.hanging.cells},           {"faces", found.hanging.faces},
+            {"near_faces", found.hanging.near_faces}, {"largest_distance", found.hanging.largest_distance},
+            {"open_faces", found.hanging.open_faces}, {"curved_cells", found.hanging.curved_cells}};
     }
     report["bounds"] = {{"lower", grid.lower}, {"upper", grid.upper}};
     report["times"] = found.file.times;

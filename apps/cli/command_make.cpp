@@ -8,10 +8,10 @@
 #include <isotet/write.hpp>
 
 #include "commands.hpp"
-#include "console.hpp"
-#include "json_output.hpp"
-#include "report.hpp"
-#include "stopwatch.hpp"
+#include "output/console.hpp"
+#include "output/json_output.hpp"
+#include "output/report.hpp"
+#include "output/stopwatch.hpp"
 
 namespace isotet::cli {
 

@@ -9,17 +9,15 @@
 #include <isotet/text.hpp>
 
 #include "commands.hpp"
-#include "console.hpp"
-#include "json_output.hpp"
-#include "report.hpp"
+#include "output/console.hpp"
+#include "output/json_output.hpp"
+#include "output/report.hpp"
 
 namespace isotet::cli {
 
 namespace {
 
-std::uint64_t stored_cells(const PackReport& pack) {
-    return pack.tets + pack.pyramids + pack.wedges + pack.hexahedra;
-}
+std::uint64_t stored_cells(const PackReport& pack) { return pack.tets + pack.pyramids + pack.wedges + pack.hexahedra; }
 
 std::string pack_table(const PackJob& job, const PackNumbers& done) {
     Table table = facts();
@@ -58,8 +56,7 @@ Result<ExitCode> run_pack(const PackCommand& command) {
     report["other_cells"] = stored_cells(done->pack) - done->pack.tets;
     report["fields"] = json_texts(names);
     report["steps"] = done->steps;
-    report["seconds"] = {
-        {"read", done->read_seconds}, {"pack", done->pack_seconds}, {"write", done->write_seconds}};
+    report["seconds"] = {{"read", done->read_seconds}, {"pack", done->pack_seconds}, {"write", done->write_seconds}};
     report["scratch_bytes"] = done->scratch_bytes;
     report["file"] = json_text(job.out);
     report["bytes"] = done->bytes;

@@ -8,11 +8,11 @@
 #include <isotet/write.hpp>
 
 #include "commands.hpp"
-#include "console.hpp"
-#include "json_output.hpp"
-#include "report.hpp"
-#include "text.hpp"
-#include "view/saved_grid.hpp"
+#include "output/console.hpp"
+#include "output/json_output.hpp"
+#include "output/report.hpp"
+#include "output/text.hpp"
+#include "view/export/saved_grid.hpp"
 
 namespace isotet::cli {
 

@@ -3,8 +3,8 @@
 #include <isotet/jobs/draw_files.hpp>
 
 #include "commands.hpp"
-#include "console.hpp"
-#include "render_report.hpp"
+#include "output/console.hpp"
+#include "output/render_report.hpp"
 
 namespace isotet::cli {
 

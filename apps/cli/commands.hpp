@@ -8,7 +8,7 @@
 #include <isotet/result.hpp>
 
 #include "exit_code.hpp"
-#include "options.hpp"
+#include "options/options.hpp"
 
 namespace isotet::cli {
 

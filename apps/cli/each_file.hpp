@@ -10,7 +10,7 @@
 
 #include <isotet/jobs/output_names.hpp>
 
-#include "json_output.hpp"
+#include "output/json_output.hpp"
 
 namespace isotet::cli {
 

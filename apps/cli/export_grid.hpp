@@ -6,9 +6,9 @@
 
 #include <isotet/result.hpp>
 
-#include "console.hpp"
+#include "output/console.hpp"
 #include "exit_code.hpp"
-#include "options.hpp"
+#include "options/options.hpp"
 
 namespace isotet::cli {
 

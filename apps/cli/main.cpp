@@ -4,11 +4,11 @@
 
 #include <fmt/format.h>
 
-#include "console.hpp"
+#include "output/console.hpp"
 #include "exit_code.hpp"
 #include "program.hpp"
-#include "signals.hpp"
-#include "standard_streams.hpp"
+#include "output/signals.hpp"
+#include "output/standard_streams.hpp"
 
 int main(int argc, char** argv) {
     using namespace isotet;

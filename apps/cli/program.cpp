@@ -5,13 +5,13 @@
 
 #include <fmt/format.h>
 
-#include "command_text.hpp"
+#include "options/command_text.hpp"
 #include "commands.hpp"
-#include "console.hpp"
-#include "option_tree.hpp"
-#include "options.hpp"
-#include "signals.hpp"
-#include "standard_streams.hpp"
+#include "output/console.hpp"
+#include "options/option_tree.hpp"
+#include "options/options.hpp"
+#include "output/signals.hpp"
+#include "output/standard_streams.hpp"
 
 namespace isotet::cli {
 

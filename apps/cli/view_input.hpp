@@ -13,8 +13,8 @@
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
 
-#include "console.hpp"
-#include "view/greeting.hpp"
+#include "output/console.hpp"
+#include "view/server/greeting.hpp"
 
 namespace isotet::cli {
 
@@ -32,7 +32,7 @@ struct ViewStart {
     const std::vector<IsovalueShare>& shares; ///< more, of the first step
     const std::string& color_by;
     FirstCells cells = FirstCells::all;
-    bool isosurfaces_always = true; ///< else the boundary may stand alone
+    bool isosurfaces_always = true;           ///< else the boundary may stand alone
     std::optional<double> decimal_comma = {}; ///< what two isovalues mean if their comma is a decimal sign
     std::optional<std::uint64_t> memory = {}; ///< of a packed file
 };

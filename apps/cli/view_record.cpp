@@ -11,8 +11,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "json_output.hpp"
-#include "text.hpp"
+#include "output/json_output.hpp"
+#include "output/text.hpp"
 
 namespace isotet::cli {
 

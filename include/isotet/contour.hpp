@@ -179,8 +179,8 @@ struct ContourResult {
     DeviceWork work;            ///< on the device, of the last surface
     std::uint64_t file_bytes_read = 0; ///< of a packed file, by this call
     std::uint64_t file_bytes_kept = 0; ///< of a packed file, in memory after it
-    std::vector<std::string> notes; ///< sentences for the user
-    RefinementReport refinement;    ///< of the grid that was extracted from; without curved cells nothing is counted
+    std::vector<std::string> notes;    ///< sentences for the user
+    RefinementReport refinement;       ///< of the grid that was extracted from; without curved cells nothing is counted
 };
 
 /// Answers isovalues for one grid at a time, and keeps what may be kept when the grid or the field changes.
@@ -291,5 +291,12 @@ private:
 /// Errors     as Contour::create() and Contour::extract()
 ISOTET_API Result<Surface> contour(const Array& points, const Cells& cells, const Array& values, double isovalue,
                                    const Run& run = {});
+
+/// The grid with the field of a name that find_field() takes, and what surfaces are to carry: fields of points, then of
+/// cells, then what else find_field() takes.
+///
+/// Errors   as find_field()
+ISOTET_API Result<ContourInput> contour_input(const Grid& grid, const std::string& field,
+                                              const std::vector<std::string>& carried = {}, const Run& run = {});
 
 } // namespace isotet

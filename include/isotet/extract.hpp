@@ -30,11 +30,12 @@ struct ExtractOptions {
     bool edge_ends = false;          ///< edge_ends and edge_weights
     bool source_cells = false;       ///< needs PackOptions::source_cells
     std::vector<Field> point_fields; ///< carried onto the surface: one tuple a point of the user's grid, any components
-    std::vector<PackedGrid> packed_fields; ///< carried after `point_fields`: the fields of grids with the same cells and
-                                           ///< points, made by with_field() or of the same PackedFile. On the CPU only
-    std::vector<Field> cell_fields;  ///< copied to the triangles: one tuple a user's cell; needs
-                                     ///< PackOptions::source_cells
-    std::shared_ptr<SurfaceSink> sink; ///< gives the memory of surfaces (surface_sink.hpp): the CPU engine makes them
+    std::vector<PackedGrid>
+        packed_fields;                 ///< carried after `point_fields`: the fields of grids with the same cells and
+                                       ///< points, made by with_field() or of the same PackedFile. On the CPU only
+    std::vector<Field> cell_fields;    ///< copied to the triangles: one tuple a user's cell; needs
+                                       ///< PackOptions::source_cells
+    std::shared_ptr<SurfaceSink> sink; ///< gives the memory of surfaces: the CPU engine makes them
                                        ///< there, and what comes from a device is copied; null: isotet's own
 };
 

@@ -22,7 +22,7 @@
 #include <isotet/render.hpp>
 #include <isotet/result.hpp>
 #include <isotet/scene.hpp>
-#include <isotet/search.hpp>
+#include <isotet/paper/search.hpp>
 #include <isotet/slice.hpp>
 #include <isotet/solid.hpp>
 #include <isotet/surface.hpp>
@@ -73,9 +73,9 @@ struct SceneLook {
     std::optional<VolumeLook> volume = {}; ///< of the field; curved cells are then split at their nodes
     std::optional<SolidSide> solid = {};   ///< in place of isosurfaces: the closed part of the grid on one side of
                                            ///< each; the CPU makes them, and no volume goes with them
-    std::optional<PartChoice> keep = {}; ///< of each isosurface or solid only these parts, as keep_parts(); the CPU
-                                         ///< extracts
-    std::vector<Color> map_colors = {};  ///< not empty: in place of `map`, as ColorScale::colors
+    std::optional<PartChoice> keep = {};   ///< of each isosurface or solid only these parts, as keep_parts(); the CPU
+                                           ///< extracts
+    std::vector<Color> map_colors = {};    ///< not empty: in place of `map`, as ColorScale::colors
 };
 
 /// Colour and opacity of one of several isosurfaces.
@@ -137,9 +137,10 @@ enum class ExtractOn : std::uint8_t {
 
 /// A packed grid to contour, of a PackedFile say: no grid is needed, and surfaces come from the clusters that they meet.
 struct PackedScene {
-    PackedGrid grid;                  ///< with the field to contour
-    std::optional<PackedGrid> colors; ///< with the field of SceneLook::colors or boundary_colors, if it is one of points
-    bool contours = true;             ///< else only boundary and slices are drawn
+    PackedGrid grid; ///< with the field to contour
+    std::optional<PackedGrid>
+        colors;           ///< with the field of SceneLook::colors or boundary_colors, if it is one of points
+    bool contours = true; ///< else only boundary and slices are drawn
     /// Gives the same grid with the field of a plane, as PackedFile::sliced() does, for SceneLook::slices.
     std::function<Result<PackedGrid>(const Plane& plane, const Run& run)> sliced = {};
 };
@@ -166,7 +167,8 @@ struct IsosurfaceOptions {
     /// In place of `grid` and `field`. The CPU extracts; there are no solids, and cells colour isosurfaces and slices
     /// only, of a grid that was packed with source cells.
     std::optional<PackedScene> packed = {};
-    std::shared_ptr<KnownBoundary> known_boundary = {}; ///< of scenes before, whose grids may have the same cells; or null
+    std::shared_ptr<KnownBoundary> known_boundary =
+        {}; ///< of scenes before, whose grids may have the same cells; or null
 };
 
 /// A surface that is shown, or the tets that stand for it.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <isotet/export.hpp>
+#include <isotet/fields.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
@@ -16,7 +17,7 @@ namespace isotet {
 
 /// Whether levels are computed exactly or moved to short decimals.
 enum class LevelRounding : std::uint8_t {
-    none,  ///< lower + k (upper - lower) / (count + 1)
+    none,           ///< lower + k (upper - lower) / (count + 1)
     short_decimals, ///< the same, rounded to a tenth of the distance between two levels or better: 0.3, not 0.29873
 };
 
@@ -26,7 +27,7 @@ enum class LevelRounding : std::uint8_t {
 /// Returns            the levels, ascending; with `short_decimals` without repetitions, so perhaps fewer
 /// Guarantees         finite, also where upper - lower is too large for a double
 ISOTET_API std::vector<double> evenly_spaced_levels(double lower, double upper, std::uint64_t count,
-                                         LevelRounding rounding = LevelRounding::none);
+                                                    LevelRounding rounding = LevelRounding::none);
 
 // Isovalues by what lies below them: a part of the grid's volume, or of the point values.
 
@@ -101,5 +102,19 @@ ISOTET_API Result<ContourSpectrum> contour_spectrum(const Grid& grid, const Poin
 /// `steps`   1 to 65,535
 ISOTET_API Result<ContourSpectrum> contour_spectrum_over_range(const Grid& grid, const PointField& field,
                                                                std::uint64_t steps, const Run& run = {});
+
+/// Isovalues that follow from the values of a field: levels in the range that they mostly lie in (typical_range()), or in
+/// that of all finite ones. As ReadActiveCells::choose it goes to the reader processes, too; of any other function these
+/// read all cells.
+struct RangeLevels {
+    std::uint64_t count = 1;
+    LevelRounding rounding = LevelRounding::none;
+    bool whole_range = false;
+
+    /// Errors   invalid_data: the field has no finite value
+    ISOTET_API Result<std::vector<double>> operator()(const PointField& field) const;
+    /// Of a range that is known.
+    ISOTET_API Result<std::vector<double>> within(const ValueRange& range, const PointField& field) const;
+};
 
 } // namespace isotet

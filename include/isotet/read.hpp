@@ -92,13 +92,13 @@ struct FileInfo {
 struct ReadActiveCells {
     std::string field; ///< as find_field() takes it
     std::vector<double> isovalues;
-    DirectOptions options; ///< of the extraction; the point fields that are read count as carried ones
+    DirectOptions options;                ///< of the extraction; the point fields that are read count as carried ones
     std::optional<SliceShape> shape = {}; ///< slice_field() in place of `field`
     bool bounds = false;                  ///< ReadResult::bounds are wanted
     /// Gets the boundary, if it is wanted.
     std::shared_ptr<StreamedBoundary> boundary = {};
     /// Where there are no isovalues: gives them once the values of all points are known. VTKHDF and Exodus read all cells
-    /// unless it is a RangeLevels (range_levels.hpp).
+    /// unless it is a RangeLevels (isovalues.hpp).
     std::function<Result<std::vector<double>>(const PointField& field)> choose = {};
 };
 
@@ -125,13 +125,14 @@ struct ReadOptions {
     std::vector<std::string> blocks; ///< names or numbers of FileInfo::blocks to read; empty: all, of CGNS those of the
                                      ///< first base. A name is any whole parts of a path: "x" and "g/x" are "g/x/m"
     std::vector<std::string> more_files; ///< of the steps behind that of the path; times are then numbers of the files
-    bool patches = false; ///< Grid::patches: of Gmsh, MED, OpenFOAM, Exodus and CGNS
+    bool patches = false;                ///< Grid::patches: of Gmsh, MED, OpenFOAM, Exodus and CGNS
     std::optional<ReadActiveCells> active_cells = {}; ///< where that can be done while reading (VTU, PVTU, VTM, PVD,
                                                       ///< VTKHDF, Exodus, binary legacy VTK; linear cells, points that
                                                       ///< do not coincide); else all are read. Cell fields have
                                                       ///< values of the cells that were kept
-    std::uint64_t some_cells = 0; ///< not 0: about so many cells will do, spread evenly; packed files then read no more than
-                                  ///< these, all other formats all
+    std::uint64_t some_cells =
+        0; ///< not 0: about so many cells will do, spread evenly; packed files then read no more than
+           ///< these, all other formats all
     std::shared_ptr<KeptFiles> kept = {}; ///< keep_files(); the same for inspect() and the read() behind it
 };
 
@@ -187,5 +188,21 @@ struct SurfaceFile {
 /// vertices: weld it.
 ISOTET_API Result<SurfaceFile> read_surface(const std::string& path, const ReadSurfaceOptions& options = {},
                                             const Run& run = {});
+
+/// A grid that was read to be counted.
+struct SurveyedGrid {
+    ReadResult read; ///< where there is a report, with a sample of the cells, and cell fields of all of them
+    std::optional<GridReport> report = {};   ///< survey() of all cells, without faces; nothing: the grid has all cells
+    std::vector<std::uint64_t> sampled = {}; ///< numbers of the cells of the sample
+};
+
+/// read(), but cells are counted as they go by, and only a sample of them is kept, where that can be done: linear cells in
+/// VTK's XML formats, VTKHDF, Exodus or a binary legacy VTK file, of which no piece repeats some of another but as ghost cells,
+/// and points that do not coincide.
+///
+/// Cost     of such a file memory for points and fields, a byte a point, and one pass over the cells
+/// Errors   as read()
+ISOTET_API Result<SurveyedGrid> read_surveyed(const std::string& path, const ReadOptions& options = {},
+                                              const Run& run = {});
 
 } // namespace isotet

@@ -12,7 +12,6 @@
 
 #include <isotet/export.hpp>
 #include <isotet/surface.hpp>
-#include <isotet/surface_sink.hpp>
 
 #include "base/shared_buffer.hpp"
 

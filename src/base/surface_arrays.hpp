@@ -5,7 +5,6 @@
 #include <string_view>
 
 #include <isotet/surface.hpp>
-#include <isotet/surface_sink.hpp>
 
 namespace isotet::core {
 

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include <isotet/contour.hpp>
-#include <isotet/contour_input.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/isotet.h>
 #include <isotet/read.hpp>

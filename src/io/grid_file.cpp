@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include <isotet/contour_input.hpp>
+#include <isotet/contour.hpp>
 #include <isotet/fields.hpp>
 #include <isotet/linear_cells.hpp>
 #include <isotet/packed_file.hpp>

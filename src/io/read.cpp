@@ -24,7 +24,7 @@
 #include "io/files/kept_files.hpp"
 #include "io/files/text_scanner.hpp"
 #include "io/formats.hpp"
-#include "io/pieces/join.hpp"
+#include "io/pieces/join/join.hpp"
 #include "io/pieces/region_choice.hpp"
 #include "io/pieces/survey_unread.hpp"
 #include "io/pieces/uniform_cells.hpp"

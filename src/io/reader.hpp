@@ -9,7 +9,6 @@
 
 #include <isotet/export.hpp>
 #include <isotet/read.hpp>
-#include <isotet/read_surveyed.hpp>
 
 namespace isotet::io {
 

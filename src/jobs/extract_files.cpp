@@ -20,7 +20,7 @@
 #include "base/stopwatch.hpp"
 #include "jobs/extract_notes.hpp"
 #include "jobs/extract_plan.hpp"
-#include "jobs/packed_picture.hpp"
+#include "jobs/pictures/packed_picture.hpp"
 #include "jobs/part_table.hpp"
 #include "jobs/refinement_record.hpp"
 #include "jobs/refuse.hpp"

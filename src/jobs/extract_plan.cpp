@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include <isotet/active_cells.hpp>
-#include <isotet/range_levels.hpp>
 #include <isotet/fields.hpp>
 #include <isotet/jobs/first_choice.hpp>
 #include <isotet/jobs/number_text.hpp>

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include <isotet/contour_input.hpp>
+#include <isotet/contour.hpp>
 
 #include <algorithm>
 #include <utility>

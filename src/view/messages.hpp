@@ -17,11 +17,11 @@
 
 #include "view/chart.hpp"
 #include "view/command_line.hpp"
-#include "view/encode.hpp"
+#include "view/server/encode.hpp"
 #include "view/json.hpp"
 #include "view/mesh.hpp"
 #include "view/pick.hpp"
-#include "view/save.hpp"
+#include "view/export/save.hpp"
 #include "view/state.hpp"
 
 namespace isotet::view {
@@ -133,12 +133,12 @@ struct FrameFacts {
     bool preview = false;     ///< of at least one of the meshes
     std::string method;       ///< "direct" or "clusters"
     double extract_seconds = 0, mesh_seconds = 0, wait_seconds = 0;
-    std::optional<ColorScale> scale; ///< of values on the surfaces
+    std::optional<ColorScale> scale;       ///< of values on the surfaces
     std::vector<std::string> classes = {}; ///< names of ColorScale::classes
     std::vector<std::string> notes;
     std::uint64_t step = 0;
-    std::string field = {};                 ///< that is contoured
-    std::optional<ValueRange> range = {};   ///< of its values in this step, where the file has several
+    std::string field = {};                     ///< that is contoured
+    std::optional<ValueRange> range = {};       ///< of its values in this step, where the file has several
     std::optional<double> field_bound = {};     ///< of the refined cells; nothing: none was refined
     std::optional<EncodedPicture> picture = {}; ///< instead of meshes
     std::vector<OpacityPoint> opacity = {};     ///< of the volume in the picture

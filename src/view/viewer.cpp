@@ -12,9 +12,9 @@
 #include <fmt/format.h>
 #include <sys/random.h>
 
-#include "view/page.hpp"
-#include "view/server.hpp"
-#include "view/viewed_file.hpp"
+#include "view/server/page.hpp"
+#include "view/server/server.hpp"
+#include "view/server/viewed_file.hpp"
 
 namespace isotet::view {
 
@@ -66,7 +66,7 @@ struct Viewer::Data {
     Parting last_parting = Parting::closed; ///< of the page that may come back longest
     std::optional<double> longest_wait;     ///< for a page that went since one was admitted
     double said_alive = 0;
-    std::string reason;                     ///< why it ended
+    std::string reason; ///< why it ended
 
     void start();
     void take_message(ConnectionNumber from, std::string_view text);

@@ -13,7 +13,7 @@
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
 
-#include "view/greeting.hpp"
+#include "view/server/greeting.hpp"
 #include "view/steps.hpp"
 
 namespace isotet::view {

@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "page.hpp"
-#include "view/greeting.hpp"
+#include "view/server/greeting.hpp"
 #include "webgpu/card.hpp"
 
 namespace isotet::web {

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// What JavaScript gives the modules for pages (view/web/engine_worker.js): functions that copy what they are given.
+// What JavaScript gives the modules for pages (view/web/link/engine_worker.js): functions that copy what they are given.
 #pragma once
 
 #include <cstddef>

@@ -13,7 +13,7 @@
 #include "io/formats.hpp"
 #include "module.hpp"
 #include "page.hpp"
-#include "view/greeting.hpp"
+#include "view/server/greeting.hpp"
 #include "webgpu/card.hpp"
 
 namespace isotet::web {

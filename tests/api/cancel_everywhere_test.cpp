@@ -29,9 +29,8 @@
 #include <isotet/packed_file.hpp>
 #include <isotet/pieces.hpp>
 #include <isotet/read.hpp>
-#include <isotet/read_surveyed.hpp>
 #include <isotet/scene.hpp>
-#include <isotet/search.hpp>
+#include <isotet/paper/search.hpp>
 #include <isotet/slice.hpp>
 #include <isotet/solid.hpp>
 #include <isotet/surface.hpp>

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include <isotet/grid_bench.hpp>
+#include <isotet/paper/grid_bench.hpp>
 #include <isotet/make.hpp>
 
 namespace isotet::test {

@@ -14,7 +14,7 @@
 #include <isotet/contour.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/pack.hpp>
-#include <isotet/surface_sink.hpp>
+#include <isotet/surface.hpp>
 
 #include "support/quadratic_grid.hpp"
 #include "support/small_grid.hpp"

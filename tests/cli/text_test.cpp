@@ -2,7 +2,7 @@
 // Text for terminals and JSON.
 #include <gtest/gtest.h>
 
-#include "text.hpp"
+#include "output/text.hpp"
 
 namespace isotet::cli {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "fuzz/read_input.hpp"
 #include "io/amr/boxes_as_pieces.hpp"
-#include "io/pieces/join.hpp"
+#include "io/pieces/join/join.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 
 #include "fuzz/read_input.hpp"
 #include "io/foam/read_openfoam.hpp"
-#include "io/pieces/join.hpp"
+#include "io/pieces/join/join.hpp"
 
 namespace {
 

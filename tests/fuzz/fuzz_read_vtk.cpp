@@ -3,7 +3,7 @@
 #include <array>
 
 #include "fuzz/read_input.hpp"
-#include "io/pieces/join.hpp"
+#include "io/pieces/join/join.hpp"
 #include "io/vtk_legacy/read_legacy_vtk.hpp"
 #include "io/vtk_xml/load.hpp"
 

@@ -9,7 +9,7 @@
 
 #include <isotet/contour.hpp>
 #include <isotet/device.hpp>
-#include <isotet/surface_sink.hpp>
+#include <isotet/surface.hpp>
 
 #include "gpu_engine/engines.hpp"
 #include "support/small_grid.hpp"
@@ -38,8 +38,7 @@ protected:
         vulkan::Settings settings = watched();
         settings.alter_functions = [&plan](vulkan::DeviceFunctions& functions) { make_calls_follow(plan, functions); };
         const Device device(vulkan::Context::open({test_device(), 0}, settings).value());
-        return Contour::create(session_input(grid, 0),
-                               {.engine = vulkan_engine(device), .engine_required = required})
+        return Contour::create(session_input(grid, 0), {.engine = vulkan_engine(device), .engine_required = required})
             .value();
     }
 };
@@ -118,8 +117,7 @@ TEST_F(SessionOnDevice, EndsWithAnErrorWhereTheDeviceIsRequired) {
     surfaces_of(contour, "vulkan");
     plan = {.fail_at = 1, .with = VK_ERROR_DEVICE_LOST, .only = "vkQueueSubmit", .calls = {}};
     EXPECT_EQ(contour.extract(0.1).error().code, ErrorCode::device_failed);
-    EXPECT_EQ(Contour::create(session_input(grid, 0),
-                              {.method = Method::direct, .engine = vulkan_engine(device())})
+    EXPECT_EQ(Contour::create(session_input(grid, 0), {.method = Method::direct, .engine = vulkan_engine(device())})
                   .error()
                   .message,
               "the vulkan engine extracts from clusters, but direct extraction was asked for");

@@ -2,6 +2,7 @@
 // Includes go one way: base, numbers, grid, packed, ops, engines, api, programs. Every source file of the tree is read.
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -58,6 +59,18 @@ TEST(Includes, AgainstTheDirectionAreFound) {
     EXPECT_EQ(objection("src/io/confined/serve.cpp", "vtkCellArray.h"), "");
     EXPECT_NE(objection("python/bindings/contours.cpp", "session/fingerprint.hpp"), "") << "and so do the bindings";
     EXPECT_EQ(objection("apps/cli/extract.cpp", "isotet/extract.hpp"), "");
+}
+
+TEST(Includes, FoldersCanBeReadAtAGlance) {
+    std::map<std::string, int> files;
+    for (const char* folder :
+         {"include", "src", "apps", "bench", "examples", "paraview", "python", "scripts", "tests", "vtk"})
+        for (const auto& entry : fs::recursive_directory_iterator(source_folder() / folder))
+            if (entry.is_regular_file() && entry.path().filename() != "CMakeLists.txt" &&
+                entry.path().extension() != ".pyc")
+                ++files[entry.path().parent_path().lexically_relative(source_folder()).generic_string()];
+    EXPECT_GT(files.size(), 60u) << "the check read nothing";
+    for (const auto& [folder, count] : files) EXPECT_LE(count, 40) << folder << " has too many files in it";
 }
 
 TEST(Includes, AreReadFromTheLinesThatAreIncludes) {

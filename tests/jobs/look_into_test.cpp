@@ -11,7 +11,7 @@
 #include <isotet/first_view.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/make.hpp>
-#include <isotet/read_surveyed.hpp>
+#include <isotet/read.hpp>
 #include <isotet/write.hpp>
 
 #include "jobs/listener.hpp"

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include <isotet/jobs/measure_methods.hpp>
+#include <isotet/paper/measure_methods.hpp>
 
 #include <cmath>
 

@@ -14,7 +14,7 @@
 #include <isotet/make.hpp>
 #include <isotet/pieces.hpp>
 
-#include "io/pieces/join.hpp"
+#include "io/pieces/join/join.hpp"
 
 namespace isotet::test {
 namespace {

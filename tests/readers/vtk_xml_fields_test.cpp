@@ -14,7 +14,7 @@
 #include "io/files/byte_source.hpp"
 #include "io/files/time_values.hpp"
 #include "io/pieces/common_type.hpp"
-#include "io/pieces/join.hpp"
+#include "io/pieces/join/join.hpp"
 #include "io/vtk_xml/base64.hpp"
 #include "io/vtk_xml/load.hpp"
 #include "support/temporary_folder.hpp"
@@ -41,8 +41,7 @@ struct Tet {
 
     std::string piece() const {
         const std::string places =
-            points.empty() ? array_of("Float64", "Points",
-                                      fmt::format("{0} 0 0 {1} 0 0 {0} 1 0 {0} 0 1", x, x + 1),
+            points.empty() ? array_of("Float64", "Points", fmt::format("{0} 0 0 {1} 0 0 {0} 1 0 {0} 0 1", x, x + 1),
                                       "NumberOfComponents=\"3\"")
                            : points;
         return fmt::format("<Piece NumberOfPoints=\"4\" NumberOfCells=\"{}\"><PointData>{}</PointData>"
@@ -124,23 +123,23 @@ std::string reasons_of(const FileInfo& info) {
 const std::string good = array_of("Float32", "T", "1 2 3 4");
 
 TEST(VtkXmlFields, OneThatIsBrokenLeavesTheOthers) {
-    for (const auto& [bad, reason] : {
-             std::pair{array_of("Foo", "q", "1 2 3 4"), "point field q: its type is 'Foo', which is not known"},
-             {"<DataArray Name=\"q\">1 2 3 4</DataArray>", "point field q: its type is '', which is not known"},
-             {array_of("Float32", "q", "1 true 3 4"), "point field q: 'true', number 1 of 4, is not float32"},
-             {array_of("Float32", "q", "1"), "point field q: the array 'q' should have 4 numbers, but"},
-             {array_of("Float32", "q", "1 2 3  "), "point field q: the array 'q' has 3 numbers, not 4"},
-             {array_of("Int8", "q", "1 2 3 1000"), "point field q: '1000', number 3 of 4, is not int8"},
-             {array_of("Float32", "q", "AAAA*AAA", "format=\"binary\""), "point field q: its base64 data is broken"},
-             {array_of("Float32", "q", "", "format=\"binary\""), "point field q: "},
-             {array_of("Float32", "q", "1 2", "format=\"packed\""),
-              "point field q: its format is 'packed', not ascii, binary or appended"},
-             {array_of("Float32", "q", "", "format=\"appended\" offset=\"7\""), "point field q: offset 7 lies behind"},
-             {array_of("Float32", "q", "1 2 3 4", "NumberOfComponents=\"-1\""),
-              "point field q: it has '-1' components, not 1 to"},
-             {array_of("Float32", "q", "1 2 3 4", "NumberOfComponents=\"2\""), "point field q: "},
-             {"<Array type=\"String\" Name=\"q\">97 0 98 0 99 0 100 0</Array>",
-              "point field q: it holds text, not numbers"}}) {
+    for (const auto& [bad, reason] :
+         {std::pair{array_of("Foo", "q", "1 2 3 4"), "point field q: its type is 'Foo', which is not known"},
+          {"<DataArray Name=\"q\">1 2 3 4</DataArray>", "point field q: its type is '', which is not known"},
+          {array_of("Float32", "q", "1 true 3 4"), "point field q: 'true', number 1 of 4, is not float32"},
+          {array_of("Float32", "q", "1"), "point field q: the array 'q' should have 4 numbers, but"},
+          {array_of("Float32", "q", "1 2 3  "), "point field q: the array 'q' has 3 numbers, not 4"},
+          {array_of("Int8", "q", "1 2 3 1000"), "point field q: '1000', number 3 of 4, is not int8"},
+          {array_of("Float32", "q", "AAAA*AAA", "format=\"binary\""), "point field q: its base64 data is broken"},
+          {array_of("Float32", "q", "", "format=\"binary\""), "point field q: "},
+          {array_of("Float32", "q", "1 2", "format=\"packed\""),
+           "point field q: its format is 'packed', not ascii, binary or appended"},
+          {array_of("Float32", "q", "", "format=\"appended\" offset=\"7\""), "point field q: offset 7 lies behind"},
+          {array_of("Float32", "q", "1 2 3 4", "NumberOfComponents=\"-1\""),
+           "point field q: it has '-1' components, not 1 to"},
+          {array_of("Float32", "q", "1 2 3 4", "NumberOfComponents=\"2\""), "point field q: "},
+          {"<Array type=\"String\" Name=\"q\">97 0 98 0 99 0 100 0</Array>",
+           "point field q: it holds text, not numbers"}}) {
         for (const bool first : {true, false}) {
             const std::string text = vtu(Tet{.point_data = first ? bad + good : good + bad}.piece());
             const io::Loaded file = loaded(text);
@@ -211,8 +210,8 @@ TEST(VtkXmlFields, OneThatIsBrokenIsAnErrorWhereItIsNamed) {
 }
 
 TEST(VtkXmlFields, OfCellsThatAreBrokenLeaveTheOthers) {
-    const io::Loaded file = loaded(
-        vtu(Tet{.cell_data = array_of("Float32", "q", "no") + array_of("Float32", "m", "7")}.piece()));
+    const io::Loaded file =
+        loaded(vtu(Tet{.cell_data = array_of("Float32", "q", "no") + array_of("Float32", "m", "7")}.piece()));
     EXPECT_EQ(values_of(find(file.pieces.at(0).grid.cell_fields, "m")), std::vector<double>{7});
     EXPECT_EQ(reasons_of(file.info), "cell field q: 'no', number 0 of 1, is not float32");
 }
@@ -225,10 +224,10 @@ TEST(VtkXmlFields, GhostMarksOfCellsMustBeSound) {
 }
 
 TEST(VtkXmlFields, WithoutANameGetOneAndOfTwoOfANameTheFirstCounts) {
-    const io::Loaded file = loaded(vtu(Tet{.point_data = good + array_of("Float32", "", "5 6 7 8") +
-                                                         array_of("Float32", "T", "0 0 0 0") +
-                                                         "<DataArray type=\"Int8\">1 1 1 1</DataArray>"}
-                                           .piece()));
+    const io::Loaded file =
+        loaded(vtu(Tet{.point_data = good + array_of("Float32", "", "5 6 7 8") + array_of("Float32", "T", "0 0 0 0") +
+                                     "<DataArray type=\"Int8\">1 1 1 1</DataArray>"}
+                       .piece()));
     EXPECT_EQ(names_of(file.info), (Names{"T", "unnamed", "unnamed_2"}));
     EXPECT_EQ(point_values(file, "T"), (std::vector<double>{1, 2, 3, 4}));
     EXPECT_EQ(point_values(file, "unnamed"), (std::vector<double>{5, 6, 7, 8}));
@@ -341,8 +340,10 @@ TEST(VtkXmlFields, AreReadInEverySpelling) {
     EXPECT_EQ(read_as("\n " + digits + "\n ", "format=\"Binary\""), expected);
     EXPECT_EQ(read_as("<!-- packed -->" + digits, "format=\"BINARY\""), expected);
     const std::string appended = array_of("Float32", "T", "", "format=\"Appended\" offset=\"0\"");
-    for (const auto& [encoding, data] : {std::pair{"", digits}, {"encoding=\"base64\"", digits},
-                                         {"encoding=\"Base64\"", digits}, {"encoding=\"raw\"", bytes}}) {
+    for (const auto& [encoding, data] : {std::pair{"", digits},
+                                         {"encoding=\"base64\"", digits},
+                                         {"encoding=\"Base64\"", digits},
+                                         {"encoding=\"raw\"", bytes}}) {
         const std::string text = vtu(Tet{.point_data = appended}.piece(), "type=\"UnstructuredGrid\"",
                                      fmt::format("<AppendedData {}>_{}</AppendedData>", encoding, data));
         EXPECT_EQ(point_values(loaded(text), "T"), expected) << encoding;
@@ -390,8 +391,8 @@ TEST(VtkXmlFields, WhoseLengthIsWrongAreReadWhereTheyFit) {
     EXPECT_EQ(point_values(file, "T"), (std::vector<double>{1, 2, 3, 4}));
     ASSERT_EQ(file.notes.size(), 1u);
     EXPECT_TRUE(file.notes[0].starts_with("the stated length of 'T' is wrong")) << file.notes[0];
-    const io::Loaded short_one = loaded(
-        vtu(Tet{.point_data = array_of("Float32", "T", digits.substr(0, 24), "format=\"binary\"")}.piece()));
+    const io::Loaded short_one =
+        loaded(vtu(Tet{.point_data = array_of("Float32", "T", digits.substr(0, 24), "format=\"binary\"")}.piece()));
     EXPECT_NE(reasons_of(short_one.info).find("bytes are announced"), std::string::npos) << reasons_of(short_one.info);
 }
 
@@ -417,8 +418,10 @@ TEST(VtkXmlCells, MustBeAsManyAsAreAnnounced) {
                        .piece());
     };
     EXPECT_EQ(error_of_grid(tet("2", "4 8", "10 10")), "no error");
-    EXPECT_EQ(error_of_grid(tet("1", "4 8", "10")), "the array 'offsets': it holds more than the 1 values that are announced");
-    EXPECT_EQ(error_of_grid(tet("1", "4", "10 10")), "the array 'types': it holds more than the 1 values that are announced");
+    EXPECT_EQ(error_of_grid(tet("1", "4 8", "10")),
+              "the array 'offsets': it holds more than the 1 values that are announced");
+    EXPECT_EQ(error_of_grid(tet("1", "4", "10 10")),
+              "the array 'types': it holds more than the 1 values that are announced");
     EXPECT_EQ(error_of_grid(tet("0", "4 8", "10 10")), "NumberOfCells is 0, but the array 'types' holds values");
     const auto packed = [](const char* count) {
         return vtu(Tet{.count = count,
@@ -454,8 +457,8 @@ TEST(VtkXmlCells, PointsMayBeOfAnyType) {
         EXPECT_EQ(grid.points.type(), read_as);
         EXPECT_EQ(grid.points.at(3, 2), 1);
     }
-    EXPECT_EQ(error_of_grid(vtu(Tet{.points = array_of("Float32", "Points", "0 0 1 0 0 1 1 1", "NumberOfComponents=\"2\"")}
-                               .piece())),
+    EXPECT_EQ(error_of_grid(vtu(
+                  Tet{.points = array_of("Float32", "Points", "0 0 1 0 0 1 1 1", "NumberOfComponents=\"2\"")}.piece())),
               "the points have 2 components, not 3");
 }
 
@@ -477,9 +480,14 @@ TEST(TimeValues, AreTakenAsTheyWereWritten) {
 
 TEST(CommonType, HoldsTheValuesOfBothWhateverTheirOrder) {
     using enum ScalarType;
-    for (const auto& [a, b, both] :
-         {std::tuple{int8, uint8, int16}, {uint16, int32, int32}, {uint32, int32, int64}, {int64, uint64, float64},
-          {uint8, uint32, uint32}, {float32, float64, float64}, {int8, float32, float64}, {float32, float32, float32}}) {
+    for (const auto& [a, b, both] : {std::tuple{int8, uint8, int16},
+                                     {uint16, int32, int32},
+                                     {uint32, int32, int64},
+                                     {int64, uint64, float64},
+                                     {uint8, uint32, uint32},
+                                     {float32, float64, float64},
+                                     {int8, float32, float64},
+                                     {float32, float32, float32}}) {
         EXPECT_EQ(io::common_type(a, b), both);
         EXPECT_EQ(io::common_type(b, a), both);
     }

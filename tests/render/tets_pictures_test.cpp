@@ -6,7 +6,7 @@
 #include <string>
 
 #include <isotet/draw_tets.hpp>
-#include <isotet/search.hpp>
+#include <isotet/paper/search.hpp>
 
 #include "support/small_grid.hpp"
 

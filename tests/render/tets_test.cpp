@@ -9,7 +9,7 @@
 #include <string>
 
 #include <isotet/draw_tets.hpp>
-#include <isotet/search.hpp>
+#include <isotet/paper/search.hpp>
 
 #include "support/engines.hpp"
 #include "support/random_grid.hpp"

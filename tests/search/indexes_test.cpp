@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <isotet/extract.hpp>
-#include <isotet/search.hpp>
+#include <isotet/paper/search.hpp>
 
 #include "support/random_grid.hpp"
 #include "support/seeds.hpp"

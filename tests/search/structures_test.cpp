@@ -7,11 +7,11 @@
 
 #include <gtest/gtest.h>
 
-#include <isotet/search.hpp>
+#include <isotet/paper/search.hpp>
 
 #include "packed/tet_table.hpp"
-#include "search/face_neighbours.hpp"
-#include "search/seed_set.hpp"
+#include "paper/search/face_neighbours.hpp"
+#include "paper/search/seed_set.hpp"
 #include "support/random_grid.hpp"
 #include "support/seeds.hpp"
 #include "support/small_grid.hpp"

@@ -10,7 +10,6 @@
 
 #include <isotet/grid.hpp>
 #include <isotet/read.hpp>
-#include <isotet/read_surveyed.hpp>
 
 #include "grid/cells.hpp"
 

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "support/temporary_folder.hpp"
-#include "view/download.hpp"
+#include "view/server/download.hpp"
 
 namespace isotet::test {
 namespace {

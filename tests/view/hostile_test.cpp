@@ -15,7 +15,7 @@
 
 #include "support/temporary_folder.hpp"
 #include "view/frame_reader.hpp"
-#include "view/page.hpp"
+#include "view/server/page.hpp"
 #include "view/raw_page.hpp"
 #include "view/viewer.hpp"
 
@@ -94,9 +94,9 @@ TEST(Server, GivesThePageAndItsFilesAndNothingElse) {
     EXPECT_NE(page.find("Content-Security-Policy: default-src 'none'"), std::string::npos);
     EXPECT_NE(page.find("<!doctype html>"), std::string::npos);
     for (const char* target : {"/", "/?beside", "/beside.html", "/nothing"})
-        EXPECT_NE(answer_to(viewer, "GET " + std::string(target) + " HTTP/1.1\r\n" + host)
-                      .find("; frame-ancestors 'self';"),
-                  std::string::npos)
+        EXPECT_NE(
+            answer_to(viewer, "GET " + std::string(target) + " HTTP/1.1\r\n" + host).find("; frame-ancestors 'self';"),
+            std::string::npos)
             << target << " can be framed by other origins";
     for (const ServedFile& file : page_files())
         EXPECT_TRUE(answer_to(viewer, "GET /node/host/8123/" + std::string(file.name) + "?x HTTP/1.1\r\n" + host)
@@ -125,10 +125,9 @@ std::map<std::string_view, std::string_view> loaded_files() {
         waiting.pop_back();
         const std::string_view text = files.at(name);
         if (!loaded.emplace(name, text).second) continue;
-        constexpr std::string_view before = "'./";
-        for (std::size_t at = text.find(before); at != text.npos; at = text.find(before, at + 1)) {
-            const std::size_t from = at + before.size();
-            waiting.push_back(text.substr(from, text.find('\'', from) - from));
+        for (std::size_t at = text.find(".js'"); at != text.npos; at = text.find(".js'", at + 1)) {
+            const std::size_t from = text.rfind('/', at) + 1;
+            waiting.push_back(text.substr(from, at + 3 - from));
         }
     }
     return loaded;
@@ -150,8 +149,8 @@ TEST(Server, AnswersOnlyToNamesOfThisMachine) {
         EXPECT_TRUE(
             answer_to(viewer, "GET / HTTP/1.1\r\nHost: " + std::string(host) + "\r\n\r\n").starts_with("HTTP/1.1 200"))
             << host;
-    for (const char* host :
-         {"evil.example.org", "localhost.evil.org", "127.0.0.1.evil.org", "", "[::1", "evil:127.0.0.1", "localhost:80@evil.org"})
+    for (const char* host : {"evil.example.org", "localhost.evil.org", "127.0.0.1.evil.org", "", "[::1",
+                             "evil:127.0.0.1", "localhost:80@evil.org"})
         EXPECT_TRUE(
             answer_to(viewer, "GET / HTTP/1.1\r\nHost: " + std::string(host) + "\r\n\r\n").starts_with("HTTP/1.1 403"))
             << host;

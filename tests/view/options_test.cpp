@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <set>
 
-#include "option_tree.hpp"
-#include "options.hpp"
+#include "options/option_tree.hpp"
+#include "options/options.hpp"
 #include "view/command_line.hpp"
 #include "view/page_words.hpp"
 #include "view/random_state.hpp"

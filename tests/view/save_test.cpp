@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "support/temporary_folder.hpp"
-#include "view/save.hpp"
+#include "view/export/save.hpp"
 
 namespace isotet::test {
 namespace {
@@ -57,19 +57,22 @@ TEST_F(SaverTest, FollowsNoLinkThatComesMeanwhile) {
     const std::string elsewhere = scripts_.write("private", "mine");
     EXPECT_FALSE(save("a.png", "ln -s '" + elsewhere + "' '" + out_.file("a.png") + "'; printf picture > \"$1\""));
     EXPECT_EQ(content(elsewhere), "mine");
-    EXPECT_FALSE(save("b.png", "ln -s '" + scripts_.file("new") + "' '" + out_.file("b.png") + "'; printf picture > \"$1\""));
+    EXPECT_FALSE(
+        save("b.png", "ln -s '" + scripts_.file("new") + "' '" + out_.file("b.png") + "'; printf picture > \"$1\""));
     EXPECT_FALSE(std::filesystem::exists(scripts_.file("new")));
 }
 
 TEST_F(SaverTest, TellsWhatTheProgramSaidAboutTheNamedFile) {
     const auto saved = save("a.png", "echo \"isotet: $1: the disk is full\" >&2; exit 5");
     ASSERT_FALSE(saved);
-    EXPECT_EQ(saved.error().message, "isotet: " + std::filesystem::path(out_.file("")).string() + "/a.png: the disk is full");
+    EXPECT_EQ(saved.error().message,
+              "isotet: " + std::filesystem::path(out_.file("")).string() + "/a.png: the disk is full");
     EXPECT_EQ(entries(), 0U);
 }
 
 TEST_F(SaverTest, EndsWhenItIsToldTo) {
-    Saver saver(scripts_.write_script("isotet", "echo > '" + scripts_.file("begun") + "'; printf half > \"$1\"; exec sleep 1000"),
+    Saver saver(scripts_.write_script("isotet",
+                                      "echo > '" + scripts_.file("begun") + "'; printf half > \"$1\"; exec sleep 1000"),
                 out_.file(""));
     std::promise<Result<std::string>> promise;
     ASSERT_TRUE(saver.start({"isotet", out_.file("a.png")}, "a.png",

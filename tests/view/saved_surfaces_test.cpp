@@ -12,17 +12,17 @@
 #include <isotet/extract.hpp>
 #include <isotet/make.hpp>
 
-#include "view/page_file.hpp"
-#include "view/saved_mesh.hpp"
-#include "view/saved_surfaces.hpp"
-#include "view/sha256.hpp"
+#include "view/export/page_file.hpp"
+#include "view/export/saved_mesh.hpp"
+#include "view/export/saved_surfaces.hpp"
+#include "view/export/sha256.hpp"
 
 namespace isotet::test {
 namespace {
 
 using namespace view;
 
-/// Takes columns apart as web/unpack.js does.
+/// Takes columns apart as web/link/unpack.js does.
 class ColumnReader {
 public:
     explicit ColumnReader(std::string bytes) : bytes_(std::move(bytes)) {}
@@ -156,16 +156,17 @@ TEST(Base64Of, GivesThePublishedValues) { // RFC 4648, section 10
 
 TEST(Bundle, RunsModulesInTheOrderOfABrowser) {
     const std::vector<PageModule> modules{
-        {"main.js", "import {a} from './a.js';\nimport * as tools from './tools.js';\nrun(a);\n"},
-        {"a.js", "import {b} from './b.js';\nimport {link} from './link.js';\nexport const a = b();\n"},
+        {"main.js", "import {a} from './some/a.js';\nimport * as tools from './tools.js';\nrun(a);\n"},
+        {"a.js", "import {b} from './b.js';\nimport * as tools from '../tools.js';\nimport {link} from "
+                 "'./link.js';\nexport const a = b();\n"},
         {"b.js", "import {a} from './a.js';\nexport async function b() { return () => a; }\n"},
         {"link.js", "socket();\n"},
         {"saved.js", "export class Link {}\n"},
         {"tools.js", "export const one = 1;\nexport function two() {}\n"},
     };
     EXPECT_EQ(bundle(modules, "main.js", {"link.js", "saved.js"}).value(),
-              "async function b() { return () => a; }\nclass Link {}\nconst a = b();\nconst one = 1;\n"
-              "function two() {}\nconst tools = {one, two};\nrun(a);\n");
+              "async function b() { return () => a; }\nconst one = 1;\nfunction two() {}\nconst tools = {one, two};\n"
+              "class Link {}\nconst a = b();\nrun(a);\n");
     const std::vector<PageModule> broken{{"main.js", "import {a} from './gone.js';\n"}};
     EXPECT_FALSE(bundle(broken, "main.js", {"link.js", "saved.js"}));
 }

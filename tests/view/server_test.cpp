@@ -19,7 +19,7 @@
 
 #include "support/temporary_folder.hpp"
 #include "view/raw_page.hpp"
-#include "view/server.hpp"
+#include "view/server/server.hpp"
 
 namespace {
 std::atomic<int> refused_accepts{0};
@@ -168,10 +168,11 @@ TEST(ServerOfAllAddresses, AnswersToEachOfThemAndToNoOtherName) {
             page.send_request("/", "Host: " + host + "\r\n");
             return page.read_to_end().substr(9, 3);
         };
-        for (const char* host : {"192.168.1.7:8123", "10.0.0.1", "[fe80::1]:80", "[2001:db8::7]", "localhost", "127.0.0.1"})
+        for (const char* host :
+             {"192.168.1.7:8123", "10.0.0.1", "[fe80::1]:80", "[2001:db8::7]", "localhost", "127.0.0.1"})
             EXPECT_EQ(status_for(host), "404") << host << ": admitted, but there is no such file";
-        for (const char* host : {"example.org", "192.168.1.7.example.org", "1.2.3.4:80@evil.org", "[evil]", "fe80::1", "[1.2.3.4]",
-                                 "", "[]", "256.1.1.1", "1.2.3"})
+        for (const char* host : {"example.org", "192.168.1.7.example.org", "1.2.3.4:80@evil.org", "[evil]", "fe80::1",
+                                 "[1.2.3.4]", "", "[]", "256.1.1.1", "1.2.3"})
             EXPECT_EQ(status_for(host), "403") << host;
         const std::string own = "192.168.1.7:" + std::to_string(running.port());
         EXPECT_TRUE(RawPage(running.port()).open_socket("http://" + own, own));

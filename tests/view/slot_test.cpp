@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "view/slot.hpp"
+#include "view/server/slot.hpp"
 
 namespace isotet::test {
 namespace {

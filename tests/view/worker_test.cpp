@@ -7,7 +7,7 @@
 #include <mutex>
 #include <thread>
 
-#include "view/worker.hpp"
+#include "view/server/worker.hpp"
 
 namespace isotet::test {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "io/pieces/join.hpp"
+#include "io/pieces/join/join.hpp"
 
 namespace isotet::io::confined {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "polyhedral_files.hpp"
+#include "vtk_readers/polyhedral_files.hpp"
 
 #include <vtk_cgns.h> // last: its macros rename common words
 #include VTK_CGNS(cgnslib.h)

@@ -17,7 +17,7 @@
 #include <isotet/linear_cells.hpp>
 #include <isotet/read.hpp>
 
-#include "hdf5_writer.hpp"
+#include "vtk_readers/hdf5_writer.hpp"
 #include "support/surface_bytes.hpp"
 #include "support/temporary_folder.hpp"
 

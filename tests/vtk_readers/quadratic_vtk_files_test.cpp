@@ -12,7 +12,7 @@
 #include <isotet/read.hpp>
 
 #include "grid/cell/node_order.hpp"
-#include "hdf5_writer.hpp"
+#include "vtk_readers/hdf5_writer.hpp"
 #include "support/quadratic_files.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -6,7 +6,7 @@ import {join} from 'node:path';
 import {check, data, folder, median, pageModule, readPly, run} from './support.mjs';
 
 const [module, program] = process.argv.slice(2);
-const {startEngine} = await pageModule('engine_worker.js');
+const {startEngine} = await pageModule('link/engine_worker.js');
 const engine = readFileSync(module), isotet = (...words) => run(program, ...words);
 
 const none = {state: {field: '', isovalues: []}};

@@ -7,8 +7,8 @@ import {basename, join, relative} from 'node:path';
 import {check, data, pageModule, run} from './support.mjs';
 
 const [module, program] = process.argv.slice(2), engine = readFileSync(module);
-const {startEngine} = await pageModule('engine_worker.js'), {bytesAsFile} = await pageModule('engine_files.js');
-const {openfoamCase, pathsToRead} = await pageModule('dropped_files.js');
+const {startEngine} = await pageModule('link/engine_worker.js'), {bytesAsFile} = await pageModule('link/engine_files.js');
+const {openfoamCase, pathsToRead} = await pageModule('link/dropped_files.js');
 
 /** What the page is told of files, {path: bytes}, that are dropped. */
 async function drop(contents) {

@@ -15,7 +15,7 @@
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
 #include <isotet/jobs/range_shares.hpp>
-#include <isotet/search.hpp>
+#include <isotet/paper/search.hpp>
 
 namespace isotet::jobs {
 
@@ -40,14 +40,14 @@ struct DrawJob {
     std::vector<std::string> other_outputs; ///< of the caller: no picture may overwrite them
     FieldChoice field;
     std::vector<double> isovalues;
-    std::vector<IsovalueShare> shares; ///< more isovalues, after the others: of each time step its own
-    std::uint64_t levels = 0;          ///< 0: `isovalues` and `shares` say it, or three
+    std::vector<IsovalueShare> shares;   ///< more isovalues, after the others: of each time step its own
+    std::uint64_t levels = 0;            ///< 0: `isovalues` and `shares` say it, or three
     std::optional<double> decimal_comma; ///< as of ExtractJob
-    bool allow_empty = false; ///< also where all isovalues are outside the field's range, which else is an error
-    PictureOptions picture;   ///< camera and occlusion aside
+    bool allow_empty = false;        ///< also where all isovalues are outside the field's range, which else is an error
+    PictureOptions picture;          ///< camera and occlusion aside
     std::optional<double> occlusion; ///< of the picture; nothing: default_occlusion where the CPU draws
-    std::optional<View> view;   ///< nothing: best_view_of() the grid where no isosurface is drawn, else iso
-    std::vector<double> angles; ///< azimuth and elevation, instead of `view`; or none
+    std::optional<View> view;        ///< nothing: best_view_of() the grid where no isosurface is drawn, else iso
+    std::vector<double> angles;      ///< azimuth and elevation, instead of `view`; or none
     std::optional<UpAxis> up;
     std::optional<Camera> camera; ///< all of it: neither view nor fit counts
     double zoom = 1;
@@ -65,18 +65,18 @@ struct DrawJob {
     std::string boundary_color_by; ///< a field; empty: none
     bool all_steps = false;
     std::uint64_t interpolate = 0; ///< pictures between two steps of a packed file: PackedFile::interpolated()
-    bool outline = false;                    ///< the box around
-    bool volume = false;                     ///< the field as a volume; isosurfaces only where isovalues are given
+    bool outline = false;          ///< the box around
+    bool volume = false;           ///< the field as a volume; isosurfaces only where isovalues are given
     std::optional<OpacityText> volume_opacity; ///< nothing: a ramp, and with `dirac` none
     std::optional<double> opacity_length;      ///< that it is of; nothing: a tenth of the diagonal of the grid's box
     bool volume_shading = false;               ///< VolumeLook::shaded
     std::vector<double> dirac;                 ///< isovalues of surfaces that rays meet; asks for a volume, too
     std::vector<IsovalueShare> dirac_shares;   ///< more of these: of each time step its own
-    bool plain = false;                      ///< no text
-    std::string color_by;                    ///< a field; empty: each isovalue has its colour
-    ColorScale scale;                        ///< the map, the logarithm and the colour for no data
-    std::vector<double> range;               ///< both ends of the scale, or none
-    std::optional<double> boundary, opacity; ///< of the grid's boundary, of the surfaces
+    bool plain = false;                        ///< no text
+    std::string color_by;                      ///< a field; empty: each isovalue has its colour
+    ColorScale scale;                          ///< the map, the logarithm and the colour for no data
+    std::vector<double> range;                 ///< both ends of the scale, or none
+    std::optional<double> boundary, opacity;   ///< of the grid's boundary, of the surfaces
     EngineChoice engine = EngineChoice::automatic;
     DrawHow method;
     std::optional<SearchIndex> index; ///< nothing: none was given
@@ -89,7 +89,8 @@ struct DrawJob {
     DeviceChoice device;
     std::optional<RefineOptions> refine = RefineOptions{}; ///< of curved cells; nothing: at their nodes only
     bool refine_averaged = false; ///< also for a field averaged from cells, which else is taken at the nodes only
-    std::optional<std::uint64_t> memory; ///< of a packed file, as PackedFileOptions::memory; nothing: half of what is free
+    std::optional<std::uint64_t>
+        memory; ///< of a packed file, as PackedFileOptions::memory; nothing: half of what is free
 };
 
 /// What is drawn, of the last step.

@@ -16,7 +16,6 @@
 #include <isotet/pack.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/read.hpp>
-#include <isotet/read_surveyed.hpp>
 #include <isotet/result.hpp>
 
 namespace isotet::jobs {
@@ -126,7 +125,8 @@ public:
     Result<ReadResult> read_some(const FieldsToRead& fields, std::size_t step, Caller& caller, const Run& run) const;
 
     /// read_some(), but of files whose cells can be counted while they go by only a sample of these (SurveyedGrid::report).
-    Result<SurveyedGrid> read_sample(const FieldsToRead& fields, std::size_t step, Caller& caller, const Run& run) const;
+    Result<SurveyedGrid> read_sample(const FieldsToRead& fields, std::size_t step, Caller& caller,
+                                     const Run& run) const;
 
     /// The same, for what is counted and looked at alone: of the cells only counts and a sample, where that can be done. No
     /// hanging points are looked for then.

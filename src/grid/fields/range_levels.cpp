@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include <isotet/range_levels.hpp>
+#include <isotet/isovalues.hpp>
 
 #include <fmt/format.h>
 

@@ -29,7 +29,7 @@
 #include "io/confined/sandbox.hpp"
 #include "io/confined/progress.hpp"
 #include "io/files/escape.hpp"
-#include "io/pieces/join.hpp"
+#include "io/pieces/join/join.hpp"
 #include "io/pieces/survey_unread.hpp"
 #include "io/process/channel.hpp"
 #include "io/process/messages.hpp"

@@ -8,8 +8,8 @@
 #include <fmt/core.h>
 
 #include "io/foam/mesh.hpp"
-#include "io/pieces/point_numbers.hpp"
-#include "io/pieces/seams.hpp"
+#include "io/pieces/join/point_numbers.hpp"
+#include "io/pieces/join/seams.hpp"
 
 namespace isotet::io::foam {
 

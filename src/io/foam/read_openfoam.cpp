@@ -19,7 +19,7 @@
 #include "io/foam/fields.hpp"
 #include "io/foam/scanner.hpp"
 #include "io/pieces/block_choice.hpp"
-#include "io/pieces/join.hpp"
+#include "io/pieces/join/join.hpp"
 #include "io/pieces/loaded.hpp"
 
 namespace isotet::io {

@@ -15,7 +15,7 @@
 #include "grid/cells.hpp"
 #include "grid/patches.hpp"
 #include "io/gmsh/read_gmsh_parts.hpp"
-#include "io/pieces/join.hpp"
+#include "io/pieces/join/join.hpp"
 #include "io/pieces/loaded.hpp"
 #include "io/reader.hpp"
 
@@ -240,7 +240,8 @@ Result<void> add_data_field(const Contents& contents, const FieldInfo& info, std
 }
 
 /// Elements of physical surfaces.
-Result<BoundaryPatches> physical_surfaces(const File& file, const Grid& grid, const std::vector<std::int32_t>& physical) {
+Result<BoundaryPatches> physical_surfaces(const File& file, const Grid& grid,
+                                          const std::vector<std::int32_t>& physical) {
     core::PatchList list;
     if (const auto names = names_of_groups(file, 2, physical_name)) // what is wrong with them has been noted
         for (const RegionName& name : *names) list.name(name.number, name.name);

@@ -17,9 +17,9 @@
 #include "io/pieces/cell_places.hpp"
 #include "io/pieces/cell_taker.hpp"
 #include "io/pieces/loaded.hpp"
-#include "io/pieces/piece_points.hpp"
-#include "io/pieces/point_numbers.hpp"
-#include "io/pieces/repeated_cells.hpp"
+#include "io/pieces/join/piece_points.hpp"
+#include "io/pieces/join/point_numbers.hpp"
+#include "io/pieces/join/repeated_cells.hpp"
 
 namespace isotet::io {
 

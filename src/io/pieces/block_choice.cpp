@@ -9,7 +9,7 @@
 
 #include "grid/points/used_points.hpp"
 #include "io/files/escape.hpp"
-#include "io/pieces/join.hpp"
+#include "io/pieces/join/join.hpp"
 
 namespace isotet::io {
 

@@ -18,7 +18,7 @@
 #include "grid/fields/cell_corners_sample.hpp"
 #include "grid/fixed_corners.hpp"
 #include "grid/patches.hpp"
-#include "io/pieces/piece_points.hpp"
+#include "io/pieces/join/piece_points.hpp"
 
 namespace isotet::io {
 namespace {
@@ -47,8 +47,7 @@ public:
             numbers.push_back(number);
             types.push_back(cell.type);
             connectivity.insert(connectivity.end(), cell.corners.begin(),
-                                cell.corners.begin() +
-                                    static_cast<std::ptrdiff_t>(core::fixed_corners_of(cell.type)));
+                                cell.corners.begin() + static_cast<std::ptrdiff_t>(core::fixed_corners_of(cell.type)));
             offsets.push_back(connectivity.size());
         }
         Cells cells;

@@ -8,7 +8,6 @@
 
 #include <isotet/progress.hpp>
 #include <isotet/read.hpp>
-#include <isotet/read_surveyed.hpp>
 #include <isotet/result.hpp>
 
 #include "io/pieces/cell_taker.hpp"
@@ -54,6 +53,7 @@ bool may_be_counted(const Piece& piece, const ReadOptions& options);
 /// cells without a volume, or there are options that change points or choose cells
 /// Errors       as CellSource; cancelled
 /// Cost         one pass over the cells, a byte a point
-Result<std::optional<SurveyedGrid>> survey_unread(const Piece& piece, const ReadOptions& options, const Progress& progress);
+Result<std::optional<SurveyedGrid>> survey_unread(const Piece& piece, const ReadOptions& options,
+                                                  const Progress& progress);
 
 } // namespace isotet::io

@@ -11,7 +11,6 @@
 #include <isotet/boundary.hpp>
 #include <isotet/export.hpp>
 #include <isotet/read.hpp>
-#include <isotet/read_surveyed.hpp>
 #include <isotet/result.hpp>
 
 namespace isotet::io::confined {

@@ -5,7 +5,7 @@
 #include <variant>
 
 #include <isotet/active_cells.hpp>
-#include <isotet/range_levels.hpp>
+#include <isotet/isovalues.hpp>
 #include <isotet/slice.hpp>
 
 #include "io/process/messages.hpp"

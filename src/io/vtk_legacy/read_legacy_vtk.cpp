@@ -18,7 +18,7 @@
 #include "io/files/kept_files.hpp"
 #include "io/files/read_tuples.hpp"
 #include "io/files/text_scanner.hpp"
-#include "io/pieces/join.hpp"
+#include "io/pieces/join/join.hpp"
 #include "io/pieces/survey_unread.hpp"
 #include "io/pieces/uniform_cells.hpp"
 #include "io/vtk_legacy/legacy_cells.hpp"

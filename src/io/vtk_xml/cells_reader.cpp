@@ -19,7 +19,7 @@
 #include "io/files/scalars.hpp"
 #include "io/files/text_scanner.hpp"
 #include "io/pieces/narrow_indices.hpp"
-#include "io/pieces/shared_faces.hpp"
+#include "io/pieces/join/shared_faces.hpp"
 #include "io/pieces/uniform_cells.hpp"
 #include "io/vtk_legacy/old_hexahedra.hpp"
 #include "io/vtk_xml/columns.hpp"
@@ -39,7 +39,8 @@ Array converted(const Array& array) {
 /// Whether a value is a whole number that a double holds exactly.
 template <class Value>
 bool is_whole(Value value) {
-    if constexpr (std::is_floating_point_v<Value>) return std::abs(value) <= Value{0x1p53} && value == std::floor(value);
+    if constexpr (std::is_floating_point_v<Value>)
+        return std::abs(value) <= Value{0x1p53} && value == std::floor(value);
     else return true;
 }
 
@@ -67,8 +68,8 @@ Result<Array> as_indices_of_cells(Array array, std::string_view name) {
         return std::ranges::all_of(values, [](auto value) { return is_whole(value); });
     });
     if (!whole)
-        return invalid_data(fmt::format("Cells {} is {}, and not all of its values are whole numbers",
-                                        in_quotes(name), isotet::name_of(array.type())));
+        return invalid_data(fmt::format("Cells {} is {}, and not all of its values are whole numbers", in_quotes(name),
+                                        isotet::name_of(array.type())));
     return converted<std::int64_t>(array);
 }
 
@@ -296,7 +297,8 @@ private:
         if (!types) return types.error();
         if (types->type() != ScalarType::uint8) {
             const bool fits = all_pieces(*types, [](std::uint64_t, auto values) {
-                return std::ranges::all_of(values, [](auto type) { return type >= 0 && type <= 255 && is_whole(type); });
+                return std::ranges::all_of(values,
+                                           [](auto type) { return type >= 0 && type <= 255 && is_whole(type); });
             });
             if (!fits) return invalid_data("a cell type is not a whole number between 0 and 255");
             types = converted<std::uint8_t>(*types);

@@ -9,7 +9,7 @@
 #include "io/files/escape.hpp"
 #include "io/files/text_scanner.hpp"
 #include "io/files/whole_file.hpp"
-#include "io/pieces/join.hpp"
+#include "io/pieces/join/join.hpp"
 #include "io/vtk_xml/read_vtk_xml.hpp"
 
 namespace isotet::io {

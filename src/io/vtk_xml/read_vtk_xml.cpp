@@ -5,7 +5,7 @@
 #include <array>
 
 #include "io/files/escape.hpp"
-#include "io/pieces/join.hpp"
+#include "io/pieces/join/join.hpp"
 #include "io/vtk_xml/load.hpp"
 
 namespace isotet::io {

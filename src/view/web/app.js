@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // What all parts of the page share: the state, and what the server has said.
-import {Camera} from './camera.js';
+import {Camera} from './draw/camera.js';
 import {fromAddress} from './state.js';
 
 export const id = (name) => document.getElementById(name);

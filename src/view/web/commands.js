@@ -1,7 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Command lines: copied, and pasted.
 import {app, id} from './app.js';
-import {frameAll} from './framing.js';
+import {frameAll} from './draw/framing.js';
 import {say} from './notes.js';
 import {takeHidden} from './regions.js';
 import {fromMessage, toMessage} from './state.js';

@@ -2,7 +2,7 @@
 // The isovalue: slider, chart and number.
 import {app, id} from './app.js';
 import {ChartSlider} from './chart.js';
-import {colorsChanged} from './colors.js';
+import {colorsChanged} from './draw/colors.js';
 import * as format from './format.js';
 import {showIsosurfaces} from './looking.js';
 import {say} from './notes.js';
@@ -11,7 +11,7 @@ import {forgetParts, forgetPartNumbers} from './parts.js';
 import {cellsOf} from './state.js';
 import {pinColor, showSurfaces, sliderColor} from './surfaces.js';
 import {commit, commitSoon, nameState} from './undo.js';
-import {forgetPoints, showCurve} from './volume.js';
+import {forgetPoints, showCurve} from './draw/volume.js';
 import {wishSoon} from './wishes.js';
 
 app.slider = new ChartSlider(id('slider'), id('chart'), {input(value) { showIsosurfaces(true); setValue(value); }, commit});

@@ -1,9 +1,9 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Standard views, and what is drawn beside the surfaces.
 import {app, id} from './app.js';
-import {colorsChanged} from './colors.js';
-import {frameAll, frameSurfaces} from './framing.js';
-import {setUpHeights} from './heights.js';
+import {colorsChanged} from './draw/colors.js';
+import {frameAll, frameSurfaces} from './draw/framing.js';
+import {setUpHeights} from './draw/heights.js';
 import {showValue} from './level.js';
 import {say} from './notes.js';
 import {closePicked} from './picked.js';

@@ -1,18 +1,18 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Ties the parts together: state -> wishes -> frames -> picture.
 import {app, id, mayBeField} from './app.js';
-import {colorsChanged, showMap, showRange} from './colors.js';
+import {colorsChanged, showMap, showRange} from './draw/colors.js';
 import {commands, takeCommand, takeState, wholeState} from './commands.js';
 import {Cuts} from './cuts.js';
-import {rememberVersion, takeCard, takeMeasured} from './device.js';
+import {rememberVersion, takeCard, takeMeasured} from './link/device.js';
 import './fold.js';
 import {short} from './format.js';
 import {offerField, refuseFormula} from './formula.js';
-import {forgetBoundary, frameAll, lookAtFirst} from './framing.js';
-import {showHeights, stretched} from './heights.js';
+import {forgetBoundary, frameAll, lookAtFirst} from './draw/framing.js';
+import {showHeights, stretched} from './draw/heights.js';
 import './keys.js';
 import {askChart, followStep, forgetField, forgetQuestions, forgetSpeed, forgetValues, takeChart, takeShare, takeSpectrum, valuePlayer} from './level.js';
-import {Link} from './link.js';
+import {Link} from './link/link.js';
 import {moved, showBoundary} from './looking.js';
 import {say, showNotes} from './notes.js';
 import {forgetPartNumbers, showParts, takeParts} from './parts.js';
@@ -21,12 +21,12 @@ import {drawSoon, pictureAsSeen, takeFrame} from './picture.js';
 import {Pointer} from './pointer.js';
 import {showRegions} from './regions.js';
 import {Save} from './save.js';
-import {Scene} from './scene.js';
+import {Scene} from './draw/scene.js';
 import {coloredBy, fromAddress, fromMessage} from './state.js';
 import {showSurfaces} from './surfaces.js';
 import {TimeSteps} from './time.js';
 import {commit, commitSoon, nameState, onReturn} from './undo.js';
-import {showVolume} from './volume.js';
+import {showVolume} from './draw/volume.js';
 import {serverDraws, stopWaiting, wishSoon} from './wishes.js';
 
 id('unfinished').remove(); // all of the page came

@@ -2,9 +2,9 @@
 // Values at a point of a surface or slice.
 import {app, aspect, id} from './app.js';
 import * as format from './format.js';
-import {seenBox, stretched, unstretched} from './heights.js';
+import {seenBox, stretched, unstretched} from './draw/heights.js';
 import {markPart} from './parts.js';
-import {isSeenFirst} from './scene.js';
+import {isSeenFirst} from './draw/scene.js';
 import {toMessage} from './state.js';
 import {serverDraws} from './wishes.js';
 

@@ -1,19 +1,19 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Frames of the server on the screen.
 import {app, aspect, css, id} from './app.js';
-import {mapColors, showRange} from './colors.js';
+import {mapColors, showRange} from './draw/colors.js';
 import * as format from './format.js';
-import {frameBoundary, hasSurfaces} from './framing.js';
-import {seenBox} from './heights.js';
+import {frameBoundary, hasSurfaces} from './draw/framing.js';
+import {seenBox} from './draw/heights.js';
 import {followStep, measureServer, rangeOf, valueShown} from './level.js';
-import {paintLabels, showLabels} from './labels.js';
+import {paintLabels, showLabels} from './draw/labels.js';
 import {showNotes} from './notes.js';
 import {askParts} from './parts.js';
 import {checkPicked, placeMark} from './picked.js';
 import {hiddenClasses, showRegions} from './regions.js';
 import {factorsOf, planesOf} from './state.js';
 import {showSurfaces} from './surfaces.js';
-import {showVolume} from './volume.js';
+import {showVolume} from './draw/volume.js';
 import {frameCame, measureLine, measureSpeed, noteSize, pictureSize, refineSoon, restSoon, serverDraws, wishSoon} from './wishes.js';
 
 /** Colour and opacity of what the frame has: the slider's surface, pinned ones, slices, the boundary. */

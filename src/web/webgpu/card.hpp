@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// The page's graphics card (WebGPU, view/web/webgpu.js) as an engine of sessions.
+// The page's graphics card (WebGPU, view/web/link/webgpu.js) as an engine of sessions.
 //
 // Nothing in a module can wait for the card. So an extraction that the card takes fails with `cancelled` and leaves in
 // Card::wanted() what is to be done; JavaScript does it, brings the surface, and makes the same call again, which finds

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// What view/web/webgpu.js calls, of every module.
+// What view/web/link/webgpu.js calls, of every module.
 #include "card.hpp"
 #include "web/page.hpp"
 

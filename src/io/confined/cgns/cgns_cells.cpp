@@ -16,7 +16,7 @@
 #include "io/confined/cgns/cgns_sections.hpp"
 #include "io/files/escape.hpp"
 #include "io/pieces/cell_list.hpp"
-#include "io/pieces/shared_faces.hpp"
+#include "io/pieces/join/shared_faces.hpp"
 
 namespace isotet::io::confined {
 namespace {

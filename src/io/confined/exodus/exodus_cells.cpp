@@ -17,7 +17,7 @@
 #include "io/files/first_error.hpp"
 #include "io/pieces/cell_places.hpp"
 #include "io/pieces/loaded.hpp"
-#include "io/pieces/shared_faces.hpp"
+#include "io/pieces/join/shared_faces.hpp"
 
 namespace isotet::io::confined {
 namespace {

@@ -16,7 +16,7 @@
 #include "io/confined/hdf5/hdf5_array.hpp"
 #include "io/confined/hdf5/hdf5_cells.hpp"
 #include "io/files/escape.hpp"
-#include "io/pieces/shared_faces.hpp"
+#include "io/pieces/join/shared_faces.hpp"
 #include "io/pieces/survey_unread.hpp"
 #include "io/vtk_xml/columns.hpp"
 

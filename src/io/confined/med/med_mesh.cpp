@@ -12,7 +12,7 @@
 
 #include "base/parallel.hpp"
 #include "io/files/escape.hpp"
-#include "io/pieces/shared_faces.hpp"
+#include "io/pieces/join/shared_faces.hpp"
 #include "io/pieces/uniform_cells.hpp"
 
 namespace isotet::io::confined {

@@ -8,7 +8,7 @@
 #include <fmt/core.h>
 
 #include "io/confined/xdmf/xdmf_document.hpp"
-#include "io/pieces/shared_faces.hpp"
+#include "io/pieces/join/shared_faces.hpp"
 
 namespace isotet::io::confined {
 namespace {
