@@ -9,6 +9,7 @@
 #include <span>
 #include <stdexcept>
 
+#include <isotet/fields.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/make.hpp>
 #include <isotet/read.hpp>

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <isotet/fields.hpp>
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
 #include <isotet/jobs/number_text.hpp>

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include <isotet/fields.hpp>
 #include <isotet/device.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/make.hpp>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +14,43 @@
 #include <isotet/result.hpp>
 
 namespace isotet {
+
+/// What a name means that is both a point and a cell field.
+struct FindFieldOptions {
+    Association prefer = Association::point;
+    bool for_pieces = false; ///< average a cell field so that pieces with a layer of ghost cells get the values of the
+                             ///< whole grid, bit for bit: cells are added in the order of their values
+    bool keep_cell_values = false; ///< PointField::cell_values, where a cell field is averaged
+};
+
+/// Finds the scalar field called `name` on a grid.
+///
+/// The name is first taken whole; only if no field has it is the part after the last colon a component: `x`, `y`, `z`,
+/// `mag`, or a number from 0. A name that no field has may be that of a component group (ComponentGroup). A name
+/// that is both a point and a cell field means the preferred one, with a note. If no field is meant, `x`, `y`, `z` are
+/// the coordinates. An empty name means the only field there is.
+/// A cell field is averaged to the points, weighted by the volumes of the cells around each; cells where it is NaN are
+/// left out; a point without a cell left is NaN.
+///
+/// Errors   invalid_argument when there is no such field (what there is, nearest first), when it is ambiguous or has
+///          several components, or when a field's length is not that of the grid
+ISOTET_API Result<PointField> find_field(const Grid& grid, std::string_view name, const FindFieldOptions& options = {},
+                                         const Run& run = {});
+
+/// A field's name and the component that is meant.
+struct FieldName {
+    std::string field;
+    std::optional<std::string> component;
+    std::vector<std::string> parts = {}; ///< of a component group: the scalar fields to read in its place
+};
+
+/// The name taken apart by the rule of find_field() against a list of names; used by readers to load only what is
+/// needed. A component group may be called without the "_", ".", ":" or blank at its end; one component of it is the
+/// field that holds it.
+ISOTET_API std::optional<FieldName> match_field_name(std::string_view name, const std::vector<std::string>& names);
+
+/// `names`, nearest to `wanted` first (edit distance, upper and lower case alike), for error messages.
+ISOTET_API std::vector<std::string> nearest_first(std::string_view wanted, std::vector<std::string> names);
 
 // What the values of a field are like, before anything is contoured: ranges and missing values.
 

@@ -213,42 +213,16 @@ struct PointField {
                             ///< polyhedra are split, in place of means of the points around
 };
 
-/// What a name means that is both a point and a cell field.
-struct FindFieldOptions {
-    Association prefer = Association::point;
-    bool for_pieces = false; ///< average a cell field so that pieces with a layer of ghost cells get the values of the
-                             ///< whole grid, bit for bit: cells are added in the order of their values
-    bool keep_cell_values = false; ///< PointField::cell_values, where a cell field is averaged
-};
+/// True when some cells are polyhedra with faces, prisms of five or six sides, or of a degree above 1: linearize() makes
+/// linear cells of them.
+/// Cost   a parallel pass over the types
+ISOTET_API bool has_cells_to_linearize(const Cells& cells);
 
-/// Finds the scalar field called `name` on a grid.
-///
-/// The name is first taken whole; only if no field has it is the part after the last colon a component: `x`, `y`, `z`,
-/// `mag`, or a number from 0. A name that no field has may be that of a component group (fields.hpp). A name
-/// that is both a point and a cell field means the preferred one, with a note. If no field is meant, `x`, `y`, `z` are
-/// the coordinates. An empty name means the only field there is.
-/// A cell field is averaged to the points, weighted by the volumes of the cells around each; cells where it is NaN are
-/// left out; a point without a cell left is NaN.
-///
-/// Errors   invalid_argument when there is no such field (what there is, nearest first), when it is ambiguous or has
-///          several components, or when a field's length is not that of the grid
-ISOTET_API Result<PointField> find_field(const Grid& grid, std::string_view name, const FindFieldOptions& options = {},
-                                         const Run& run = {});
+/// True for VTK's numbers of three-dimensional cells of degree 2 and above, handled or not.
+ISOTET_API bool is_curved(std::uint8_t vtk_type) noexcept;
 
-/// A field's name and the component that is meant.
-struct FieldName {
-    std::string field;
-    std::optional<std::string> component;
-    std::vector<std::string> parts = {}; ///< of a component group: the scalar fields to read in its place
-};
-
-/// The name taken apart by the rule of find_field() against a list of names; used by readers to load only what is
-/// needed. A component group may be called without the "_", ".", ":" or blank at its end; one component of it is the
-/// field that holds it.
-ISOTET_API std::optional<FieldName> match_field_name(std::string_view name, const std::vector<std::string>& names);
-
-/// `names`, nearest to `wanted` first (edit distance, upper and lower case alike), for error messages.
-ISOTET_API std::vector<std::string> nearest_first(std::string_view wanted, std::vector<std::string> names);
+/// True when some cells are curved. Cost   a parallel pass over the types
+ISOTET_API bool has_curved_cells(const Cells& cells);
 
 // Cheap looks at a grid that has been read: what survey() counts exactly, and more, takes longer. After a cancel, what they
 // return means nothing.
@@ -281,14 +255,6 @@ struct CoincidentPoints {
 /// Cost         one parallel pass over the points, about 65,000 of which are sorted; another over the connectivity only
 ///              where points coincide
 ISOTET_API CoincidentPoints estimate_coincident_points(const Grid& grid, const Run& run = {});
-
-/// Places in a face or edge of a larger cell that does not have them, as between levels of refinement: the surface is open
-/// there. Points of the same place count once.
-///
-/// Guarantees   the same for any thread count; 0 where more than 4 million faces, and more than there are tets, are boundary
-/// Cost         as survey() with faces; a sort of the boundary's faces
-/// Errors       as survey()
-ISOTET_API Result<std::uint64_t> count_hanging_points(const Grid& grid, const Run& run = {});
 
 /// A power of ten within which points lie that a program has computed twice: they may differ by roundings of the grid's size.
 /// 0 where no coordinate but 0 is finite. Cost: one pass over the points

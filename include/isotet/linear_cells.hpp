@@ -132,17 +132,6 @@ struct LinearizeOptions {
     bool around = false; ///< polyhedra that share a point with a cell that is met stay, too: for gradients
 };
 
-/// True when some cells are polyhedra with faces, prisms of five or six sides, or of a degree above 1: linearize() makes
-/// linear cells of them.
-/// Cost   a parallel pass over the types
-ISOTET_API bool has_cells_to_linearize(const Cells& cells);
-
-/// True for VTK's numbers of three-dimensional cells of degree 2 and above, handled or not.
-ISOTET_API bool is_curved(std::uint8_t vtk_type) noexcept;
-
-/// True when some cells are curved. Cost   a parallel pass over the types
-ISOTET_API bool has_curved_cells(const Cells& cells);
-
 /// Six times the volumes of the user's cells, by which cell fields are averaged to points; -1 for cells that are left out.
 ///
 /// Linear cells and polyhedra of known shapes: the sum over their tets, each taken as positive; other polyhedra: what their faces
@@ -235,6 +224,14 @@ ISOTET_API Result<double> field_bound(const LinearGrid& linear, const Array& val
 
 // Hanging points: points on faces and edges of larger cells, which do not have them, as where adaptive solvers refine
 // some cells and not their neighbours. The surface is open there, unless the larger cells list these points.
+
+/// Places in a face or edge of a larger cell that does not have them, as between levels of refinement: the surface is open
+/// there. Points of the same place count once.
+///
+/// Guarantees   the same for any thread count; 0 where more than 4 million faces, and more than there are tets, are boundary
+/// Cost         as survey() with faces; a sort of the boundary's faces
+/// Errors       as survey()
+ISOTET_API Result<std::uint64_t> count_hanging_points(const Grid& grid, const Run& run = {});
 
 /// What was found.
 struct HangingReport {

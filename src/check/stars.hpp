@@ -3,7 +3,7 @@
 #pragma once
 
 #include "check/mesh.hpp"
-#include "grid/fields/incidence.hpp"
+#include "grid/values/incidence.hpp"
 
 namespace isotet::checking {
 

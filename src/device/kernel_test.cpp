@@ -8,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include <isotet/fields.hpp>
 #include <isotet/device.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/make.hpp>

@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <isotet/fields.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/text.hpp>
 

@@ -9,7 +9,7 @@
 
 #include <isotet/jobs/number_text.hpp>
 
-#include "grid/fields/sampled_view.hpp"
+#include "fields/sampled_view.hpp"
 
 namespace isotet::jobs {
 

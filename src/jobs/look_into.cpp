@@ -15,7 +15,7 @@
 #include <isotet/jobs/output_names.hpp>
 #include <isotet/linear_cells.hpp>
 
-#include "grid/fields/sampled_view.hpp"
+#include "fields/sampled_view.hpp"
 #include "grid/patches.hpp"
 #include "jobs/way_out.hpp"
 

@@ -1,6 +1,8 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "jobs/touched_region.hpp"
 
+#include <isotet/fields.hpp>
+
 #include <algorithm>
 #include <charconv>
 #include <string>

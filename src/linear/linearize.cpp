@@ -14,6 +14,7 @@
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
 #include "base/parallel.hpp"
+#include "grid/cell/curved_types.hpp"
 #include "grid/cell_faces.hpp"
 #include "linear/by_numbers.hpp"
 #include "linear/curved/curved_kinds.hpp"
@@ -294,31 +295,6 @@ Result<LinearGrid> split_polyhedra(const Grid& user, const LinearizeOptions& opt
     return in_users_order(*std::move(linear), grid, sorted->original);
 }
 
-namespace {
-
-/// True when a cell is of a type for which `wanted` is true.
-bool has_type(const Cells& cells, const auto& wanted) {
-    if (cells.types.empty() || cells.types.type() != ScalarType::uint8) return false;
-    const auto types = cells.types.as<std::uint8_t>();
-    std::atomic<bool> found{false};
-    core::parallel_ranges(types.size(), 1 << 18, [&](std::size_t begin, std::size_t end) {
-        if (std::ranges::any_of(types.subspan(begin, end - begin), wanted))
-            found.store(true, std::memory_order_relaxed);
-    });
-    return found;
-}
-
-/// True for the types of polyhedra that the grid has faces of.
-auto is_split_by_faces(const Cells& cells) {
-    return [listed = !cells.faces.empty()](std::uint8_t type) {
-        return (listed && type == core::polyhedron_type) || core::prism_sides(type) > 0;
-    };
-}
-
-} // namespace
-
-bool has_polyhedra(const Cells& cells) { return has_type(cells, is_split_by_faces(cells)); }
-
 Result<LinearGrid> linearize(const Grid& grid, const LinearizeOptions& options, const Progress& progress) {
     auto split = split_polyhedra(grid, options, progress);
     if (!split || !has_curved_cells(grid.cells)) return split;
@@ -326,16 +302,6 @@ Result<LinearGrid> linearize(const Grid& grid, const LinearizeOptions& options, 
 }
 
 } // namespace linear
-
-bool is_curved(std::uint8_t vtk_type) noexcept { return linear::is_curved(vtk_type); }
-
-bool has_curved_cells(const Cells& cells) { return linear::has_type(cells, linear::is_curved); }
-
-bool has_cells_to_linearize(const Cells& cells) {
-    return linear::has_type(cells, [by_faces = linear::is_split_by_faces(cells)](std::uint8_t type) {
-        return by_faces(type) || linear::is_curved(type);
-    });
-}
 
 Result<LinearGrid> linearize(const Grid& grid, const LinearizeOptions& options, const Run& run) {
     return core::carry_out("making linear cells", run,

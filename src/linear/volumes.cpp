@@ -4,7 +4,7 @@
 #include "base/carry_out.hpp"
 #include "base/parallel.hpp"
 #include "grid/cell_faces.hpp"
-#include "grid/fields/average_to_points.hpp"
+#include "grid/values/average_to_points.hpp"
 #include "linear/polyhedra/polyhedron.hpp"
 
 namespace isotet {

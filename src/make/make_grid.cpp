@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // make_grid(): points, cells and fields are computed in place, each from its number alone.
+#include <isotet/fields.hpp>
 #include <isotet/make.hpp>
 
 #include <algorithm>

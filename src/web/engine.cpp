@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include <isotet/fields.hpp>
 #include <isotet/contour.hpp>
 #include <isotet/packed_file.hpp>
 

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <isotet/fields.hpp>
 #include <isotet/paper/grid_bench.hpp>
 #include <isotet/make.hpp>
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <isotet/fields.hpp>
 #include <isotet/contour.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/make.hpp>

@@ -2,6 +2,7 @@
 // Extracted surfaces pass the rule of the boundary faces, and fail it as soon as one triangle is missing or turned.
 #include <gtest/gtest.h>
 
+#include <isotet/fields.hpp>
 #include <isotet/check.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/make.hpp>

@@ -11,6 +11,7 @@
 
 #include <isotet/check.hpp>
 #include <isotet/contour.hpp>
+#include <isotet/linear_cells.hpp>
 #include <isotet/grid.hpp>
 
 #include "support/small_grid.hpp"
@@ -29,8 +30,9 @@ struct Cubes {
 enum class Corner { shared, apart };
 
 /// Hexahedra in cubes of cubes; points of the same place are one, or each cell has its own.
-Grid grid_of_cubes(const std::vector<Cubes>& blocks, Corner kind = Corner::shared,
-             const std::function<Place(Place)>& moved = [](Place p) { return p; }) {
+Grid grid_of_cubes(
+    const std::vector<Cubes>& blocks, Corner kind = Corner::shared,
+    const std::function<Place(Place)>& moved = [](Place p) { return p; }) {
     constexpr int corners[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
                                    {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
     std::map<Place, std::int64_t> known;
@@ -70,8 +72,7 @@ Place bent(Place p) {
     return {radius * std::cos(angle), radius * std::sin(angle), p[2]};
 }
 
-SurfaceReport report_of(const Grid& grid, double isovalue, bool split_cells = false,
-                        bool conforming = false) {
+SurfaceReport report_of(const Grid& grid, double isovalue, bool split_cells = false, bool conforming = false) {
     std::vector<double> heights;
     for (std::size_t i = 0; i < grid.points.tuples(); ++i) heights.push_back(grid.points.at(i, 2));
     const PointField field{"height", Array::own(std::move(heights)), false, {}};

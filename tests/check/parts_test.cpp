@@ -1,4 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/fields.hpp>
 #include <isotet/surface.hpp>
 
 #include <algorithm>
@@ -37,16 +38,16 @@ Surface three_balls(const Run& run = {}) {
 }
 
 TEST(PartChoice, IsReadAndWritten) {
-    for (const char* text : {"largest", "3", "area>0.5", "volume>1e-30", "touching:boundary", "touching:x=1:2", "parts:0,2",
-                             "not:7"}) {
+    for (const char* text :
+         {"largest", "3", "area>0.5", "volume>1e-30", "touching:boundary", "touching:x=1:2", "parts:0,2", "not:7"}) {
         const auto choice = parse_part_choice(text);
         ASSERT_TRUE(choice) << text;
         EXPECT_EQ(to_text(*choice), text);
     }
     EXPECT_EQ(to_text(parse_part_choice("parts:2,0,2").value()), "parts:0,2");
     EXPECT_EQ(to_text(parse_part_choice("1").value()), "largest");
-    for (const char* text : {"", "0", "-1", "1.5", "some", "area>", "area>-1", "area>nan", "volume>inf", "touching:", "parts:",
-                             "parts:1,", "not:-1", "parts:1 ", "not:99999999999999999999"})
+    for (const char* text : {"", "0", "-1", "1.5", "some", "area>", "area>-1", "area>nan", "volume>inf",
+                             "touching:", "parts:", "parts:1,", "not:-1", "parts:1 ", "not:99999999999999999999"})
         EXPECT_FALSE(parse_part_choice(text)) << text;
 }
 

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <isotet/fields.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/make.hpp>
 #include <isotet/pack.hpp>

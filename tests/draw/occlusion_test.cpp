@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <isotet/fields.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/isosurface_scene.hpp>
 #include <isotet/make.hpp>

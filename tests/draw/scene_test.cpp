@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <isotet/fields.hpp>
 #include <isotet/boundary.hpp>
 #include <isotet/check.hpp>
 #include <isotet/extract.hpp>

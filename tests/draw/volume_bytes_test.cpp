@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <isotet/fields.hpp>
 #include <isotet/packed_file.hpp>
 #include <isotet/render.hpp>
 

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include <isotet/fields.hpp>
 #include <isotet/make.hpp>
 #include <isotet/pack.hpp>
 #include <isotet/scene.hpp>
@@ -54,7 +55,7 @@ inline VolumeCase made_volume(const char* shape, std::uint64_t side, const char*
 
 /// What the media of a scene give each ray.
 struct RayValues {
-    std::vector<render::Slab> slabs;     ///< a pixel, row by row
+    std::vector<render::Slab> slabs; ///< a pixel, row by row
     std::vector<render::RayHit> hits;
     VolumeWork work;
 };

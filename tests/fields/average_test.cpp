@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <isotet/fields.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/make.hpp>
 

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <isotet/fields.hpp>
 #include <isotet/first_view.hpp>
 #include <isotet/make.hpp>
 

@@ -2,6 +2,7 @@
 // Names of fields and cell types.
 #include <gtest/gtest.h>
 
+#include <isotet/fields.hpp>
 #include <isotet/grid.hpp>
 
 namespace {

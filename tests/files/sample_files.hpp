@@ -16,6 +16,7 @@
 
 #include <gtest/gtest.h>
 
+#include <isotet/fields.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/surface.hpp>
 #include <isotet/write.hpp>

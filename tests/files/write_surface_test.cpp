@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include <isotet/fields.hpp>
 #include <isotet/read.hpp>
 #include <isotet/write.hpp>
 

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
+#include <isotet/fields.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/pack.hpp>
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <isotet/fields.hpp>
 #include <isotet/solid.hpp>
 
 #include "golden/golden_files.hpp"

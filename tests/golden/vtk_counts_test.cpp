@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <isotet/fields.hpp>
 #include <isotet/check.hpp>
 #include <isotet/contour.hpp>
 #include <isotet/extract.hpp>

@@ -2,6 +2,8 @@
 // The real grids of data/: the same bytes as the CPU engine, of every field that the golden tests contour, one after
 // another on the same grid on the device.
 #include "golden/golden_files.hpp"
+
+#include <isotet/fields.hpp>
 #include "gpu_engine/engines.hpp"
 #include "vulkan/engine/surface_buffers.hpp"
 

@@ -26,6 +26,7 @@ const std::vector<FolderRule>& folder_rules() {
         {"src/packed/", {"packed/", "grid/", "numbers/", "base/"}},
         {"src/check/", {"check/", "grid/", "numbers/", "base/"}},
         {"src/linear/", {"linear/", "grid/", "numbers/", "base/"}},
+        {"src/fields/", {"fields/", "grid/", "numbers/", "base/"}},
         {"src/make/", {"make/", "grid/", "base/"}},
         {"src/ops/", {"ops/", "packed/", "grid/", "numbers/", "base/array_slot.hpp"}},
         {"src/reference/", {"reference/", "ops/", "packed/", "grid/", "numbers/"}},
@@ -39,12 +40,12 @@ const std::vector<FolderRule>& folder_rules() {
         {"src/session/", {"session/", "linear/", "packed/", "grid/", "numbers/", "base/"}},
         {"src/solid/", {"solid/", "session/", "linear/", "grid/", "numbers/", "base/"}},
         {"src/scene/", {"scene/", "numbers/", "base/"}},
-        {"src/jobs/", {"jobs/", "grid/", "base/"}},
+        {"src/jobs/", {"jobs/", "fields/", "grid/", "base/"}},
         {"src/view/", {"view/"}},
         {"src/c/", {"grid/", "base/"}},
         {"src/web/", {"view/", "io/", "vulkan/engine/", "api/", "packed/", "numbers/", "base/"}},
         {"src/io/files/", {"io/files/", "io/reader.hpp", "base/"}},
-        {"src/io/pieces/", {"io/pieces/", "io/files/", "io/reader.hpp", "grid/", "numbers/", "base/"}},
+        {"src/io/pieces/", {"io/pieces/", "io/files/", "io/reader.hpp", "fields/", "grid/", "numbers/", "base/"}},
         {"src/io/write/", {"io/write/", "io/files/", "grid/", "numbers/", "base/"}},
         {"src/io/surfaces/", {"io/", "check/", "grid/", "numbers/", "base/"}},
         {"src/io/process/", {"io/process/", "io/files/", "io/reader.hpp", "base/"}},
@@ -95,11 +96,66 @@ const std::vector<LibraryRule>& library_rules() {
     return rules;
 }
 
+/// Rooms, lowest first, and the public headers whose functions they have. A file of a room below names none of them: its
+/// room would call upwards. Headers that are not listed are types that all rooms share, or have functions in several.
+struct Room {
+    std::string_view folder;
+    std::vector<std::string_view> headers;
+};
+
+const std::vector<Room>& rooms() {
+    static const std::vector<Room> all = {
+        {"base/", {"array", "memory", "progress", "result", "text"}},
+        {"numbers/", {}},
+        {"grid/", {"grid"}},
+        {"packed/", {}},
+        {"linear/", {"linear_cells"}},
+        {"fields/", {"fields", "first_view"}},
+        {"make/", {"make"}},
+        {"check/", {"check"}},
+        {"ops/", {}},
+        {"reference/", {}},
+        {"cpu/", {}},
+        {"api/", {}},
+        {"vulkan/", {}},
+        {"device/", {}},
+        {"render/", {"draw_tets", "picture", "render", "scene"}},
+        {"session/", {"contour"}},
+        {"solid/", {"solid"}},
+        {"io/", {"grid_file", "packed_file", "read", "write"}},
+        {"scene/", {"isosurface_scene"}},
+        {"jobs/", {"jobs/"}},
+        {"paper/", {"paper/"}},
+    };
+    return all;
+}
+
+/// The place of the first room that has what `has` looks for; the number of rooms: none has.
+std::size_t room_where(const auto& has) {
+    return static_cast<std::size_t>(std::ranges::find_if(rooms(), has) - rooms().begin());
+}
+
+std::string objection_to_public(std::string_view path, std::string_view name) {
+    if (!path.starts_with("src/") || !name.starts_with("isotet/")) return {};
+    path.remove_prefix(4);
+    name.remove_prefix(7);
+    const std::size_t own = room_where([&](const Room& room) { return path.starts_with(room.folder); });
+    const std::size_t of_header = room_where([&](const Room& room) {
+        return std::ranges::any_of(room.headers, [&](std::string_view header) {
+            return header.ends_with('/') ? name.starts_with(header)
+                                         : name.starts_with(header) && name.substr(header.size()) == ".hpp";
+        });
+    });
+    if (own == rooms().size() || of_header == rooms().size() || of_header <= own) return {};
+    return fmt::format("the functions of {} stand in src/{}, above src/{}", name, rooms()[of_header].folder,
+                       rooms()[own].folder);
+}
+
 /// Folders that includes begin with; what begins otherwise is a public header, a library, or a neighbour in a test.
-constexpr std::array<std::string_view, 22> folders_of_includes = {
-    "base/",  "numbers/", "grid/",   "packed/",  "check/", "make/", "ops/",  "reference/",
-    "cpu/",   "api/",     "device/", "session/", "solid/", "io/",   "jobs/", "linear/",
-    "paper/", "vulkan/",  "render/", "scene/",   "cli/",   "view/"};
+constexpr std::array<std::string_view, 23> folders_of_includes = {
+    "base/",      "fields/", "numbers/", "grid/",   "packed/",  "check/", "make/", "ops/",
+    "reference/", "cpu/",    "api/",     "device/", "session/", "solid/", "io/",   "jobs/",
+    "linear/",    "paper/",  "vulkan/",  "render/", "scene/",   "cli/",   "view/"};
 
 constexpr std::array<std::string_view, 4> below_the_engines = {"src/base/", "src/numbers/", "src/grid/", "src/packed/"};
 
@@ -133,7 +189,7 @@ std::string objection(std::string_view path, std::string_view name) {
     if (name.starts_with("tbb/") && path.ends_with(".hpp") && begins_with_any(path, below_the_engines)) {
         return "headers below the engines show no thread library";
     }
-    if (!begins_with_any(name, folders_of_includes)) return {};
+    if (!begins_with_any(name, folders_of_includes)) return objection_to_public(path, name);
     for (const FolderRule& rule : folder_rules()) {
         if (!path.starts_with(rule.folder)) continue;
         if (begins_with_any(name, rule.may_see)) return {};

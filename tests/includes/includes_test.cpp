@@ -55,6 +55,9 @@ TEST(Includes, AgainstTheDirectionAreFound) {
     EXPECT_NE(objection("apps/cli/extract.cpp", "cpu/emit.hpp"), "");
     EXPECT_NE(objection("apps/cli/extract.cpp", "base/parallel.hpp"), "") << "the program sees public headers only";
     EXPECT_NE(objection("src/new_folder/new.cpp", "packed/packed.hpp"), "") << "a folder without a rule";
+    EXPECT_NE(objection("src/grid/boundary_search.cpp", "isotet/linear_cells.hpp"), "") << "public headers have a room";
+    EXPECT_NE(objection("src/session/contour.cpp", "isotet/jobs/job.hpp"), "");
+    EXPECT_EQ(objection("src/fields/one_field.cpp", "isotet/linear_cells.hpp"), "");
     EXPECT_EQ(objection("src/cpu/emit.cpp", "ops/extract.hpp"), "");
     EXPECT_EQ(objection("src/io/confined/serve.cpp", "vtkCellArray.h"), "");
     EXPECT_NE(objection("python/bindings/contours.cpp", "session/fingerprint.hpp"), "") << "and so do the bindings";

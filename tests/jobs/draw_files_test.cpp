@@ -1,4 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/fields.hpp>
 #include <isotet/jobs/draw_files.hpp>
 #include <isotet/jobs/pack_file.hpp>
 

@@ -2,6 +2,7 @@
 // ContourOptions::exact_vertices, RefineOptions::distance, and cells that fold.
 #include <gtest/gtest.h>
 
+#include <isotet/fields.hpp>
 #include <isotet/check.hpp>
 #include <isotet/contour.hpp>
 

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <isotet/fields.hpp>
 #include <isotet/contour.hpp>
 #include <isotet/linear_cells.hpp>
 #include <isotet/make.hpp>
@@ -174,8 +175,7 @@ TEST(MetCells, AreThoseOnly) {
     Contour session = Contour::create({grid, field, {}, {}}, expecting).value();
     const ContourResult result = session.extract(0.5).value();
     ASSERT_EQ(result.notes.size(), 1u);
-    EXPECT_NE(result.notes[0].find("of 1024 polyhedra matter to the isovalues"), std::string::npos)
-        << result.notes[0];
+    EXPECT_NE(result.notes[0].find("of 1024 polyhedra matter to the isovalues"), std::string::npos) << result.notes[0];
     EXPECT_LT(session.linear_grid()->grid.cells.count(), 22u * 300);
 
     ContourOptions around = expecting; // gradients need cells at the points of those

@@ -2,6 +2,7 @@
 // Sessions on polyhedra: fields, steps, points, cells and what is told of them.
 #include <gtest/gtest.h>
 
+#include <isotet/fields.hpp>
 #include <isotet/boundary.hpp>
 #include <isotet/contour.hpp>
 #include <isotet/linear_cells.hpp>

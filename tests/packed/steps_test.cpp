@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <isotet/fields.hpp>
 #include <isotet/boundary.hpp>
 #include <isotet/contour.hpp>
 #include <isotet/packed_file.hpp>

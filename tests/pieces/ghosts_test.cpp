@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include <isotet/fields.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/pack.hpp>
 #include <isotet/pieces.hpp>

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <string>
 
+#include <isotet/fields.hpp>
 #include <isotet/contour.hpp>
 #include <isotet/make.hpp>
 

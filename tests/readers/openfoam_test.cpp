@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <libdeflate.h>
 
+#include <isotet/fields.hpp>
 #include <isotet/contour.hpp>
 #include <isotet/pieces.hpp>
 #include <isotet/read.hpp>
@@ -353,7 +354,8 @@ TEST_F(DecomposedCase, MayHaveProcessorsWithoutCells) {
         const FoamStyle style{false, 32, 64, addressing};
         FoamFiles files = foam_case(box_, wave, style, 2);
         add_mesh(files, "processor2/", nothing, style);
-        for (const char* time : {"0/", "0.5/"}) add_fields(files, std::string("processor2/") + time, nothing, wave, style);
+        for (const char* time : {"0/", "0.5/"})
+            add_fields(files, std::string("processor2/") + time, nothing, wave, style);
         const TemporaryFolder folder;
         write_case(folder, files);
         const Grid grid = read_whole(folder.file(""));

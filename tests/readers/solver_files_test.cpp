@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <isotet/fields.hpp>
 #include <isotet/boundary.hpp>
 #include <isotet/check.hpp>
 #include <isotet/contour.hpp>
@@ -39,9 +40,9 @@ TEST(SolverFiles, RefinedCubesOfMfemAreClosed) {
         const char* file;
         std::uint64_t points, cells;
     };
-    for (const auto& [file, points, cells] : {Case{"vtu/mfem_levels_hex.vtu", 179, 41},
-                                              Case{"vtu/mfem_levels_wedge.vtu", 104, 38},
-                                              Case{"vtk/mfem_levels_tet.vtk", 116, 96}}) {
+    for (const auto& [file, points, cells] :
+         {Case{"vtu/mfem_levels_hex.vtu", 179, 41}, Case{"vtu/mfem_levels_wedge.vtu", 104, 38},
+          Case{"vtk/mfem_levels_tet.vtk", 116, 96}}) {
         SCOPED_TRACE(file);
         const Grid grid = read((source_folder() / "data" / file).string()).value().grid;
         const ClosedGrid closed = close_hanging_points(merge_points(grid, {.tolerance = 0})->grid).value();

@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include <isotet/fields.hpp>
 #include <isotet/boundary.hpp>
 #include <isotet/check.hpp>
 #include <isotet/make.hpp>

@@ -3,6 +3,8 @@
 // with nothing crossing the bus but the picture.
 #include "render/drawing.hpp"
 
+#include <isotet/fields.hpp>
+
 namespace isotet::test {
 namespace {
 

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <isotet/fields.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/make.hpp>
 #include <isotet/picture.hpp>

@@ -2,6 +2,7 @@
 // Scenes of isosurfaces: the same surfaces wherever they are extracted, and nothing packed that need not be.
 #include <atomic>
 
+#include <isotet/fields.hpp>
 #include <isotet/isosurface_scene.hpp>
 #include <isotet/picture.hpp>
 

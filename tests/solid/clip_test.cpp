@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include <isotet/fields.hpp>
 #include <isotet/solid.hpp>
 
 #include "grid/orientation.hpp"
@@ -172,8 +173,7 @@ TEST(Clip, OfEveryWayToPutCornersBelowAtAndAboveIsSound) {
         const NastyGrid g = all_cases(kind);
         Clipper clipper = clipper_of(g, {.precision = Precision::float64});
         Solids solids = Solids::create(clip_input(g), with_ends({.precision = Precision::float64})).value();
-        for (const SolidRange& range :
-             {SolidRange::above(1), SolidRange::below(1), SolidRange{1, 2}}) {
+        for (const SolidRange& range : {SolidRange::above(1), SolidRange::below(1), SolidRange{1, 2}}) {
             SCOPED_TRACE(testing::Message() << "from " << range.lower << " to " << range.upper);
             const ClippedGrid clipped = clipper.clip(range).value();
             const Solid solid = solids.extract(range).value();
@@ -224,8 +224,7 @@ TEST(Clip, CarriesFieldsAsTheSolidDoes) {
     for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<std::int16_t>(3 * i);
     ContourInput input = clip_input(g);
     input.cell_fields = {{"number", Array::own(std::move(numbers))}};
-    const ClippedGrid clipped =
-        Clipper::create(input, with_ends({})).value().clip(SolidRange::above(0.1)).value();
+    const ClippedGrid clipped = Clipper::create(input, with_ends({})).value().clip(SolidRange::above(0.1)).value();
     for (std::size_t cell = 0; cell < clipped.grid.cells.count(); ++cell)
         ASSERT_EQ(clipped.grid.cell_fields[0].values.at(cell), 3 * clipped.source_cells.at(cell));
     const Solid solid = Solids::create(input, with_ends({})).value().extract(SolidRange::above(0.1)).value();
@@ -269,7 +268,8 @@ TEST(Clip, WithoutPolyhedraFillsTheSameSpace) {
         const NastyGrid g = mixed_grid(seed, {.side = 5, .values = seed % 2 ? 4 : 0, .wide = true});
         Clipper clipper = clipper_of(g, {.precision = Precision::float64});
         for (const SolidRange& range : ranges_of({0.2, 0.7})) {
-            const ClippedGrid with = clipper.clip(range).value(), without = clipper.clip(range, {.polyhedra = false}).value();
+            const ClippedGrid with = clipper.clip(range).value(),
+                              without = clipper.clip(range, {.polyhedra = false}).value();
             const FacesOfCells cells(without.grid);
             for (std::size_t cell = 0; cell < cells.count(); ++cell) ASSERT_NE(cells.type(cell), 42);
             EXPECT_GT(with.polyhedra, 0u);
@@ -278,7 +278,8 @@ TEST(Clip, WithoutPolyhedraFillsTheSameSpace) {
             // Cells are flat, up to rounding, where the point inside lies in the plane of a face.
             expect_sound(without, {.upright = false});
             std::size_t inverted = 0;
-            for (std::size_t cell = 0; cell < cells.count(); ++cell) inverted += cells.signed_six_volumes(cell) < -1e-15;
+            for (std::size_t cell = 0; cell < cells.count(); ++cell)
+                inverted += cells.signed_six_volumes(cell) < -1e-15;
             EXPECT_EQ(inverted > 0, without.folded_pieces > 0);
         }
     }
@@ -311,10 +312,10 @@ TEST(ClipMisuse, RangesAndOptionsThatMakeNoSenseAreErrors) {
 
 TEST(Clip, TurnsTetsOfCurvedCellsOutward) {
     Grid grid; // the nodes of a quadratic wedge go around it the other way than those of a linear one
-    grid.points = Array::own(
-        std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 0,  1, 1, .5, 0, 0, .5, .5, 0,
-                            0, .5, 0, .5, 0, 1, .5, .5, 1, 0, .5, 1, 0, 0, .5, 1, 0, .5, 0, 1, .5},
-        3);
+    grid.points =
+        Array::own(std::vector<double>{0, 0, 0,  1, 0,  0, 0, 1,  0,  0, 0, 1,  1, 0, 1, 0,  1, 1, .5, 0, 0, .5, .5,
+                                       0, 0, .5, 0, .5, 0, 1, .5, .5, 1, 0, .5, 1, 0, 0, .5, 1, 0, .5, 0, 1, .5},
+                   3);
     std::vector<std::int64_t> nodes(15);
     std::iota(nodes.begin(), nodes.end(), 0);
     grid.cells.connectivity = Array::own(nodes);

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include <isotet/fields.hpp>
 #include <isotet/check.hpp>
 #include <isotet/isovalues.hpp>
 #include <isotet/linear_cells.hpp>
@@ -63,13 +64,17 @@ std::size_t folds(const Surface& surface) {
     using Vector = std::array<double, 3>;
     const auto triangles = surface.triangles.as<std::uint32_t>();
     const auto at = [&](std::uint32_t vertex) {
-        return Vector{surface.positions.at(vertex, 0), surface.positions.at(vertex, 1), surface.positions.at(vertex, 2)};
+        return Vector{surface.positions.at(vertex, 0), surface.positions.at(vertex, 1),
+                      surface.positions.at(vertex, 2)};
     };
-    const auto difference = [](const Vector& a, const Vector& b) { return Vector{a[0] - b[0], a[1] - b[1], a[2] - b[2]}; };
+    const auto difference = [](const Vector& a, const Vector& b) {
+        return Vector{a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+    };
     const auto dot = [](const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<Vector>> normals; // by directed edge
     for (std::size_t i = 0; i < triangles.size(); i += 3) {
-        const Vector a = difference(at(triangles[i + 1]), at(triangles[i])), b = difference(at(triangles[i + 2]), at(triangles[i]));
+        const Vector a = difference(at(triangles[i + 1]), at(triangles[i])),
+                     b = difference(at(triangles[i + 2]), at(triangles[i]));
         Vector normal{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
         const double length = std::sqrt(dot(normal, normal));
         if (length < 1e-9) continue;
@@ -125,7 +130,8 @@ NastyGrid turned_hexahedra(std::uint32_t seed, bool single) {
         offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
     }
     NastyGrid out;
-    out.grid.points = single ? Array::own(std::vector<float>(points.begin(), points.end()), 3) : Array::own(std::move(points), 3);
+    out.grid.points =
+        single ? Array::own(std::vector<float>(points.begin(), points.end()), 3) : Array::own(std::move(points), 3);
     out.grid.cells.connectivity = Array::own(std::move(connectivity));
     out.grid.cells.offsets = Array::own(std::move(offsets));
     out.grid.cells.types = Array::own(std::vector<std::uint8_t>(made.cells.count(), 12));

@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include <isotet/fields.hpp>
 #include <isotet/solid.hpp>
 
 #include "support/small_grid.hpp"

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include <isotet/fields.hpp>
 #include <isotet/boundary.hpp>
 #include <isotet/make.hpp>
 #include <isotet/packed_file.hpp>
@@ -344,7 +345,9 @@ TEST(GridViewFile, CellsOfAnotherFileAreNotTakenForThoseReleased) {
         }
         bool changed = false;
         GridViewOptions options;
-        options.read_step = [&](std::size_t, const isotet::Run&) -> Result<Grid> { return changed ? later : made_grid(4); };
+        options.read_step = [&](std::size_t, const isotet::Run&) -> Result<Grid> {
+            return changed ? later : made_grid(4);
+        };
         const auto view = GridView::create(made_grid(4), options).value();
         ASSERT_TRUE(view->pack("sphere", {}));
         view->rest();

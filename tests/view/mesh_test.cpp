@@ -6,6 +6,7 @@
 #include <cstring>
 #include <set>
 
+#include <isotet/fields.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/make.hpp>
 

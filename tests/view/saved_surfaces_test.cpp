@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include <isotet/fields.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/make.hpp>
 

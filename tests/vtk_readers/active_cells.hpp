@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <isotet/fields.hpp>
 #include <isotet/boundary.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/read.hpp>

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <vtk_exodusII.h>
 
+#include <isotet/fields.hpp>
 #include <isotet/make.hpp>
 #include <isotet/read.hpp>
 #include <isotet/solid.hpp>

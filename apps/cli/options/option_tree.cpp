@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <isotet/fields.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/jobs/number_text.hpp>
 

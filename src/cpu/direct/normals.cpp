@@ -6,7 +6,7 @@
 
 #include "base/bits.hpp"
 #include "base/parallel.hpp"
-#include "grid/fields/incidence.hpp"
+#include "grid/values/incidence.hpp"
 #include "numbers/arithmetic.hpp"
 #include "numbers/sum_of_terms.hpp"
 #include "numbers/tet_gradient.hpp"

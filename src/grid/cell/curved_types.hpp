@@ -1,9 +1,11 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// VTK's curved cell types that have one number of nodes.
+// Cells that are not linear; VTK's curved cell types that have one number of nodes.
 #pragma once
 
 #include <array>
 #include <cstdint>
+
+#include <isotet/grid.hpp>
 
 #include "grid/cell/cell_kind.hpp"
 
@@ -26,3 +28,10 @@ inline constexpr std::array<CurvedType, 9> curved_types{{{24, CellKind::tetrahed
                                                          {37, CellKind::pyramid, 19}}};
 
 } // namespace isotet::core
+
+namespace isotet {
+
+/// True when some cells are polyhedra with faces, or prisms of five or six sides.
+bool has_polyhedra(const Cells& cells);
+
+} // namespace isotet

@@ -12,7 +12,6 @@
 #include <tbb/parallel_sort.h>
 
 #include <isotet/grid.hpp>
-#include <isotet/linear_cells.hpp>
 
 #include "base/carry_out.hpp"
 #include "base/memory.hpp"
@@ -246,29 +245,4 @@ Result<HangingFaces> find_hanging(const Grid& grid, const CellReader& cells, con
     return find_hanging(grid.points, faces->faces, progress);
 }
 
-namespace {
-
-Result<std::uint64_t> count_in_linear(const Grid& grid, const Progress& progress) {
-    const auto cells = CellReader::open(grid);
-    if (!cells) return cells.error();
-    if (auto sound = check_cells(grid, *cells, progress); !sound) return sound.error();
-    const auto hanging = find_hanging(grid, *cells, progress);
-    if (!hanging) return hanging.error();
-    return hanging->points;
-}
-
-} // namespace
 } // namespace isotet::core
-
-namespace isotet {
-
-Result<std::uint64_t> count_hanging_points(const Grid& grid, const Run& run) {
-    return core::carry_out("looking for hanging points", run, [&](const Progress& progress) -> Result<std::uint64_t> {
-        if (!has_cells_to_linearize(grid.cells)) return core::count_in_linear(grid, progress);
-        const auto linear = linearize({grid.points, grid.cells, {}, {}}, {}, {.progress = progress});
-        if (!linear) return linear.error();
-        return core::count_in_linear(linear->grid, progress);
-    });
-}
-
-} // namespace isotet

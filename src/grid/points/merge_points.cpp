@@ -8,7 +8,6 @@
 #include <fmt/core.h>
 
 #include <isotet/grid.hpp>
-#include <isotet/linear_cells.hpp>
 
 #include "base/buffer.hpp"
 #include "base/carry_out.hpp"
@@ -16,7 +15,7 @@
 #include "base/parallel.hpp"
 #include "grid/cell_faces.hpp"
 #include "grid/cells.hpp"
-#include "grid/fields/merged_values.hpp"
+#include "grid/values/merged_values.hpp"
 #include "grid/orientation.hpp"
 #include "grid/patches.hpp"
 #include "grid/points/close_points.hpp"

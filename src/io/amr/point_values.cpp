@@ -8,7 +8,7 @@
 
 #include "base/buffer.hpp"
 #include "base/parallel.hpp"
-#include "grid/fields/running_mean.hpp"
+#include "grid/values/running_mean.hpp"
 #include "io/amr/shared_points.hpp"
 
 namespace isotet::io::amr {

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "grid/fields/incidence.hpp"
+#include "grid/values/incidence.hpp"
 #include "io/amr/lattice.hpp"
 #include "io/amr/shown_cells.hpp"
 

@@ -1,4 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/fields.hpp>
 #include <isotet/packed_file.hpp>
 
 #include <algorithm>
@@ -155,8 +156,8 @@ Result<const io::FieldEntry*> PackedFile::Data::find(std::string_view field, std
     for (std::string& name : names) name = io::in_quotes(name);
     if (field.empty())
         return invalid_argument(fmt::format("no field was named, but the file has {}", fmt::join(names, ", ")));
-    return invalid_argument(fmt::format("field {} is not in the file at step {}, which has {}", io::in_quotes(field), step,
-                                        fmt::join(names, ", ")));
+    return invalid_argument(fmt::format("field {} is not in the file at step {}, which has {}", io::in_quotes(field),
+                                        step, fmt::join(names, ", ")));
 }
 
 Result<PackedGrid> PackedFile::grid(std::string_view field, std::size_t step, const Run& run) const {

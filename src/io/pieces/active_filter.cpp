@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include <isotet/fields.hpp>
 #include <isotet/grid.hpp>
 
 namespace isotet::io {

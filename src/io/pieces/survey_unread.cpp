@@ -15,7 +15,7 @@
 #include <isotet/grid.hpp>
 
 #include "grid/cell_survey.hpp"
-#include "grid/fields/cell_corners_sample.hpp"
+#include "fields/cell_corners_sample.hpp"
 #include "grid/fixed_corners.hpp"
 #include "grid/patches.hpp"
 #include "io/pieces/join/piece_points.hpp"

@@ -68,14 +68,6 @@ constexpr std::span<const CornerQuad> quadratic_faces(core::CellKind kind) {
 }
 
 using core::first_lagrange;
-inline constexpr std::uint8_t last_lagrange = 74;
-
-/// Three-dimensional cells of a degree above 1, whether they can be handled or not: VTK's numbers.
-constexpr bool is_curved(std::uint8_t type) {
-    return (type >= 24 && type <= 27) || (type >= 29 && type <= 33 && type != 30) || type == 37 ||
-           (type >= 64 && type <= 67) || (type >= first_lagrange && type <= last_lagrange) ||
-           (type >= 78 && type <= 81);
-}
 
 /// Of a curved type with so many nodes; nothing: not handled, or a wrong number for its type (expected_nodes()).
 constexpr std::optional<NodeLayout> layout_of(std::uint8_t type, std::uint64_t nodes) {

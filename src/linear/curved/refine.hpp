@@ -6,9 +6,6 @@
 
 namespace isotet::linear {
 
-/// True when some cells are polyhedra with faces.
-bool has_polyhedra(const Cells& cells);
-
 /// The polyhedra as linear cells; all other cells as they are, curved ones too.
 Result<LinearGrid> split_polyhedra(const Grid& grid, const LinearizeOptions& options, const Progress& progress);
 

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <isotet/fields.hpp>
 #include <isotet/grid.hpp>
 
 #include "base/carry_out.hpp"

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <memory>
 
+#include <isotet/fields.hpp>
 #include <isotet/make.hpp>
 #include <isotet/pack.hpp>
 

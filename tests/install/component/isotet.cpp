@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Arrays in, a surface out, by every engine that isotet::isotet has.
+#include <isotet/fields.hpp>
 #include <isotet/contour.hpp>
 #include <isotet/make.hpp>
 

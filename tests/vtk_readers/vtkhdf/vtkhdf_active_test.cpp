@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <isotet/fields.hpp>
 #include <isotet/make.hpp>
 #include <isotet/isovalues.hpp>
 #include <isotet/read.hpp>

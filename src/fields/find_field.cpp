@@ -9,9 +9,9 @@
 
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
-#include "grid/fields/expression/find_expression.hpp"
-#include "grid/fields/one_field.hpp"
-#include "grid/fields/scalar_of.hpp"
+#include "fields/expression/find_expression.hpp"
+#include "fields/one_field.hpp"
+#include "grid/values/scalar_of.hpp"
 
 namespace isotet {
 

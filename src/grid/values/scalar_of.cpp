@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "grid/fields/scalar_of.hpp"
+#include "grid/values/scalar_of.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -50,8 +50,8 @@ Array scalar_of(const Array& array, Scalar scalar) {
             return fill<Value>(array.tuples(),
                                [&](std::size_t tuple) { return values[tuple * components + scalar.component]; });
         using Magnitude = std::conditional_t<std::is_same_v<Value, float>, float, double>;
-        return fill<Magnitude>(array.tuples(),
-                               [&](std::size_t tuple) { return magnitude_of(&values[tuple * components], components); });
+        return fill<Magnitude>(
+            array.tuples(), [&](std::size_t tuple) { return magnitude_of(&values[tuple * components], components); });
     });
 }
 

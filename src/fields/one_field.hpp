@@ -7,9 +7,10 @@
 #include <string_view>
 #include <vector>
 
+#include <isotet/fields.hpp>
 #include <isotet/grid.hpp>
 
-#include "grid/fields/scalar_of.hpp"
+#include "grid/values/scalar_of.hpp"
 
 namespace isotet::core {
 

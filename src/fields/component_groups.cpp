@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "grid/fields/component_groups.hpp"
+#include "fields/component_groups.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,7 +14,7 @@
 #include "base/buffer.hpp"
 #include "base/errors.hpp"
 #include "base/parallel.hpp"
-#include "grid/fields/scalar_of.hpp"
+#include "grid/values/scalar_of.hpp"
 
 namespace isotet {
 

@@ -10,11 +10,11 @@
 #include <isotet/grid.hpp>
 
 #include "grid/cells.hpp"
-#include "grid/fields/cell_corners_sample.hpp"
-#include "grid/fields/name_kind.hpp"
-#include "grid/fields/sampled_values.hpp"
-#include "grid/fields/sampled_view.hpp"
-#include "grid/fields/scalar_of.hpp"
+#include "fields/cell_corners_sample.hpp"
+#include "fields/name_kind.hpp"
+#include "fields/sampled_values.hpp"
+#include "fields/sampled_view.hpp"
+#include "grid/values/scalar_of.hpp"
 #include "grid/patches.hpp"
 
 namespace isotet {

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "grid/fields/sampled_values.hpp"
+#include "fields/sampled_values.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "grid/fields/average_to_points.hpp"
+#include "grid/values/average_to_points.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,8 @@
 
 #include "base/buffer.hpp"
 #include "base/parallel.hpp"
-#include "grid/fields/incidence.hpp"
-#include "grid/fields/running_mean.hpp"
+#include "grid/values/incidence.hpp"
+#include "grid/values/running_mean.hpp"
 #include "grid/orientation.hpp"
 #include "grid/patches.hpp"
 #include "grid/renumber.hpp"

@@ -7,7 +7,7 @@
 #include <isotet/grid.hpp>
 
 #include "grid/cells.hpp"
-#include "grid/fields/scalar_of.hpp"
+#include "grid/values/scalar_of.hpp"
 #include "grid/orientation.hpp"
 
 namespace isotet::core {

@@ -8,7 +8,7 @@
 
 #include "base/carry_out.hpp"
 #include "base/parallel.hpp"
-#include "grid/fields/sampled_values.hpp"
+#include "fields/sampled_values.hpp"
 
 namespace isotet {
 

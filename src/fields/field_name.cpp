@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <numeric>
 
+#include <isotet/fields.hpp>
 #include <isotet/grid.hpp>
 
-#include "grid/fields/component_groups.hpp"
+#include "fields/component_groups.hpp"
 
 namespace isotet {
 

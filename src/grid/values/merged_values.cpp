@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "grid/fields/merged_values.hpp"
+#include "grid/values/merged_values.hpp"
 
 #include <algorithm>
 #include <cmath>

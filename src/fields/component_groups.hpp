@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include <isotet/fields.hpp>
 #include <isotet/grid.hpp>
 
 namespace isotet::core {

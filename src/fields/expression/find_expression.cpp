@@ -1,5 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "grid/fields/expression/find_expression.hpp"
+#include "fields/expression/find_expression.hpp"
+
+#include <isotet/fields.hpp>
 
 #include <algorithm>
 #include <utility>
@@ -9,9 +11,9 @@
 #include "base/buffer.hpp"
 #include "base/errors.hpp"
 #include "base/parallel.hpp"
-#include "grid/fields/expression/evaluate.hpp"
-#include "grid/fields/expression/point_gradients.hpp"
-#include "grid/fields/one_field.hpp"
+#include "fields/expression/evaluate.hpp"
+#include "fields/expression/point_gradients.hpp"
+#include "fields/one_field.hpp"
 
 namespace isotet::core {
 

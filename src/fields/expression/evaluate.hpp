@@ -8,7 +8,7 @@
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
 
-#include "grid/fields/expression/tree.hpp"
+#include "fields/expression/tree.hpp"
 
 namespace isotet::core {
 

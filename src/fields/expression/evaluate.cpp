@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "grid/fields/expression/evaluate.hpp"
+#include "fields/expression/evaluate.hpp"
 
 #include <algorithm>
 #include <array>
@@ -16,8 +16,8 @@
 #include "base/buffer.hpp"
 #include "base/errors.hpp"
 #include "base/parallel.hpp"
-#include "grid/fields/expression/tensor.hpp"
-#include "grid/fields/scalar_of.hpp"
+#include "fields/expression/tensor.hpp"
+#include "grid/values/scalar_of.hpp"
 
 namespace isotet::core {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "grid/fields/expression/tree.hpp"
+#include "fields/expression/tree.hpp"
 
 namespace isotet::core {
 

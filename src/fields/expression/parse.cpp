@@ -12,9 +12,9 @@
 #include <isotet/fields.hpp>
 
 #include "base/errors.hpp"
-#include "grid/fields/expression/functions.hpp"
-#include "grid/fields/expression/tree.hpp"
-#include "grid/fields/scalar_of.hpp"
+#include "fields/expression/functions.hpp"
+#include "fields/expression/tree.hpp"
+#include "grid/values/scalar_of.hpp"
 
 namespace isotet {
 

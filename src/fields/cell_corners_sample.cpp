@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "grid/fields/cell_corners_sample.hpp"
+#include "fields/cell_corners_sample.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "grid/cells.hpp"
-#include "grid/fields/scalar_of.hpp"
+#include "grid/values/scalar_of.hpp"
 
 namespace isotet::core {
 
@@ -21,7 +21,8 @@ std::size_t begin_of_run(std::size_t run, std::size_t runs, std::size_t cells) {
     const auto begin_of_part = [&](std::size_t part) { return cells / runs * part + cells % runs * part / runs; };
     const std::size_t begin = begin_of_part(run), size = begin_of_part(run + 1) - begin;
     const std::size_t free = size - std::min(size, cells_of_run);
-    const std::size_t share = static_cast<std::uint32_t>(run * 0x9E3779B1U) >> 16U; // of 2^16: steps of the golden ratio
+    const std::size_t share =
+        static_cast<std::uint32_t>(run * 0x9E3779B1U) >> 16U; // of 2^16: steps of the golden ratio
     return begin + (free >> 16) * share + ((free & 0xFFFF) * share >> 16);
 }
 

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "grid/fields/expression/functions.hpp"
+#include "fields/expression/functions.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "grid/fields/one_field.hpp"
+#include "fields/one_field.hpp"
 
 #include <algorithm>
 #include <span>
@@ -12,7 +12,7 @@
 #include "base/errors.hpp"
 #include "base/parallel.hpp"
 #include "grid/cells.hpp"
-#include "grid/fields/average_to_points.hpp"
+#include "grid/values/average_to_points.hpp"
 #include "grid/renumber.hpp"
 
 namespace isotet::core {

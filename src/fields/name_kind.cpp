@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "grid/fields/name_kind.hpp"
+#include "fields/name_kind.hpp"
 
 #include <algorithm>
 #include <array>
@@ -43,24 +43,26 @@ bool holds_any(std::string_view joined, Words parts) {
 }
 
 constexpr std::array<std::string_view, 60> bookkeeping_words{
-    "id", "ids", "idx", "index", "indices", "num", "number", "numbers", "rank", "ranks", "owner", "owners",
-    "proc", "procs", "processor", "processors", "process", "partition", "partitions", "weight", "weights",
-    "center", "centers", "centre", "centres", "centroid", "centroids", "size", "sizes", "err", "error", "errors",
-    "residual", "residuals", "original", "ghost", "ghosts", "mask", "normal", "normals", "coord", "coords",
-    "coordinate", "coordinates", "aux", "quality", "jacobian", "count", "volume", "volumes", "vol", "area",
-    "areas", "order", "level", "dof", "dofs", "nodeset", "sideset", "estimator"};
-constexpr std::array<std::string_view, 8> bookkeeping_parts{
-    "barycent", "centroid", "globalid", "elementid", "cellid", "vtkoriginal", "nodeid", "pointid"};
+    "id",         "ids",      "idx",     "index",   "indices", "num",       "number",     "numbers",     "rank",
+    "ranks",      "owner",    "owners",  "proc",    "procs",   "processor", "processors", "process",     "partition",
+    "partitions", "weight",   "weights", "center",  "centers", "centre",    "centres",    "centroid",    "centroids",
+    "size",       "sizes",    "err",     "error",   "errors",  "residual",  "residuals",  "original",    "ghost",
+    "ghosts",     "mask",     "normal",  "normals", "coord",   "coords",    "coordinate", "coordinates", "aux",
+    "quality",    "jacobian", "count",   "volume",  "volumes", "vol",       "area",       "areas",       "order",
+    "level",      "dof",      "dofs",    "nodeset", "sideset", "estimator"};
+constexpr std::array<std::string_view, 8> bookkeeping_parts{"barycent", "centroid",    "globalid", "elementid",
+                                                            "cellid",   "vtkoriginal", "nodeid",   "pointid"};
 constexpr std::array<std::string_view, 46> region_words{
-    "block", "blocks", "blockid", "material", "materials", "mat", "matid", "region", "regions", "zone", "zones",
-    "domain", "domains", "subdomain", "entity", "entities", "attribute", "attributes", "tag", "tags", "part",
-    "parts", "group", "groups", "physical", "geometrical", "marker", "markers", "label", "labels", "facies",
-    "layer", "layers", "rock", "lithology", "formation", "cluster", "segment", "segmentation", "reference", "ref",
-    "fipnum", "satnum", "tvolume", "actnum", "boundary"};
+    "block",     "blocks",      "blockid",   "material",  "materials", "mat",       "matid",        "region",
+    "regions",   "zone",        "zones",     "domain",    "domains",   "subdomain", "entity",       "entities",
+    "attribute", "attributes",  "tag",       "tags",      "part",      "parts",     "group",        "groups",
+    "physical",  "geometrical", "marker",    "markers",   "label",     "labels",    "facies",       "layer",
+    "layers",    "rock",        "lithology", "formation", "cluster",   "segment",   "segmentation", "reference",
+    "ref",       "fipnum",      "satnum",    "tvolume",   "actnum",    "boundary"};
 /// What is derived from a quantity comes after it.
 constexpr std::array<std::string_view, 17> derived_words{
-    "dt", "grad", "gradient", "rate", "rms", "prime", "variance", "var", "std", "old", "flux", "initial",
-    "residue", "relative", "delta", "tolerance", "bounds"};
+    "dt",  "grad", "gradient", "rate",    "rms",      "prime", "variance",  "var",   "std",
+    "old", "flux", "initial",  "residue", "relative", "delta", "tolerance", "bounds"};
 
 /// How a quantity is called: the name as it is, one of its words, or a part of it.
 struct Quantity {
@@ -86,8 +88,9 @@ const std::vector<Quantity>& quantities() {
         {{"S"}, {"stress", "stresses", "sigma"}, {"stress"}},
         {{"rho", "RHO"}, {"density", "rho"}, {"density"}},
         {{"k", "nut", "omega", "epsilon", "Q", "Ma", "u", "f", "sol", "PORO", "PERMX", "h"},
-         {"energy", "enthalpy", "mach", "vorticity", "helicity", "strain", "damage", "plastic", "porosity", "poro",
-          "permeability", "intensity", "dose", "solution", "distance", "dist", "sol", "scalar", "scalars", "momentum"},
+         {"energy",   "enthalpy", "mach", "vorticity",    "helicity",  "strain",  "damage",
+          "plastic",  "porosity", "poro", "permeability", "intensity", "dose",    "solution",
+          "distance", "dist",     "sol",  "scalar",       "scalars",   "momentum"},
          {"enthalpy", "vorticity", "porosity", "permeab", "walldistance", "momentum"}}};
     return list;
 }
@@ -119,8 +122,7 @@ RankedName rank_name(std::string_view name, std::size_t components) {
     if (has_any(words, derived_words)) return {NameKind::plain};
     if (is_short_saturation(name)) return {NameKind::quantity, 0};
     for (std::size_t rank = 0; rank < list.size(); ++rank)
-        if (is_called(list[rank], name, words, joined, components))
-            return {NameKind::quantity, static_cast<int>(rank)};
+        if (is_called(list[rank], name, words, joined, components)) return {NameKind::quantity, static_cast<int>(rank)};
     return {};
 }
 

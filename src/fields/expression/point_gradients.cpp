@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "grid/fields/expression/point_gradients.hpp"
+#include "fields/expression/point_gradients.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 #include "base/buffer.hpp"
 #include "base/parallel.hpp"
 #include "grid/cells.hpp"
-#include "grid/fields/incidence.hpp"
+#include "grid/values/incidence.hpp"
 #include "grid/orientation.hpp"
 
 namespace isotet::core {

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include <isotet/fields.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/result.hpp>
 
