@@ -160,6 +160,27 @@ def test_solids(browser, path):
     check(browser.box('#solid')[2] > 0, 'they can be chosen')
 
 
+def test_inside_other_pages(browser, path):
+    """Notebooks and documents hold the page as text of a frame, and their policies hold for it, too."""
+    with open(path, encoding='utf-8') as file:
+        frame = f'<iframe srcdoc="{html.escape(file.read())}" style="width: 100%; height: 600px"></iframe>'
+    here = "'self' 'unsafe-inline'"
+    vs_code = f"default-src 'none'; script-src {here} 'unsafe-eval'; style-src {here}; img-src https: data:; connect-src https:; child-src https: data:"
+    for policy, error in ((f"script-src {here} 'unsafe-eval'; worker-src blob:", None), (vs_code, None),
+                          (f"script-src {here} 'unsafe-eval'; worker-src 'none'", 'lets no thread begin')):
+        with tempfile.NamedTemporaryFile('w', suffix='.html', encoding='utf-8') as other:
+            other.write(f'<!doctype html><meta charset="utf-8"><meta http-equiv="Content-Security-Policy" content="{policy}">{frame}')
+            other.flush()
+            browser.call('Page.navigate', url='about:blank')
+            browser.open('file://' + other.name)
+            inside = 'document.querySelector("iframe").contentDocument'
+            if error:
+                browser.wait(f'{inside}.getElementById("message").textContent.includes("{error}")', 60)
+            else:
+                browser.wait(f'Number({inside}.body.dataset.triangles) > 0', 60)
+        browser.errors.clear()  # that it forbids addresses
+
+
 def test_files_of_what_is_shown(browser, path):
     """Surfaces; the boundary where it is shown alone; a sentence where nothing is."""
     with tempfile.TemporaryDirectory(prefix='isotet-saved-') as folder:

@@ -168,7 +168,7 @@ Result<std::string> page_document(std::string_view title, const Json& saved, con
     const std::string policy = fmt::format(
         "default-src 'none'; script-src {}{}; style-src {}; img-src data: blob:; base-uri 'none'; "
         "form-action 'none'",
-        hash_source(*script), has_engine ? " 'wasm-unsafe-eval'; worker-src blob:" : "", hash_source(style));
+        hash_source(*script), has_engine ? " 'wasm-unsafe-eval'; worker-src blob: data:" : "", hash_source(style));
     std::string data = fmt::format("<script type=\"application/json\" id=\"saved\">{}</script>\n", json_in_html(saved));
     for (const PagePart& part : parts)
         data += fmt::format("<script type=\"text/plain\" id=\"{}\">{}</script>\n", html_text(part.name), part.base64);

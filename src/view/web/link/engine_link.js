@@ -31,12 +31,20 @@ export class EngineLink {
   async startThread(message) {
     const beginning = this.beginning = {}, told = message(), code = await unpack('worker');
     if (this.beginning !== beginning) return; // another file was chosen
-    const worker = this.worker = new Worker(URL.createObjectURL(new Blob([code], {type: 'text/javascript'})));
-    worker.postMessage({...told, card: chosenCard()});
-    await new Promise((resolve) => {
-      worker.onmessage = ({data}) => (data.started ? resolve() : this.take(data));
-      worker.onerror = (event) => { resolve(); this.failed(event.message); };
-    });
+    for (const address of [URL.createObjectURL(new Blob([code], {type: 'text/javascript'})), `data:text/javascript,${encodeURIComponent(code)}`]) {
+      if (await this.runs(address, {...told, card: chosenCard()})) return;
+    }
+    this.failed('the page around this one lets no thread begin');
+  }
+
+  /** False where the policy of a page around this one forbids such an address: that of VS Code's notebooks blob:, others data:. */
+  runs(address, message) {
+    return new Promise((resolve) => {
+      const worker = this.worker = new Worker(address);
+      worker.postMessage(message);
+      worker.onmessage = ({data}) => (data.started ? resolve(true) : this.take(data));
+      worker.onerror = ({message: why}) => { if (why) this.failed(why); resolve(Boolean(why)); };
+    }).catch(() => false); // some browsers throw
   }
 
   take({text, frame, spent}) {
