@@ -29,6 +29,7 @@ namespace {
 
 using test::expect_counted;
 using test::Listener;
+using test::some_of;
 
 /// What the pieces of a grid are like.
 struct Cut {
@@ -215,7 +216,7 @@ std::string in_one_file(const test::TemporaryFolder& folder, std::size_t pieces)
 TEST(ActiveCellsOfPieces, AreFoundInOneFileWithSeveralPieces) {
     const test::TemporaryFolder folder;
     for (const bool marked : {false, true})
-        for (const char* shape : {"shuffled", "mixed"}) {
+        for (const char* shape : some_of<const char*>({"mixed", "shuffled"})) {
             SCOPED_TRACE(testing::Message() << shape << (marked ? ", marked" : ""));
             const Cut cut{.shape = shape, .ids = marked, .more = 11, .marked = marked};
             write_pieces(folder, cut);
@@ -264,7 +265,7 @@ TEST(ActiveCellsOfPieces, MayBeOfSeveralTypes) {
 
 TEST(ActiveCellsOfPieces, AreFoundInCompressedBlocks) {
     const test::TemporaryFolder folder;
-    for (const char* shape : {"kuhn", "pyramid", "mixed"})
+    for (const char* shape : some_of<const char*>({"mixed", "kuhn", "pyramid"}))
         for (const Compression compression : {Compression::zlib, Compression::lz4})
             expect_streamed(write_pieces(folder, {.shape = shape}, {}, compression));
 }
@@ -285,7 +286,7 @@ std::vector<double> many_isovalues() {
 
 TEST(ActiveCellsOfPieces, AreOfAnyNumberOfIsovalues) {
     const test::TemporaryFolder folder;
-    for (const char* shape : {"shuffled", "mixed"}) {
+    for (const char* shape : some_of<const char*>({"mixed", "shuffled"})) {
         const std::string file = write_pieces(folder, {.shape = shape});
         expect_same_surface(folder, file, {.isovalues = many_isovalues(), .edge_ends = true});
         expect_same_surface(folder, file, {.field = "integer", .isovalues = {0, 1, 2, 3, 4, 5, 6, 7, 8}});
@@ -294,7 +295,7 @@ TEST(ActiveCellsOfPieces, AreOfAnyNumberOfIsovalues) {
 
 TEST(ActiveCellsOfPieces, HaveThoseAroundThemForGradientNormals) {
     const test::TemporaryFolder folder;
-    for (const char* shape : {"shuffled", "hex", "mixed"})
+    for (const char* shape : some_of<const char*>({"mixed", "shuffled", "hex"}))
         for (const std::uint64_t more : {0, 7})
             for (const bool marked : {false, true}) {
                 SCOPED_TRACE(testing::Message() << shape << ", more " << more << (marked ? ", marked" : ""));
@@ -308,7 +309,7 @@ TEST(ActiveCellsOfPieces, HaveThoseAroundThemForGradientNormals) {
 
 TEST(ActiveCellsOfPieces, HaveTheNumbersOfAllAsSourceCells) {
     const test::TemporaryFolder folder;
-    for (const char* shape : {"shuffled", "mixed"}) {
+    for (const char* shape : some_of<const char*>({"mixed", "shuffled"})) {
         expect_same_surface(folder, write_pieces(folder, {.shape = shape}), {.source_cells = true});
         expect_same_surface(folder, write_pieces(folder, {.shape = shape, .more = 7, .marked = true}),
                             {.isovalues = many_isovalues(), .source_cells = true});
@@ -339,7 +340,7 @@ TEST(ActiveCellsOfPieces, HaveTheirValuesOfCellFields) {
         if (piece == 0) grid.cell_fields.push_back({"odd", Array::own(std::vector<float>(2 * cells, 1.5f), 2)});
         if (piece == 3) grid.cell_fields.push_back({"odd", Array::own(std::vector<float>(cells, 2.5f))});
     };
-    for (const char* shape : {"shuffled", "mixed"})
+    for (const char* shape : some_of<const char*>({"mixed", "shuffled"}))
         for (const bool marked : {false, true})
             for (const std::uint64_t more : {0, 7}) {
                 SCOPED_TRACE(testing::Message() << shape << (marked ? ", marked " : " ") << more);
@@ -398,7 +399,7 @@ TEST(ActiveCellsOfPieces, AreCountedAsTheyGoBy) {
 
 TEST(ActiveCellsOfPieces, AreEnoughForPicturesWithTheBoundary) {
     const test::TemporaryFolder folder;
-    for (const char* shape : {"shuffled", "mixed"})
+    for (const char* shape : some_of<const char*>({"mixed", "shuffled"}))
         for (const auto& [more, marked] : {std::pair(0, false), std::pair(7, true), std::pair(7, false)}) {
             SCOPED_TRACE(testing::Message() << shape << " " << more << (marked ? ", marked" : ""));
             DrawJob job;

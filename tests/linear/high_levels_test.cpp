@@ -180,15 +180,21 @@ ClosedGrid closed(const Grid& grid) {
 
 TEST(HighLevels, AreClosedInCellsOfAnyKindAndDegree) {
     const double area = area_of_plane();
-    for (const char* shape : {"kuhn", "hex", "wedge", "pyramid", "mixed"})
-        for (const unsigned degree : some_of({3u, 4u, 5u})) {
-            SCOPED_TRACE(shape + std::string(" of degree ") + std::to_string(degree));
-            const ClosedGrid found = closed(cells_of_degree(levels(shape), all_of(degree)));
-            EXPECT_EQ(found.report.curved_cells, found.report.cells);
-            expect_closed(found, bumpy, 0.37);
-            expect_plane(found, area);
-            EXPECT_NEAR(check(boundary_of(found.grid).value())->area, 24, 1e-5) << "no face inside is left";
-        }
+    for (const auto& [shape, degree] : some_of<std::pair<const char*, unsigned>>({{"mixed", 3u},
+                                                                                  {"kuhn", 3u},
+                                                                                  {"kuhn", 4u},
+                                                                                  {"hex", 4u},
+                                                                                  {"kuhn", 5u},
+                                                                                  {"hex", 5u},
+                                                                                  {"wedge", 4u},
+                                                                                  {"pyramid", 3u}})) {
+        SCOPED_TRACE(shape + std::string(" of degree ") + std::to_string(degree));
+        const ClosedGrid found = closed(cells_of_degree(levels(shape), all_of(degree)));
+        EXPECT_EQ(found.report.curved_cells, found.report.cells);
+        expect_closed(found, bumpy, 0.37);
+        expect_plane(found, area);
+        EXPECT_NEAR(check(boundary_of(found.grid).value())->area, 24, 1e-5) << "no face inside is left";
+    }
 }
 
 TEST(HighLevels, NothingIsOpenOnCurvedShapes) {
