@@ -31,7 +31,7 @@ export class EngineLink {
   async startThread(message) {
     const beginning = this.beginning = {}, told = message(), code = await unpack('worker');
     if (this.beginning !== beginning) return; // another file was chosen
-    for (const address of [URL.createObjectURL(new Blob([code], {type: 'text/javascript'})), `data:text/javascript,${encodeURIComponent(code)}`]) {
+    for (const address of [URL.createObjectURL(new Blob([code], {type: 'text/javascript'})), `data:text/javascript,${encodeURIComponent(new TextDecoder().decode(code))}`]) {
       if (await this.runs(address, {...told, card: chosenCard()})) return;
     }
     this.failed('the page around this one lets no thread begin');
