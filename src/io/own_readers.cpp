@@ -104,6 +104,13 @@ int recognizes_gmsh(std::string_view head, std::string_view extension) {
 }
 
 Result<FileInfo> inspect_gmsh_file(const std::string& path, const ReadOptions& options, const Progress& progress) {
+    constexpr std::size_t small_bytes = std::size_t{1} << 20;
+    const auto source = ByteSource::open(path);
+    if (source && source->size() > small_bytes) {
+        const auto heads = heads_of_gmsh(*source, !options.kept, progress);
+        if (!heads) return heads.error();
+        if (*heads) return in_file<FileInfo>(path, inspect_gmsh(**heads, progress));
+    }
     return with_file<FileInfo>(path, look_into_file(path, options, progress),
                                [&](std::string_view text) { return inspect_gmsh(text, progress); });
 }

@@ -271,7 +271,7 @@ Result<GridSource> GridSource::open(const GridOptions& options, Caller& caller) 
         return source;
     }
     ReadOptions& read_options = source.read_options_ = read_options_of(options);
-    read_options.kept = keep_files();
+    if (!options.heads) read_options.kept = keep_files();
     if (auto steps = check_steps(options, read_options, caller.run()); !steps) return steps.error();
     if (options.time && !options.blocks.empty()) { // which may be in that step alone
         ReadOptions whole = read_options;

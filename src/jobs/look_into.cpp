@@ -221,6 +221,7 @@ Result<GridSummary> look_all(const InfoJob& job, Caller& caller) {
     if (auto paths = check_output_paths({job.grid.file}, job.other_outputs); !paths) return paths.error();
     GridOptions options = job.grid;
     options.hanging_points = HangingChoice::not_sought; // cells are counted as the file has them
+    options.heads = job.heads;
     Result<GridSource> source = GridSource::open(options, caller);
     if (!source) return source.error();
     if (auto paths = check_output_paths(source->info().files, job.other_outputs); !paths) return paths.error();

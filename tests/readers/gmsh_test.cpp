@@ -50,6 +50,29 @@ TEST_P(ReadGmsh, GivesPointsAndCellsOfAllKinds) {
     EXPECT_TRUE(check(result.grid));
 }
 
+/// What tells of a file is there without the most of its sections.
+TEST_P(ReadGmsh, IsLookedIntoByItsHeads) {
+    constexpr int values = 40000;
+    std::string section = fmt::format("$NodeData\n1\n\"long\"\n1\n0\n3\n0\n1\n{}\n", values);
+    for (int i = 0; i < values; ++i) section += GetParam().binary ? std::string(12, '\0') : "1 0.12345678\n";
+    const std::string bytes = gmsh_sample(GetParam()) + section + "\n$EndNodeData\n";
+    for (const bool searches : {false, true}) {
+        const auto heads = io::heads_of_gmsh(io::ByteSource(bytes), searches, {}).value();
+        ASSERT_TRUE(heads);
+        EXPECT_LT(heads->size(), bytes.size() / 2);
+        const FileInfo some = io::inspect_gmsh(*heads, {}).value(), all = io::inspect_gmsh(bytes, {}).value();
+        EXPECT_EQ(some.times, all.times);
+        ASSERT_EQ(some.fields.size(), all.fields.size());
+        for (std::size_t i = 0; i < all.fields.size(); ++i) EXPECT_EQ(some.fields[i].name, all.fields[i].name);
+        ASSERT_EQ(some.regions.size(), all.regions.size());
+        EXPECT_EQ(some.left_out.size(), all.left_out.size());
+    }
+    std::string longer = bytes; // than what is searched
+    longer.insert(longer.find("$NodeData"), "$Notes\n" + std::string(2 << 20, 'x') + "\n$EndNotes\n");
+    EXPECT_FALSE(io::heads_of_gmsh(io::ByteSource(longer), false, {}).value());
+    EXPECT_TRUE(io::heads_of_gmsh(io::ByteSource(longer), true, {}).value());
+}
+
 TEST_P(ReadGmsh, GivesTheFieldsOfEachStep) {
     const std::string bytes = gmsh_sample(GetParam());
     for (const std::size_t step : {0, 1}) {

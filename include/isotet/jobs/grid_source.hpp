@@ -42,6 +42,7 @@ struct GridOptions {
     bool keep_pieces = false;
     bool allow_outside = false;
     bool patches = false; ///< ReadOptions::patches
+    bool heads = false;   ///< the grid will not be read: what tells of it need not be kept
     std::string displace;
     std::vector<std::string> blocks;       ///< names or numbers; empty: all
     std::vector<std::string> cells;        ///< "FIELD=LIST" each: others become empty cells, and all keep their numbers

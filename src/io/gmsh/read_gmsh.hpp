@@ -2,11 +2,15 @@
 // Gmsh's MSH files, versions 1.0, 2.0 to 2.2, 4.0 and 4.1, ascii and binary in either byte order.
 #pragma once
 
+#include <optional>
+#include <string>
 #include <string_view>
 
 #include <isotet/progress.hpp>
 #include <isotet/read.hpp>
 #include <isotet/result.hpp>
+
+#include "io/files/byte_source.hpp"
 
 namespace isotet::io {
 
@@ -18,6 +22,14 @@ namespace isotet::io {
 ///
 /// `bytes`   the whole file
 Result<FileInfo> inspect_gmsh(std::string_view bytes, const Progress& progress);
+
+/// An MSH file without the most of its long sections: inspect_gmsh() says of it what it says of the file. Nothing where
+/// the whole file is needed for that.
+///
+/// `searches`   sections whose counts do not tell where they end are gone through: text
+/// Cost         with counts by the number of blocks, else a pass over the file; memory for a few MB
+/// Errors       as ByteSource; cancelled
+Result<std::optional<std::string>> heads_of_gmsh(const ByteSource& source, bool searches, const Progress& progress);
 
 /// Reads an MSH file.
 ///
