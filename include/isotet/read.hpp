@@ -88,6 +88,13 @@ struct FileInfo {
     LeastCounts least; ///< of the step that was asked for, all blocks; zeros where blocks or regions are chosen
 };
 
+/// Cells with a value of a cell field in some ranges, both ends in them; or all other cells.
+struct CellCondition {
+    std::string field;
+    std::vector<std::array<double, 2>> ranges;
+    bool others = false;
+};
+
 /// Only the cells that direct extraction of some isovalues needs (active_cells.hpp).
 struct ReadActiveCells {
     std::string field; ///< as find_field() takes it
@@ -100,6 +107,10 @@ struct ReadActiveCells {
     /// Where there are no isovalues: gives them once the values of all points are known. VTKHDF and Exodus read all cells
     /// unless it is a RangeLevels (isovalues.hpp).
     std::function<Result<std::vector<double>>(const PointField& field)> choose = {};
+    /// Of these only those for which all conditions hold, by fields that are read; points of no such cell have no value, of
+    /// integers they keep it. All cells are read where some have no volume, or a range has no value; not with `bounds`,
+    /// `boundary` and `choose`.
+    std::vector<CellCondition> conditions = {};
 };
 
 /// Where inspect() leaves a file that it had to read whole, so that read() need not read it again. Nothing of it is left
@@ -149,6 +160,8 @@ struct ReadResult {
         {}; ///< uint64, where cells have other numbers than in the file that has them: of a piece, of which
             ///< some are left out, and of a packed file with source cells; of active cells, where
             ///< their options ask for source cells. Empty: they are the same
+    std::optional<std::uint64_t> chosen_cells =
+        {}; ///< of active cells: for how many of all the conditions hold; nothing: they were not looked at
 };
 
 /// Tells what a file holds without reading more of it than the format makes necessary.

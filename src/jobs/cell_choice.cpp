@@ -2,6 +2,7 @@
 #include "jobs/cell_choice.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -9,7 +10,6 @@
 #include <optional>
 #include <set>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -23,6 +23,7 @@
 #include "grid/cells.hpp"
 #include "grid/patches.hpp"
 #include "grid/points/used_points.hpp"
+#include "grid/values/values_in_ranges.hpp"
 #include "jobs/refuse.hpp"
 
 namespace isotet::jobs {
@@ -96,6 +97,12 @@ Result<std::vector<Item>> items_of(const CellChoice& choice, const std::vector<R
     return items;
 }
 
+std::vector<std::array<double, 2>> ranges_of(const std::vector<Item>& items) {
+    std::vector<std::array<double, 2>> ranges;
+    for (const Item& item : items) ranges.push_back({item.lower, item.upper});
+    return ranges;
+}
+
 /// "1, 2, 5", or "0.25 to 17" where they are many.
 std::string values_there(const Array& values) {
     constexpr std::size_t max_shown = 12;
@@ -127,22 +134,7 @@ Result<void> restrict_to(const CellChoice& choice, const Grid& grid, const std::
                        choice.field, values.components());
     Result<std::vector<Item>> items = items_of(choice, regions);
     if (!items) return items.error();
-    if (values.type() == ScalarType::float32)
-        for (Item& item : *items)
-            if (item.lower == item.upper) item.lower = item.upper = static_cast<double>(static_cast<float>(item.lower));
-    std::vector<bool> is_there(items->size(), false);
-    values.visit([&](auto numbers) {
-        for (std::size_t cell = 0; cell < chosen.size(); ++cell) {
-            const auto value = static_cast<double>(numbers[cell]);
-            bool inside = false;
-            for (std::size_t i = 0; i < items->size(); ++i) {
-                if (!(value >= (*items)[i].lower && value <= (*items)[i].upper)) continue;
-                inside = true;
-                is_there[i] = true;
-            }
-            if (inside == choice.others) chosen[cell] = 0;
-        }
-    });
+    const std::vector<bool> is_there = core::restrict_to_ranges(values, ranges_of(*items), choice.others, {}, chosen);
     for (std::size_t i = 0; i < items->size(); ++i)
         if (!is_there[i])
             missing.push_back(fmt::format("`cells` got '{}', but no cell has {}: '{}' has {}", choice.text,
@@ -180,19 +172,7 @@ void leave_values_of_cells(Grid& grid, bool solid) {
             if (const std::uint64_t point = cells->corner(i); point < used.size()) used[point] = 1;
     }
     core::mark_points_of_faces(grid.cells, used, counts);
-    for (Field& field : grid.point_fields) {
-        const std::size_t width = field.values.components();
-        const auto without_unused = [&](auto from) {
-            using Value = std::remove_const_t<typename decltype(from)::value_type>;
-            if constexpr (std::is_floating_point_v<Value>) {
-                std::vector<Value> to(from.begin(), from.end());
-                for (std::size_t i = 0; i < to.size(); ++i)
-                    if (i / width < used.size() && !used[i / width]) to[i] = std::numeric_limits<Value>::quiet_NaN();
-                field.values = Array::own(std::move(to), width);
-            }
-        };
-        field.values.visit(without_unused);
-    }
+    for (Field& field : grid.point_fields) field.values = core::without_unused(field.values, used);
 }
 
 } // namespace
@@ -223,6 +203,17 @@ Result<void> check_cell_choices(std::span<const CellChoice> choices, const std::
     for (const CellChoice& choice : choices)
         if (const auto items = items_of(choice, regions); !items) return items.error();
     return {};
+}
+
+Result<std::vector<CellCondition>> conditions_of(std::span<const CellChoice> choices,
+                                                 const std::vector<RegionName>& regions) {
+    std::vector<CellCondition> conditions;
+    for (const CellChoice& choice : choices) {
+        const auto items = items_of(choice, regions);
+        if (!items) return items.error();
+        conditions.push_back({choice.field, ranges_of(*items), choice.others});
+    }
+    return conditions;
 }
 
 Result<ChosenCells> choose_cells(Grid grid, std::span<const CellChoice> choices,

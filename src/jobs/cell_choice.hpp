@@ -28,6 +28,11 @@ Result<std::vector<CellChoice>> parse_cell_choices(const std::vector<std::string
 /// An item of the list is no number, no range and no name of the field's regions.
 Result<void> check_cell_choices(std::span<const CellChoice> choices, const std::vector<RegionName>& regions);
 
+/// For readers.
+/// Errors   as check_cell_choices()
+Result<std::vector<CellCondition>> conditions_of(std::span<const CellChoice> choices,
+                                                 const std::vector<RegionName>& regions);
+
 struct ChosenCells {
     Grid grid; ///< other cells have VTK's type 0, so that all keep their numbers; points that they alone use
                ///< have no value, of integers they keep it

@@ -506,19 +506,33 @@ Result<ReadResult> GridSource::read_unclosed(const FieldsToRead& fields, std::si
     return result;
 }
 
+void GridSource::note_choice(std::uint64_t count, std::uint64_t of, Caller& caller) const {
+    caller.note(fmt::format("{} of {} are in {}", grouped(count), counted(of, "cell"), text_of(*choices_)));
+}
+
+/// Whether points hang on cells, or faces do not fit, before cells are chosen: points beside a face that the choice opens
+/// hang on nothing.
+bool GridSource::hangs_as_a_whole(const Grid& grid, const Run& run) const {
+    if (options_.merge_points || options_.hanging_points == HangingChoice::not_sought) return true;
+    const Result<ClosedGrid> whole = close_hanging_points({grid.points, grid.cells, {}, {}}, run);
+    return !whole || whole->report.points > 0 || whole->report.open_faces > 0;
+}
+
 /// Empties the other cells, and notes how many are left. A number that a step of several lacks is noted, else an error.
-Result<void> GridSource::choose(ReadResult& read, Caller& caller) const {
-    if (!choices_) return {};
+/// Returns whether points may hang.
+Result<bool> GridSource::choose(ReadResult& read, Caller* caller, const Run& run) const {
+    if (!choices_) return true;
+    const bool may_hang = hangs_as_a_whole(read.grid, run);
     const std::vector<RegionName>& regions = read.info.regions.empty() ? info_.regions : read.info.regions;
     Result<ChosenCells> chosen = choose_cells(std::move(read.grid), *choices_, regions);
     if (!chosen) return chosen.error();
     if (!chosen->missing.empty() && info_.times.size() < 2)
         return Error{ErrorCode::invalid_argument, chosen->missing.front()};
-    caller.notes(chosen->missing);
     read.grid = std::move(chosen->grid);
-    caller.note(
-        fmt::format("{} of {} are in {}", grouped(chosen->count), counted(chosen->of, "cell"), text_of(*choices_)));
-    return {};
+    if (!caller) return may_hang;
+    caller->notes(chosen->missing);
+    note_choice(chosen->count, chosen->of, *caller);
+    return may_hang;
 }
 
 Result<Grid> GridSource::only_cells(Grid grid, const std::vector<std::string>& cells,
@@ -530,6 +544,17 @@ Result<Grid> GridSource::only_cells(Grid grid, const std::vector<std::string>& c
     return std::move(chosen->grid);
 }
 
+/// The same, and what cells are chosen by.
+FieldsToRead GridSource::and_of_choices(FieldsToRead fields) const {
+    if (!choices_) return fields;
+    for (const CellChoice& choice : *choices_) {
+        if (fields.cell && std::ranges::find(*fields.cell, choice.field) == fields.cell->end())
+            fields.cell->push_back(choice.field);
+        if (choice.field == block_field_name) fields.blocks = true;
+    }
+    return fields;
+}
+
 Result<ReadResult> GridSource::read_cells(const FieldsToRead& fields, std::size_t step, CellsToRead cells,
                                           Caller& caller, const Run& run) const {
     if (kept_)
@@ -537,27 +562,21 @@ Result<ReadResult> GridSource::read_cells(const FieldsToRead& fields, std::size_
             if (auto added = add_blocks(*kept, fields); !added) return added.error();
             return *std::move(kept);
         }
-    FieldsToRead with_choices = fields;
-    if (choices_ && fields.cell) {
-        for (const CellChoice& choice : *choices_)
-            if (std::ranges::find(*with_choices.cell, choice.field) == with_choices.cell->end())
-                with_choices.cell->push_back(choice.field);
-    }
-    if (choices_ && std::ranges::find(*choices_, block_field_name, &CellChoice::field) != choices_->end())
-        with_choices.blocks = true;
+    const FieldsToRead with_choices = and_of_choices(fields);
     FieldsToRead of_file = with_choices;
     if (knows_blocks_ && of_file.cell) std::erase(*of_file.cell, block_field_name);
     Result<ReadResult> result = read_unclosed(of_file, step, cells, caller, run);
     if (!result || result->cells_in_file) return result;
     if (auto added = add_blocks(*result, with_choices); !added) return added.error();
-    if (auto chosen = choose(*result, caller); !chosen) return chosen.error();
+    const Result<bool> may_hang = choose(*result, &caller, run);
+    if (!may_hang) return may_hang.error();
     if (choices_) leave(result->grid.cell_fields, fields.cell);
-    return finish(*std::move(result), fields, caller, run);
+    return finish(*std::move(result), fields, caller, run, *may_hang);
 }
 
 /// All of its cells were read, and none is chosen any more.
-Result<ReadResult> GridSource::finish(ReadResult read, const FieldsToRead& fields, Caller& caller,
-                                      const Run& run) const {
+Result<ReadResult> GridSource::finish(ReadResult read, const FieldsToRead& fields, Caller& caller, const Run& run,
+                                      bool may_hang) const {
     if (knows_blocks_ && !fields.blocks && !names_blocks(fields))
         std::erase_if(read.grid.cell_fields, [](const Field& field) { return field.name == block_field_name; });
     if (options_.merge_points) {
@@ -567,6 +586,7 @@ Result<ReadResult> GridSource::finish(ReadResult read, const FieldsToRead& field
     } else {
         caller.note(coincident_points_note(read.grid, run));
     }
+    if (!may_hang) return read;
     Result<Grid> grid = closed(std::move(read.grid), options_.hanging_points, closing_.get(), caller, run);
     if (!grid) return grid.error();
     read.grid = *std::move(grid);
@@ -637,19 +657,39 @@ Result<SurveyedGrid> GridSource::read_surveyed(const FieldsToRead& fields, std::
     return result;
 }
 
+/// Whether readers can choose the cells.
+bool GridSource::chooses_while_reading(const FieldsToRead& fields, const ReadActiveCells& active) const {
+    return !choices_ || (!is_packed_file() && !(fields.blocks && knows_blocks_) && !active.choose && !active.bounds &&
+                         !active.boundary);
+}
+
 Result<ReadResult> GridSource::read_active(const FieldsToRead& fields, std::size_t step, const ReadActiveCells& active,
                                            Caller& caller) const {
     const bool interpolates = options_.hanging_points == HangingChoice::interpolate; // values of cells that are not cut
-    if (made_ || surface_ || options_.merge_points || !options_.cells.empty() || names_blocks(fields) || interpolates ||
-        (kept_ && kept_->is_there()))
+    const FieldsToRead with_choices = and_of_choices(fields);
+    if (made_ || surface_ || options_.merge_points || !chooses_while_reading(with_choices, active) ||
+        names_blocks(with_choices) || interpolates || (kept_ && kept_->is_there()))
         return read_numbered(fields, step, caller);
     ReadOptions options = read_options_;
     options.active_cells = active;
-    Result<ReadResult> result = read_file(fields, step, std::move(options), caller.run());
+    if (choices_) {
+        auto conditions = conditions_of(*choices_, info_.regions);
+        if (!conditions) return conditions.error();
+        options.active_cells->conditions = *std::move(conditions);
+    }
+    Result<ReadResult> result = read_file(with_choices, step, std::move(options), caller.run());
     if (!result) return result;
     caller.notes(result->notes);
-    if (result->cells_in_file) return result;
+    if (result->cells_in_file) {
+        if (choices_) note_choice(result->chosen_cells.value_or(0), *result->cells_in_file, caller);
+        if (choices_) leave(result->grid.cell_fields, fields.cell);
+        return result;
+    }
+    const Result<bool> may_hang = choose(*result, &caller, caller.run());
+    if (!may_hang) return may_hang.error();
+    if (choices_) leave(result->grid.cell_fields, fields.cell);
     caller.note(coincident_points_note(result->grid, caller.run()));
+    if (!*may_hang) return result;
     Result<Grid> grid = closed(std::move(result->grid), options_.hanging_points, closing_.get(), caller, caller.run());
     if (!grid) return grid.error();
     result->grid = *std::move(grid);
@@ -657,8 +697,12 @@ Result<ReadResult> GridSource::read_active(const FieldsToRead& fields, std::size
 }
 
 Result<ReadResult> GridSource::read_the_rest(const FieldsToRead& fields, std::size_t step, const Run& run) const {
-    Result<ReadResult> result = read_file(fields, step, read_options_, run);
-    if (!result || options_.hanging_points == HangingChoice::leave) return result;
+    Result<ReadResult> result = read_file(and_of_choices(fields), step, read_options_, run);
+    if (!result) return result;
+    const Result<bool> may_hang = choose(*result, nullptr, run);
+    if (!may_hang) return may_hang.error();
+    if (choices_) leave(result->grid.cell_fields, fields.cell);
+    if (!*may_hang || options_.hanging_points == HangingChoice::leave) return result;
     Result<ClosedGrid> all = close_hanging_points(result->grid, run);
     if (!all) return all.error();
     result->grid = std::move(all->grid);

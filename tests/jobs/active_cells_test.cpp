@@ -47,6 +47,12 @@ bool was_read_twice(const Listener& listener) {
     return std::ranges::find(listener.details, "reading all cells of step 0") != listener.details.end();
 }
 
+bool tells_of_kept_cells(const Listener& listener) {
+    return std::ranges::any_of(listener.details, [](const std::string& detail) {
+        return detail.find("cells were kept") != std::string::npos;
+    });
+}
+
 /// The file of the engine that always reads all cells.
 std::string reference_file(ExtractJob job, const test::TemporaryFolder& folder) {
     Listener listener;
@@ -93,6 +99,50 @@ TEST(ActiveCellsOfFiles, GiveTheFileOfAllCells) {
         }
 }
 
+/// A region in layers, and a part that changes from cell to cell.
+std::vector<Field> cell_fields_of(std::size_t cells) {
+    std::vector<std::int32_t> region(cells);
+    std::vector<float> part(cells);
+    for (std::size_t cell = 0; cell < cells; ++cell) {
+        region[cell] = static_cast<std::int32_t>(3 * cell / cells);
+        part[cell] = static_cast<float>(cell * 7919 % 100) / 100;
+    }
+    return {{"region", Array::own(std::move(region))}, {"part", Array::own(std::move(part))}};
+}
+
+TEST(ActiveCellsOfFiles, MayBeThoseOfARegion) {
+    const test::TemporaryFolder folder;
+    using Choice = std::vector<std::string>;
+    for (const char* shape : {"kuhn", "shuffled", "hex", "mixed"})
+        for (const char* ending : {".vtu", ".vtk"})
+            for (const Choice& choice : {Choice{"region=1"}, {"!region=0", "part=:0.4"}, {"region=0:2"}}) {
+                SCOPED_TRACE(testing::Message() << shape << ending << " " << choice.back());
+                const std::string file = folder.file("grid") + ending;
+                Grid grid = made(shape, 16);
+                grid.cell_fields = cell_fields_of(grid.cells.count());
+                ASSERT_TRUE(write_grid(grid, file));
+                ExtractJob job = active_job(file, folder.file("active.vtp"));
+                job.grid.cells = choice;
+                job.source_cells = job.edge_ends = true;
+                job.with = std::vector<std::string>{"integer", "part"};
+                job.normals = choice.size() == 1 ? Normals::none : Normals::gradient;
+                Listener listener, other;
+                const ExtractNumbers some = extract_files(job, listener).value();
+                const bool streams = shape != std::string("mixed") || ending != std::string(".vtk");
+                EXPECT_EQ(tells_of_kept_cells(listener), streams);
+                EXPECT_FALSE(was_read_twice(listener));
+                const std::string written = test::content_of(job.out);
+                job.engine = EngineChoice::reference;
+                const ExtractNumbers all = extract_files(job, other).value();
+                EXPECT_TRUE(written == test::content_of(job.out));
+                EXPECT_EQ(listener.noted, other.noted);
+                EXPECT_EQ(some.cells, all.cells);
+                EXPECT_EQ(some.cells_left_out, all.cells_left_out);
+                EXPECT_EQ(some.field.lower, all.field.lower);
+                EXPECT_EQ(some.field.upper, all.field.upper);
+            }
+}
+
 TEST(ActiveCellsOfFiles, HaveThoseAroundThemForGradientNormals) {
     const test::TemporaryFolder folder;
     for (const char* shape : some_of<const char*>({"mixed", "kuhn", "shuffled", "hex", "layer"}))
@@ -134,6 +184,24 @@ TEST(ActiveCellsOfFiles, AreOfAnyNumberOfIsovaluesWithTheirNumbers) {
             EXPECT_FALSE(was_read_twice(listener));
             EXPECT_TRUE(test::content_of(job.out) == reference_file(job, folder));
         }
+}
+
+TEST(ActiveCellsOfFiles, AreOfSharesOfThePoints) {
+    const test::TemporaryFolder folder;
+    const std::string file = folder.file("grid.vtu");
+    for (const char* shape : {"shuffled", "hex", "mixed"}) {
+        SCOPED_TRACE(shape);
+        ASSERT_TRUE(write_grid(made(shape, 16), file));
+        ExtractJob job = active_job(file, folder.file("active.vtp"));
+        job.isovalues = {0.1};
+        job.shares = {{IsovalueShare::Of::points, 90}};
+        Listener listener;
+        const ExtractNumbers numbers = extract_files(job, listener).value();
+        EXPECT_EQ(numbers.surfaces.size(), 2u);
+        EXPECT_TRUE(tells_of_kept_cells(listener));
+        EXPECT_FALSE(was_read_twice(listener));
+        EXPECT_TRUE(test::content_of(job.out) == reference_file(job, folder));
+    }
 }
 
 TEST(ActiveCellsOfFiles, AreOfIsovaluesThatFollowFromTheValues) {

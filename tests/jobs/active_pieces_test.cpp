@@ -151,6 +151,7 @@ struct Asked {
     int threads = 0;
     Normals normals = Normals::none;
     std::vector<std::string> with = {}; ///< empty: all point fields
+    std::vector<std::string> cells = {};
 };
 
 /// The job's file: the bytes are those of the engine that always reads all cells.
@@ -167,6 +168,7 @@ void expect_same_surface(const test::TemporaryFolder& folder, const std::string&
     job.keep_degenerate = asked.degenerate;
     job.normals = asked.normals;
     if (!asked.with.empty()) job.with = asked.with;
+    job.grid.cells = asked.cells;
     Listener listener(asked.threads), other;
     const auto numbers = extract_files(job, listener);
     ASSERT_TRUE(numbers) << numbers.error().message;
@@ -189,6 +191,32 @@ TEST(ActiveCellsOfPieces, GiveTheGridAndTheFileOfAllCells) {
                 expect_streamed(file);
                 expect_same_surface(folder, file, {});
             }
+}
+
+TEST(ActiveCellsOfPieces, MayBeThoseOfARegion) {
+    const test::TemporaryFolder folder;
+    const auto add_region = [](std::size_t piece, Grid& grid) {
+        std::vector<std::int32_t> region(grid.cells.count());
+        for (std::size_t cell = 0; cell < region.size(); ++cell)
+            region[cell] = static_cast<std::int32_t>(piece + 3 * cell / region.size());
+        grid.cell_fields.push_back({"region", Array::own(std::move(region))});
+    };
+    for (const char* shape : {"shuffled", "hex", "mixed"})
+        for (const bool marked : {false, true}) {
+            SCOPED_TRACE(testing::Message() << shape << (marked ? ", marked" : ""));
+            const Cut cut{.shape = shape, .more = marked ? 11U : 0U, .marked = marked};
+            const std::string file = write_pieces(folder, cut, add_region);
+            ReadOptions options = reading({0.1});
+            options.cell_fields = {"region"};
+            options.active_cells->conditions = {{"region", {{1, 1}, {3, 9}}, false}};
+            const auto some = read(file, options);
+            ASSERT_TRUE(some) << some.error().message;
+            ASSERT_TRUE(some->chosen_cells);
+            EXPECT_LT(*some->chosen_cells, *some->cells_in_file);
+            expect_same_surface(
+                folder, file, {.edge_ends = true, .source_cells = true, .with = {"region"}, .cells = {"region=1,3:9"}});
+            expect_same_surface(folder, file, {.source_cells = true, .cells = {"!region=2"}});
+        }
 }
 
 /// The pieces of an index as those of one file, its arrays appended raw.

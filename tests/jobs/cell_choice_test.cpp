@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -128,6 +129,27 @@ TEST_P(ChosenCellsOf, AllNumbersAreTheWholeGrid) {
         EXPECT_EQ(std::memcmp(same.positions.data(), whole.positions.data(), whole.positions.bytes()), 0) << all;
         EXPECT_EQ(cells_of(same), cells_of(whole)) << all;
     }
+}
+
+/// Faces that the choice opens are rough: points beside them are no hanging ones.
+TEST(ChosenCells, OpenNoFacesOnWhichPointsHang) {
+    constexpr std::uint64_t side = 16;
+    const test::TemporaryFolder folder;
+    const std::string file = folder.file("grid.vtu");
+    Grid grid = test::made_grid("kuhn", side, {"gyroid"});
+    std::mt19937 random(3);
+    const auto share = [&] { return static_cast<float>(random() % 1000) / 1000; };
+    const auto places = grid.points.as<float>();
+    const auto [lower, upper] = std::ranges::minmax(places);
+    std::vector<float> moved(places.begin(), places.end()), part(grid.cells.count());
+    for (float& place : moved) place += 0.4F * (share() - 0.5F) * (upper - lower) / side;
+    for (float& value : part) value = share();
+    grid.points = Array::own(std::move(moved), 3);
+    grid.cell_fields = {{"part", Array::own(std::move(part))}};
+    ASSERT_TRUE(write_grid(grid, file));
+    Listener listener;
+    ASSERT_TRUE(read_chosen(file, {"part=:0.5"}, listener));
+    EXPECT_EQ(listener.noted.size(), 1U); // how many are chosen
 }
 
 /// Source cells are those of the whole grid, whatever method makes the surface.

@@ -158,7 +158,8 @@ private:
     enum class CellsToRead : std::uint8_t { all, some };
     Result<ReadResult> read_cells(const FieldsToRead& fields, std::size_t step, CellsToRead cells, Caller& caller,
                                   const Run& run) const;
-    Result<ReadResult> finish(ReadResult read, const FieldsToRead& fields, Caller& caller, const Run& run) const;
+    Result<ReadResult> finish(ReadResult read, const FieldsToRead& fields, Caller& caller, const Run& run,
+                              bool may_hang = true) const;
     Result<ReadResult> read_unclosed(const FieldsToRead& fields, std::size_t step, CellsToRead cells, Caller& caller,
                                      const Run& run) const;
     Result<void> open_made(const GridOptions& options);
@@ -166,7 +167,11 @@ private:
     Result<void> take_choices();
     bool names_blocks(const FieldsToRead& fields) const;
     Result<void> add_blocks(ReadResult& read, const FieldsToRead& fields) const;
-    Result<void> choose(ReadResult& read, Caller& caller) const;
+    bool hangs_as_a_whole(const Grid& grid, const Run& run) const;
+    Result<bool> choose(ReadResult& read, Caller* caller, const Run& run) const;
+    void note_choice(std::uint64_t count, std::uint64_t of, Caller& caller) const;
+    FieldsToRead and_of_choices(FieldsToRead fields) const;
+    bool chooses_while_reading(const FieldsToRead& fields, const ReadActiveCells& active) const;
     Result<ReadResult> read_file(const FieldsToRead& fields, std::size_t step, ReadOptions options,
                                  const Run& run) const;
 

@@ -135,7 +135,8 @@ public:
         out_.number<std::uint8_t>(all_cells);
     }
     void describe(ReadResult& result) {
-        [[maybe_unused]] const auto& [whole, info, step, cells_in_file, bounds, notes, cell_numbers] = result;
+        [[maybe_unused]] const auto& [whole, info, step, cells_in_file, bounds, notes, cell_numbers, chosen_cells] =
+            result;
         [[maybe_unused]] const auto& [points, cells, point_fields, cell_fields, point_numbers, patches] = result.grid;
         [[maybe_unused]] const auto& [connectivity, offsets, types, uniform_type, faces, face_offsets] =
             result.grid.cells;
@@ -145,6 +146,8 @@ public:
         out_.number<std::uint64_t>(result.cells_in_file.value_or(0));
         out_.number<std::uint8_t>(result.bounds.has_value());
         for (const double bound : result.bounds.value_or(std::array<double, 6>{})) out_.number(bound);
+        out_.number<std::uint8_t>(result.chosen_cells.has_value());
+        out_.number<std::uint64_t>(result.chosen_cells.value_or(0));
         out_.list(result.notes, [&](const std::string& note) { out_.text(note); });
         Grid& grid = result.grid;
         array(grid.points);
@@ -283,6 +286,9 @@ public:
         std::array<double, 6> bounds;
         for (double& bound : bounds) bound = in_.number<double>();
         if (has_bounds) result.bounds = bounds;
+        const bool has_chosen = in_.number<std::uint8_t>() != 0;
+        const auto chosen = in_.number<std::uint64_t>();
+        if (has_chosen) result.chosen_cells = chosen;
         in_.list([&] { result.notes.push_back(in_.text()); });
         Grid& grid = result.grid;
         grid.points = array();

@@ -14,7 +14,7 @@
 namespace isotet::io::confined {
 namespace {
 
-constexpr std::uint32_t request_version = 0x6973000b;
+constexpr std::uint32_t request_version = 0x6973000c;
 
 using Names = std::optional<std::vector<std::string>>;
 
@@ -117,6 +117,13 @@ void encode_active(Encoder& out, const std::optional<ReadActiveCells>& active) {
     encode_shape(out, active->shape);
     encode_boundary(out, active->boundary);
     encode_choice(out, levels);
+    out.list(active->conditions, [&](const CellCondition& condition) {
+        out.text(condition.field);
+        out.list(condition.ranges, [&](const std::array<double, 2>& range) {
+            for (const double end : range) out.number(end);
+        });
+        out.number<std::uint8_t>(condition.others);
+    });
 }
 
 std::optional<ReadActiveCells> decode_active(Decoder& in) {
@@ -132,6 +139,14 @@ std::optional<ReadActiveCells> decode_active(Decoder& in) {
     active.shape = decode_shape(in);
     active.boundary = decode_boundary(in);
     decode_choice(in, active);
+    in.list([&] {
+        CellCondition& condition = active.conditions.emplace_back();
+        condition.field = in.text();
+        in.list([&] {
+            for (double& end : condition.ranges.emplace_back()) end = in.number<double>();
+        });
+        condition.others = in.number<std::uint8_t>() != 0;
+    });
     return active;
 }
 

@@ -19,6 +19,7 @@
 #include "io/pieces/active_filter.hpp"
 #include "io/pieces/active_pass.hpp"
 #include "io/pieces/boundary_pass.hpp"
+#include "io/pieces/join/chosen_cells.hpp"
 #include "io/pieces/join/joined_fields.hpp"
 #include "io/pieces/join/ordered_pieces.hpp"
 #include "io/pieces/survey_unread.hpp"
@@ -62,18 +63,25 @@ public:
 
     void take(std::uint64_t first, std::span<const std::uint8_t> types, const Array& corners) override {
         if (also_) also_->take(first, types, corners);
+        if (chosen_) return chosen_->each_run(first, types, corners, [&](auto... some) { add(some...); });
+        add(first, types, corners);
+    }
+    void add(std::uint64_t first, std::span<const std::uint8_t> types, const Array& corners) {
         if (!types.empty()) return filter_.add_cells(first, types, corners);
         filter_.add(first * corners_of_type_, corners);
     }
     void set_type(CellType type) { corners_of_type_ = core::fixed_corners_of(static_cast<std::uint8_t>(type)); }
     void set_also(CellTaker* other) { also_ = other; }
+    void set_chosen(const ChosenCells* chosen) { chosen_ = chosen; }
+    bool is_chosen() const { return chosen_ != nullptr; } ///< not all are
 
     ActiveCellFilter& filter() { return filter_; }
 
 private:
     ActiveCellFilter filter_;
     std::uint64_t corners_of_type_ = 0;
-    CellTaker* also_ = nullptr; ///< gets all cells, too
+    CellTaker* also_ = nullptr;           ///< gets all cells, too
+    const ChosenCells* chosen_ = nullptr; ///< null: all are
 };
 
 /// Hands on all cells.
@@ -141,8 +149,21 @@ private:
 
     /// Whether it must be known which cells were kept.
     bool wants_numbers() const {
-        return options_.active_cells->options.extract.source_cells ||
+        return chooses() || options_.active_cells->options.extract.source_cells ||
                std::ranges::any_of(all_.pieces, [](const Piece& piece) { return !piece.unread_fields.empty(); });
+    }
+
+    bool chooses() const { return !counted_ && !options_.active_cells->conditions.empty(); }
+
+    /// False where all cells are needed.
+    Result<bool> find_chosen() {
+        if (!chooses() || chosen_) return true;
+        const ReadActiveCells& asked = *options_.active_cells;
+        if (asked.bounds || asked.boundary || asked.choose) return false;
+        auto found = ChosenCells::find(all_, asked.conditions, first_cells(), type_);
+        if (!found) return found.error();
+        if (*found) chosen_.emplace(**std::move(found));
+        return chosen_.has_value();
     }
 
     /// What the cells go by for; null where all are needed.
@@ -152,6 +173,7 @@ private:
         if (!filter) return nullptr;
         auto taker = std::make_unique<ActiveTaker>(*std::move(filter));
         if (type_) taker->set_type(*type_);
+        if (chosen_ && !chosen_->are_all()) taker->set_chosen(&*chosen_);
         return taker;
     }
 
@@ -188,10 +210,21 @@ private:
         ReadResult result = begun_;
         result.grid.points = piece.grid.points;
         result.grid.point_fields = piece.grid.point_fields;
-        auto filter = active_filter(result.grid, type_, options_, wants_numbers(), isovalues_);
-        if (!filter) return std::optional<ReadResult>();
+        const auto may_choose = find_chosen();
+        if (!may_choose) return may_choose.error();
+        if (!*may_choose) return std::optional<ReadResult>();
+        if (chosen_ && !chosen_->are_all()) {
+            chosen_->note_points(piece.grid.points.tuples());
+            if (auto passed = pass_whole(*piece.unread, *chosen_); !passed) return passed.error();
+            if (!chosen_->leave_values(result.grid)) return std::optional<ReadResult>();
+        }
+        auto taker = make_taker(result.grid);
+        if (!taker) return std::optional<ReadResult>();
+        auto& active = static_cast<ActiveTaker&>(*taker);
+        ActiveCellFilter* const filter = &active.filter();
+        const bool cuts = !type_ || active.is_chosen(); // into whole cells
         WholeCells whole(places, [&](std::uint64_t first, std::uint64_t count, const Array& corners) {
-            filter->add_cells(first, places.types(first, count), corners);
+            active.take(first, type_ ? std::span<const std::uint8_t>() : places.types(first, count), corners);
         });
         if (options_.active_cells->bounds) used_.assign(piece.grid.points.tuples(), PointUse::none);
         std::optional<BoundaryPass> boundary;
@@ -203,7 +236,7 @@ private:
         do {
             const auto done = piece.unread->each_block([&](std::uint64_t first, const Array& corners) {
                 if (progress_.cancelled()) return;
-                type_ ? filter->add(first, corners) : whole.add(first, corners);
+                cuts ? whole.add(first, corners) : filter->add(first, corners);
                 if (is_first && !used_.empty()) mark_corners(corners);
                 if (is_first && boundary) boundary->add(first, corners);
             });
@@ -230,6 +263,21 @@ private:
         });
     }
 
+    /// Hands whole cells of a piece alone to a taker.
+    Result<void> pass_whole(const CellSource& cells, CellTaker& taker) {
+        const CellPlaces& places = cells.places();
+        WholeCells whole(places, [&](std::uint64_t first, std::uint64_t count, const Array& corners) {
+            taker.take(first, type_ ? std::span<const std::uint8_t>() : places.types(first, count), corners);
+        });
+        const auto passed = cells.each_block([&](std::uint64_t first, const Array& corners) {
+            if (!progress_.cancelled()) whole.add(first, corners);
+        });
+        if (!passed) return passed;
+        if (progress_.cancelled()) return Error{ErrorCode::cancelled, "choosing cells was cancelled"};
+        whole.finish();
+        return {};
+    }
+
     /// Nothing where cells are broken, which is told when all are there, or may have hanging points.
     /// `pass_again`   hands all cells to a CellsAround
     template <class PassAgain>
@@ -237,7 +285,7 @@ private:
                                                  const PassAgain& pass_again) {
         auto cells = filter.finish();
         if (!cells && cells.error().code != ErrorCode::invalid_data) return cells.error();
-        if (!cells) return std::optional<ReadResult>();
+        if (!cells || (chosen_ && cells->count() == 0)) return std::optional<ReadResult>();
         result.grid.cells = *std::move(cells);
         const Result<bool> hang = may_have_hanging_points(result.grid, pass_again);
         if (!hang && hang.error().code != ErrorCode::invalid_data) return hang.error();
@@ -245,6 +293,7 @@ private:
         if (wants_numbers()) {
             const Array all = filter.numbers(); // empty where there is no cell
             const auto numbers = all.empty() ? std::span<const std::uint64_t>() : all.as<std::uint64_t>();
+            if (chosen_) result.chosen_cells = chosen_->count();
             const auto read = read_fields(numbers, result);
             if (!read) return read.error();
             if (!*read) return std::optional<ReadResult>();
@@ -381,6 +430,8 @@ private:
         const std::vector<LeftOut> fields_left_out(first_left_out, result.info.left_out.end());
         result.info.left_out.resize(left_out);
 
+        if (auto done = leave_chosen(*joined, result.grid, again); !done) return done.error();
+        if (needs_all_ || again) return std::optional<ReadResult>();
         auto taker = make_taker(result.grid);
         if (!taker) needs_all_ = true;
         if (needs_all_) return std::optional<ReadResult>();
@@ -408,7 +459,7 @@ private:
         };
         dropped_.clear();
         if (!marks->empty()) { // cells were kept that may be those of other pieces
-            if (counted_) needs_all_ = true;
+            if (counted_ || chosen_) needs_all_ = true;
             if (needs_all_) return std::optional<ReadResult>();
             taker.reset(); // its memory is needed again
             taker = make_taker(result.grid);
@@ -457,6 +508,18 @@ private:
         for (const LeftOut& item : fields_left_out) leave_out((*found)->info, item); // behind those of cells
         std::ranges::move(of_fields, std::back_inserter((*found)->notes));
         return found;
+    }
+
+    /// Finds the chosen cells, and leaves values at their points. Sets needs_all_ where all are needed.
+    Result<void> leave_chosen(const JoinedNumbers& joined, Grid& grid, bool& again) {
+        const auto found = find_chosen();
+        if (!found) return found.error();
+        if (!*found) needs_all_ = true;
+        if (needs_all_ || !chosen_ || chosen_->are_all()) return {};
+        chosen_->note_points(joined.numbers.count);
+        if (auto done = pass_all(joined.numbers, targets_for(*chosen_), again); !done) return done;
+        if (!needs_all_ && !again && !chosen_->leave_values(grid)) needs_all_ = true;
+        return {};
     }
 
     /// Whether the taker needs all cells once more.
@@ -621,6 +684,7 @@ private:
     std::optional<CellType> type_;      ///< of all
     std::vector<std::uint64_t> points_; ///< of each piece
     std::vector<std::vector<std::uint64_t>> kept_before_;
+    std::optional<ChosenCells> chosen_;  ///< where some are
     std::vector<double> isovalues_;      ///< for which cells are kept
     std::vector<PointUse> used_;         ///< of the joined points, where their bounds are asked for
     std::vector<std::uint64_t> dropped_; ///< numbers of cells that earlier pieces have
