@@ -43,7 +43,14 @@ Result<ExitCode> say(const std::string& text) {
     return ExitCode::done;
 }
 
-Result<ExitCode> run_command(const CommandLine& line, const OptionTree& tree) {
+Result<ExitCode> run_words(std::vector<std::string> words) {
+    CommandLine line;
+    OptionTree tree(line);
+    if (Result<void> completed = complete_bare_file(words, tree); !completed) return completed.error();
+    if (Result<void> parsed = tree.parse(words); !parsed) return parsed.error();
+    for (GridOptions* grid : {&line.info.grid, &line.extract.grid, &line.slice.grid, &line.clip.grid, &line.render.grid,
+                              &line.view.grid, &line.exported.grid, &line.bench.grid, &line.pack.grid})
+        grid->other_inputs = line.number_files;
     if (line.help) return say(help_text(tree.describe(line.command), tree.describe_all(), *line.help));
     if (line.command == "info") return run_info(line.info);
     if (line.command == "extract") return run_extract(line.extract);
@@ -69,21 +76,10 @@ Result<ExitCode> run_command(const CommandLine& line, const OptionTree& tree) {
     return usage_error("no command and no file was given; isotet --help lists the commands");
 }
 
-Result<ExitCode> parse_and_run(std::vector<std::string> words) {
-    CommandLine line;
-    OptionTree tree(line);
-    if (Result<void> completed = complete_bare_file(words, tree); !completed) return completed.error();
-    if (Result<void> parsed = tree.parse(words); !parsed) return parsed.error();
-    for (GridOptions* grid : {&line.info.grid, &line.extract.grid, &line.slice.grid, &line.clip.grid, &line.render.grid,
-                              &line.view.grid, &line.exported.grid, &line.bench.grid, &line.pack.grid})
-        grid->other_inputs = line.number_files;
-    return run_command(line, tree);
-}
-
 } // namespace
 
 ExitCode run_program(std::vector<std::string> words) {
-    const Result<ExitCode> result = parse_and_run(std::move(words));
+    const Result<ExitCode> result = run_words(std::move(words));
     if (result) return *result;
     // Whatever error an operation returned when it was stopped, Ctrl-C was the cause.
     if (stop_requested || result.error().code == ErrorCode::cancelled) {

@@ -74,12 +74,15 @@ std::shared_ptr<const Engine> api::engine_in_memory(std::string_view name, Extra
 }
 
 std::shared_ptr<const Engine> cpu_engine() {
-    static const auto engine = api::engine_in_memory("cpu", extract, extract_direct);
+    using enum api::Kernels;
+    static const auto engine = api::engine_in_memory("cpu", api::extract_by<cpu>, api::extract_direct_by<cpu>);
     return engine;
 }
 
 std::shared_ptr<const Engine> reference_engine() {
-    static const auto engine = api::engine_in_memory("reference", extract_by_reference, extract_direct_by_reference);
+    using enum api::Kernels;
+    static const auto engine =
+        api::engine_in_memory("reference", api::extract_by<reference>, api::extract_direct_by<reference>);
     return engine;
 }
 

@@ -5,6 +5,7 @@
 #include <isotet/extract.hpp>
 
 #include "api/carried.hpp"
+#include "api/engines.hpp"
 #include "api/finish.hpp"
 #include "api/fits.hpp"
 #include "api/ties.hpp"
@@ -22,9 +23,12 @@ namespace isotet {
 
 namespace {
 
-template <class Real>
+using api::Kernels;
+
+template <class Real, Kernels kernels>
 Result<std::vector<Extraction>> extract_as(const core::Packed& packed, std::span<const double> isovalues,
-                                           const ExtractOptions& options, bool reference, const Progress& progress) {
+                                           const ExtractOptions& options, const Progress& progress) {
+    constexpr bool reference = kernels == Kernels::reference;
     ops::Request<Real> request;
     for (const double isovalue : isovalues)
         request.isovalues.push_back(core::store_isovalue<Real>(isovalue, packed.storage));
@@ -50,7 +54,8 @@ Result<std::vector<Extraction>> extract_as(const core::Packed& packed, std::span
     if (options.sink) sink.emplace(options.sink);
     const core::ArraySlots slots = api::slots_of(options, sink ? &*sink : nullptr);
     request.slots = api::slots_for_engine<Real>(slots, placement, options, storages);
-    auto raw = reference ? reference::extract(packed, request, progress) : cpu::extract(packed, request, progress);
+    auto raw =
+        reference ? isotet::reference::extract(packed, request, progress) : cpu::extract(packed, request, progress);
     if (!raw) return std::move(raw).error();
     progress("extract", 0.8);
 
@@ -76,15 +81,18 @@ Result<std::vector<Extraction>> extract_as(const core::Packed& packed, std::span
     return out;
 }
 
-Result<std::vector<Extraction>> extract(const PackedGrid& packed, std::span<const double> isovalues,
-                                        const ExtractOptions& options, bool reference, const Run& run) {
+} // namespace
+
+template <Kernels kernels>
+Result<std::vector<Extraction>> api::extract_by(const PackedGrid& packed, std::span<const double> isovalues,
+                                                const ExtractOptions& options, const Run& run) {
     return core::carry_out("extraction", run, [&](const Progress& progress) -> Result<std::vector<Extraction>> {
         if (auto ok = api::check_isovalues(isovalues); !ok) return ok.error();
         if (auto ok = api::check_fit(options, packed.data()); !ok) return ok.error();
         std::shared_ptr<const core::Packed> data = packed.shared_data();
         ExtractOptions all = options;
         // How fields of the user are stored depends on their values at all points of the packed grid.
-        if (reference || (data->residency && !options.point_fields.empty())) {
+        if (kernels == Kernels::reference || (data->residency && !options.point_fields.empty())) {
             const auto whole = core::whole_of(data, progress);
             if (!whole) return whole.error();
             data = *whole;
@@ -92,16 +100,19 @@ Result<std::vector<Extraction>> extract(const PackedGrid& packed, std::span<cons
             if (!unpacked) return unpacked.error();
             all = *std::move(unpacked);
         }
-        return data->single() ? extract_as<float>(*data, isovalues, all, reference, progress)
-                              : extract_as<double>(*data, isovalues, all, reference, progress);
+        return data->single() ? extract_as<float, kernels>(*data, isovalues, all, progress)
+                              : extract_as<double, kernels>(*data, isovalues, all, progress);
     });
 }
 
-} // namespace
+template Result<std::vector<Extraction>> api::extract_by<Kernels::cpu>(const PackedGrid&, std::span<const double>,
+                                                                       const ExtractOptions&, const Run&);
+template Result<std::vector<Extraction>> api::extract_by<Kernels::reference>(const PackedGrid&, std::span<const double>,
+                                                                             const ExtractOptions&, const Run&);
 
 Result<std::vector<Extraction>> extract(const PackedGrid& packed, std::span<const double> isovalues,
                                         const ExtractOptions& options, const Run& run) {
-    return extract(packed, isovalues, options, false, run);
+    return api::extract_by<Kernels::cpu>(packed, isovalues, options, run);
 }
 
 Result<Extraction> extract(const PackedGrid& packed, double isovalue, const ExtractOptions& options, const Run& run) {
@@ -112,7 +123,7 @@ Result<Extraction> extract(const PackedGrid& packed, double isovalue, const Extr
 
 Result<std::vector<Extraction>> extract_by_reference(const PackedGrid& packed, std::span<const double> isovalues,
                                                      const ExtractOptions& options, const Run& run) {
-    return extract(packed, isovalues, options, true, run);
+    return api::extract_by<Kernels::reference>(packed, isovalues, options, run);
 }
 
 } // namespace isotet

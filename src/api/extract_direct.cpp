@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "api/active_cells.hpp"
+#include "api/engines.hpp"
 #include "api/finish.hpp"
 #include "base/array_slot.hpp"
 #include "base/carry_out.hpp"
@@ -63,9 +64,11 @@ Array user_ends(const Array& ends, const core::Buffer<std::uint64_t>& original) 
     return std::move(out).to_array(2);
 }
 
-template <class Real>
+using api::Kernels;
+
+template <class Real, Kernels kernels>
 Result<DirectExtraction> extract_as(const ops::DirectInput& input, const core::Buffer<std::uint64_t>& original,
-                                    std::span<const double> isovalues, const DirectOptions& direct, bool reference,
+                                    std::span<const double> isovalues, const DirectOptions& direct,
                                     const Progress& progress) {
     const ExtractOptions& options = direct.extract;
     ops::DirectRequest request;
@@ -80,8 +83,8 @@ Result<DirectExtraction> extract_as(const ops::DirectInput& input, const core::B
     if (options.sink) sink.emplace(options.sink);
     const core::ArraySlots slots = api::slots_of(options, sink ? &*sink : nullptr);
     request.slots = api::slots_for_engine<Real>(slots, {{}, input.grid.points.type()}, options, {});
-    auto result = reference ? reference::extract_direct<Real>(input, request, progress)
-                            : cpu::extract_direct<Real>(input, request, progress);
+    auto result = kernels == Kernels::reference ? reference::extract_direct<Real>(input, request, progress)
+                                                : cpu::extract_direct<Real>(input, request, progress);
     if (!result) return std::move(result).error();
     progress("extract", 0.8);
 
@@ -111,8 +114,12 @@ Result<DirectExtraction> extract_as(const ops::DirectInput& input, const core::B
     return out;
 }
 
-Result<DirectExtraction> extract_direct(const Grid& grid, const PointField& field, std::span<const double> isovalues,
-                                        const DirectOptions& options, bool reference, const Run& run) {
+} // namespace
+
+template <Kernels kernels>
+Result<DirectExtraction> api::extract_direct_by(const Grid& grid, const PointField& field,
+                                                std::span<const double> isovalues, const DirectOptions& options,
+                                                const Run& run) {
     return core::carry_out("extraction", run, [&](const Progress& progress) -> Result<DirectExtraction> {
         if (auto ok = api::check_isovalues(isovalues); !ok) return ok.error();
         const auto cells = core::CellReader::open(grid);
@@ -133,12 +140,17 @@ Result<DirectExtraction> extract_direct(const Grid& grid, const PointField& fiel
         const ops::DirectInput input{arrays->grid, *reader, arrays->field, arrays->carried,
                                      options.frame ? &*options.frame : nullptr};
         return options.precision == Precision::float32
-                   ? extract_as<float>(input, arrays->original, isovalues, options, reference, progress)
-                   : extract_as<double>(input, arrays->original, isovalues, options, reference, progress);
+                   ? extract_as<float, kernels>(input, arrays->original, isovalues, options, progress)
+                   : extract_as<double, kernels>(input, arrays->original, isovalues, options, progress);
     });
 }
 
-} // namespace
+template Result<DirectExtraction> api::extract_direct_by<Kernels::cpu>(const Grid&, const PointField&,
+                                                                       std::span<const double>, const DirectOptions&,
+                                                                       const Run&);
+template Result<DirectExtraction> api::extract_direct_by<Kernels::reference>(const Grid&, const PointField&,
+                                                                             std::span<const double>,
+                                                                             const DirectOptions&, const Run&);
 
 Result<void> api::check_point_fields(std::size_t points, const PointField& field, std::span<const Field> carried) {
     if (field.values.components() != 1 && !field.values.empty())
@@ -156,13 +168,13 @@ Result<void> api::check_point_fields(std::size_t points, const PointField& field
 
 Result<DirectExtraction> extract_direct(const Grid& grid, const PointField& field, std::span<const double> isovalues,
                                         const DirectOptions& options, const Run& run) {
-    return extract_direct(grid, field, isovalues, options, false, run);
+    return api::extract_direct_by<Kernels::cpu>(grid, field, isovalues, options, run);
 }
 
 Result<DirectExtraction> extract_direct_by_reference(const Grid& grid, const PointField& field,
                                                      std::span<const double> isovalues, const DirectOptions& options,
                                                      const Run& run) {
-    return extract_direct(grid, field, isovalues, options, true, run);
+    return api::extract_direct_by<Kernels::reference>(grid, field, isovalues, options, run);
 }
 
 } // namespace isotet

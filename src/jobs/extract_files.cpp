@@ -83,7 +83,6 @@ private:
     } ///< of the way to the next step
     Result<PackedGrid> packed_grid(const std::string& field, std::size_t step) const;
     bool is_packed_at(const std::string& field, std::size_t step) const;
-    Result<void> run_step(std::size_t step);
 
     ExtractJob job_; ///< with the field that was chosen where none is named
     Caller& caller_;
@@ -831,30 +830,28 @@ void ExtractRun::note_what_steps_miss() {
                                  not_carried_.size() == 1 ? "it" : "them"));
 }
 
-/// A step, and what is wanted between it and the next.
-Result<void> ExtractRun::run_step(std::size_t step) {
-    const std::uint64_t last = step == plan_.steps.back() ? 0 : job_.interpolate;
-    for (between_ = 0; between_ <= last; ++between_) {
-        if (caller_.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
-        const Result<bool> loaded = packed_ ? load_packed(step) : load(step);
-        if (!loaded && between_ > 0) break; // the next step tells of itself
-        if (!loaded) {
-            return keep_broken(step, loaded.error(), plan_.steps.size(), numbers_.broken_steps);
-        }
-        if (!*loaded) {
-            if (between_ == 0) skipped_.push_back(step);
-            break;
-        }
-        if (Result<void> extracted = extract_step(step); !extracted) return extracted;
-    }
-    between_ = 0;
-    return {};
-}
-
+/// Each step, and what is wanted between it and the next.
 Result<void> ExtractRun::run() {
     if (Result<void> opened = open(); !opened) return opened;
-    for (const std::size_t step : plan_.steps)
-        if (Result<void> done = run_step(step); !done) return done;
+    for (const std::size_t step : plan_.steps) {
+        const std::uint64_t last = step == plan_.steps.back() ? 0 : job_.interpolate;
+        for (between_ = 0; between_ <= last; ++between_) {
+            if (caller_.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
+            const Result<bool> loaded = packed_ ? load_packed(step) : load(step);
+            if (!loaded && between_ > 0) break; // the next step tells of itself
+            if (!loaded) {
+                auto kept = keep_broken(step, loaded.error(), plan_.steps.size(), numbers_.broken_steps);
+                if (!kept) return kept;
+                break;
+            }
+            if (!*loaded) {
+                if (between_ == 0) skipped_.push_back(step);
+                break;
+            }
+            if (Result<void> extracted = extract_step(step); !extracted) return extracted;
+        }
+        between_ = 0;
+    }
     if (skipped_.size() + numbers_.broken_steps.size() == plan_.steps.size())
         return numbers_.broken_steps.empty() ? source_->no_such_field(plan_.field.name)
                                              : numbers_.broken_steps.front().error;
