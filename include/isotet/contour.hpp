@@ -38,11 +38,12 @@ ISOTET_API std::string_view name_of(Method method) noexcept;
 inline constexpr std::uint64_t surfaces_that_pay_for_packing = 32;
 inline constexpr std::uint64_t surfaces_with_gradients_that_pay_for_packing = 4;
 
-/// The rule: what is taken where nothing else is asked for. Always the same for the same arguments.
-constexpr Method method_for(std::uint64_t surfaces, bool gradient_normals) noexcept {
+/// What was asked for, else by the rule. Always the same for the same arguments.
+constexpr Method method_for(std::uint64_t surfaces, bool gradient_normals,
+                            std::optional<Method> asked_for = {}) noexcept {
     const std::uint64_t pays =
         gradient_normals ? surfaces_with_gradients_that_pay_for_packing : surfaces_that_pay_for_packing;
-    return surfaces < pays ? Method::direct : Method::clusters;
+    return asked_for.value_or(surfaces < pays ? Method::direct : Method::clusters);
 }
 
 /// A few of a grid's cells, to tell beforehand how large surfaces will be.

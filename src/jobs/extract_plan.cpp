@@ -458,8 +458,7 @@ Estimate predict(const ExtractJob& job, const ExtractPlan& plan, const FieldSamp
     work.gradients = job.normals == Normals::gradient;
     work.find_range = !names_isovalues(job) || job.levels > 0;
     work.triangles = all / static_cast<double>(isovalues.size());
-    const Method method = job.method.value_or(method_for(isovalues.size() * plan.steps.size(), work.gradients));
-    return estimate(method, work);
+    return estimate(method_for(isovalues.size() * plan.steps.size(), work.gradients, job.method), work);
 }
 
 std::vector<std::string> with_others(const ExtractJob& job, const std::string& output) {

@@ -54,7 +54,7 @@ Result<void> IsosurfaceScene::Data::start(IsosurfaceOptions wanted, const Run& r
     const bool in_memory = // surfaces are worked on
         !look.clips.empty() || look.shade_by == ShadeBy::vertices || draws_surface_edges() || look.keep;
     const bool card = device && device->info().kind != DeviceKind::software &&
-                      options.method.value_or(method_for(options.surfaces, true)) == Method::clusters;
+                      method_for(options.surfaces, true, options.method) == Method::clusters;
     const bool use_device =
         !wanted.draw && (required || (card && !in_memory && !look.solid && wanted.where == ExtractOn::best));
     if (!use_device && !wanted.draw && !look.volume) options.refine = wanted.refine;

@@ -77,7 +77,7 @@ Result<std::optional<ContourResult>> extract_directly(const ContourInput& input,
 
 bool Contour::can_do_with_active_cells(const ContourOptions& options) {
     const bool gradients = options.normals == Normals::gradient;
-    const Method method = options.method.value_or(method_for(options.surfaces, gradients));
+    const Method method = method_for(options.surfaces, gradients, options.method);
     return !options.expected_isovalues.empty() && options.surfaces > 0 && method == Method::direct && options.engine &&
            options.engine->name() == cpu_engine()->name() && !options.exact_vertices && !options.frame;
 }

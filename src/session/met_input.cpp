@@ -128,7 +128,7 @@ Result<bool> has_points(const Grid& grid, std::span<const std::size_t> points) {
 
 bool MetInput::suits(const ContourInput& input, const ContourOptions& options) {
     const bool gradients = options.normals == Normals::gradient;
-    const Method method = options.method.value_or(method_for(options.surfaces, gradients));
+    const Method method = method_for(options.surfaces, gradients, options.method);
     const auto plain = [](const Field& field) { return keeps_its_scale(field.values); };
     const ScalarType points = input.grid.points.type();
     return !options.expected_isovalues.empty() && options.surfaces > 0 && method == Method::direct &&

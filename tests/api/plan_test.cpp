@@ -72,6 +72,8 @@ TEST(Rule, PacksOnlyWhereManySurfacesPayForIt) {
     EXPECT_EQ(method_for(32, false), Method::clusters);
     EXPECT_EQ(method_for(3, true), Method::direct);
     EXPECT_EQ(method_for(4, true), Method::clusters);
+    EXPECT_EQ(method_for(4, true, Method::direct), Method::direct);
+    EXPECT_EQ(method_for(1, false, Method::clusters), Method::clusters);
 }
 
 Workload workload_of(double surfaces) {
