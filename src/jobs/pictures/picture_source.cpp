@@ -305,20 +305,16 @@ Result<ValueRange> PictureSource::typical_range_of_steps(const PointField& first
     return all;
 }
 
-/// A step that was read ahead, or reads it.
-Result<Grid> PictureSource::read_grid(const FieldsToRead& fields, std::size_t step, Caller& caller) {
-    const bool is_there = ahead_.valid() && ahead_step_ == step && fields == last_read_;
+/// The steps with some fields: mostly those of the step before.
+core::ReadAhead<Grid>& PictureSource::grids(const FieldsToRead& fields, Caller& caller) {
+    if (grids_ && fields == last_read_) return *grids_;
     last_read_ = fields;
-    return is_there ? ahead_.get() : source_->read(fields, step, caller);
-}
-
-void PictureSource::read_ahead(std::size_t step, Caller& caller) {
-    Run run = caller.run();
-    run.progress.report = {}; // the bar is that of the picture
-    ahead_step_ = step;
-    ahead_ = std::async(std::launch::async, [source = *source_, fields = last_read_, step, run, &caller] {
-        return source.read(fields, step, caller, run);
-    });
+    grids_ = std::make_unique<core::ReadAhead<Grid>>(
+        [source = *source_, fields, &caller](std::size_t step, const Run& run) {
+            return source.read(fields, step, caller, run);
+        },
+        caller.run().threads);
+    return *grids_;
 }
 
 /// What is drawn where no field is named: what first_view() says, unless isovalues or colours are asked for.
@@ -379,6 +375,7 @@ std::optional<ContourOptions> PictureSource::options_with_active_cells(std::size
 Result<void> PictureSource::read_cells(const FieldsToRead& fields, std::size_t step,
                                        const std::optional<ReadActiveCells>& active, Contents& contents,
                                        Caller& caller) {
+    core::ReadAhead<Grid>& steps = grids(fields, caller);
     if (active) {
         Result<ReadResult> some = source_->read_active(fields, step, *active, caller);
         if (!some) return some.error();
@@ -409,7 +406,7 @@ Result<void> PictureSource::read_cells(const FieldsToRead& fields, std::size_t s
         contents.grid = *std::move(whole);
         return {};
     }
-    Result<Grid> grid = read_grid(fields, step, caller);
+    Result<Grid> grid = steps.take(step, caller.run());
     if (!grid) return grid.error();
     contents.grid = *std::move(grid);
     contents.cells = contents.grid.cells.count();
@@ -685,7 +682,7 @@ Result<DrawInput> PictureSource::read(std::size_t which, const std::optional<Dev
     input.sweep = job_.sweep;
     const bool is_last = which + 1 == steps();
     if (!is_last && caller.run().threads != 1 && !contents->all_cells && !contents->packed)
-        read_ahead(steps_[which + 1], caller);
+        grids_->read_ahead(steps_[which + 1]);
     if (!is_last && contents->packed && fraction_ == 0) {
         const std::size_t next = steps_[which / each + 1];
         for (const std::string& name : {job_.field.name, job_.color_by, job_.boundary_color_by})

@@ -2,7 +2,6 @@
 // What draw_files() draws: a scene of a surface from a file, or of a grid.
 #pragma once
 
-#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +13,8 @@
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/first_choice.hpp>
 #include <isotet/packed_file.hpp>
+
+#include "base/threads/read_ahead.hpp"
 
 namespace isotet::jobs {
 
@@ -73,8 +74,7 @@ private:
     Result<void> choose_isovalues(const Contents& contents, DrawInput& input, Caller& caller);
     Result<void> widen_range(const std::string& color, Caller& caller);
     Result<ValueRange> typical_range_of_steps(const PointField& first, Caller& caller);
-    Result<Grid> read_grid(const FieldsToRead& fields, std::size_t step, Caller& caller);
-    void read_ahead(std::size_t step, Caller& caller);
+    core::ReadAhead<Grid>& grids(const FieldsToRead& fields, Caller& caller);
     void choose_stretch(const Array& points, Caller& caller);
     /// Takes the grid.
     IsosurfaceOptions scene_options(Contents& contents, const std::vector<double>& isovalues);
@@ -97,9 +97,8 @@ private:
     std::shared_ptr<KnownBoundary> boundary_;             ///< of the last of several steps
     std::shared_ptr<StreamedBoundary> streamed_boundary_; ///< where not all cells are read
     bool needs_all_cells_ = false;                        ///< a step that was to do with some needed all
-    FieldsToRead last_read_;                              ///< of the last step
-    std::future<Result<Grid>> ahead_;                     ///< the next step, with the same fields
-    std::size_t ahead_step_ = 0;
+    std::unique_ptr<core::ReadAhead<Grid>> grids_;        ///< of the steps, with these fields
+    FieldsToRead last_read_;
 };
 
 } // namespace isotet::jobs
