@@ -121,7 +121,7 @@ ISOTET_API std::shared_ptr<KeptFiles> keep_files();
 struct ReadOptions {
     std::string format;                                                ///< empty: by content, then by name
     std::optional<std::vector<std::string>> point_fields, cell_fields; ///< names to read; nothing: all
-    bool skip_missing_fields = false; ///< names that the step does not have are passed over, else they are an error
+    bool skip_missing_fields = false; ///< names the step lacks are passed over, else errors; of other blocks always
     std::optional<std::size_t> step;  ///< index into FileInfo::times; nothing: the first, and of a case of OpenFOAM
                                       ///< inspect() tells the fields of all steps
     bool merge_pieces_by_coordinates = true; ///< join points of different pieces that are one (docs/pieces.md),

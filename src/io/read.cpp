@@ -98,6 +98,7 @@ Result<void> check_names(const std::vector<std::string>& asked, Association asso
             names.push_back(field.name);
             in_file = in_file || field.name == name;
         }
+        if (in_file && !options.blocks.empty()) continue; // it is that of another block
         if (in_file) {
             return Error{ErrorCode::invalid_argument,
                          fmt::format("{} field {} has no values at step {}", adjective(association), in_quotes(name),

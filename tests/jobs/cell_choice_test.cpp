@@ -415,6 +415,36 @@ std::string blocks_of(const test::TemporaryFolder& folder, const std::vector<std
                                           sets + "</vtkMultiBlockDataSet></VTKFile>");
 }
 
+TEST(BlockChoice, PassesOverFieldsThatOtherBlocksHave) {
+    const test::TemporaryFolder folder;
+    Grid solid = layered("kuhn"), fluid = layered("kuhn");
+    const Array values = solid.point_fields.at(0).values;
+    solid.point_fields = {{"heat", values}};
+    solid.cell_fields.clear();
+    fluid.point_fields = {{"u_x", values}, {"u_y", values}, {"u_z", values}};
+    fluid.cell_fields = {{"heat", Array::own(std::vector<float>(fluid.cells.count(), 1))}};
+    written(folder, solid, "solid.vtu");
+    written(folder, fluid, "fluid.vtu");
+    const std::string file = folder.write(
+        "two.vtm", "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\"><vtkMultiBlockDataSet>"
+                   "<DataSet index=\"0\" name=\"solid\" file=\"solid.vtu\"/><DataSet index=\"1\" name=\"fluid\" "
+                   "file=\"fluid.vtu\"/></vtkMultiBlockDataSet></VTKFile>");
+    Listener listener;
+    for (const char* field : {"heat", ""}) {
+        ExtractJob job;
+        job.grid.file = file;
+        job.grid.blocks = {"solid"};
+        job.field.name = field;
+        job.isovalues = {values.at(values.tuples() / 2)};
+        job.out = folder.file("a.vtp");
+        const auto extracted = extract_files(job, listener);
+        ASSERT_TRUE(extracted) << field << ": " << extracted.error().message;
+        EXPECT_EQ(extracted->cells, solid.cells.count());
+        job.field.name = "u_x";
+        EXPECT_EQ(extract_files(job, listener).error().message, "there is no field 'u_x': the grid has 'heat'");
+    }
+}
+
 FieldsToRead with_blocks() { return {std::vector<std::string>{}, std::vector<std::string>{"block"}}; }
 
 /// Corners of all cells of a number, as coordinates of x.

@@ -504,6 +504,13 @@ TEST(ReadGmshPartitions, OfVersion4HaveTheGroupsAndEntitiesThatWereCut) {
                       std::vector<double>(cube_points.begin(), cube_points.begin() + 15));
             ASSERT_EQ(result->info.regions.size(), 1U);
             EXPECT_EQ(result->info.regions[0].name, "ball");
+            ReadOptions chosen;
+            chosen.blocks = {"80"}; // the second group of one of the entities
+            const ReadResult other = io::parse_gmsh(partitioned(version_41, binary), chosen, {}).value();
+            expect_values(other.grid.cell_fields, "gmsh:physical", {80, 8});
+            chosen.blocks = {"ball"};
+            const ReadResult named = io::parse_gmsh(partitioned(version_41, binary), chosen, {}).value();
+            expect_values(named.grid.cell_fields, "gmsh:physical", {8, 8});
         }
 }
 

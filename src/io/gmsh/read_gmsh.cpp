@@ -3,6 +3,7 @@
 #include "io/gmsh/read_gmsh.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <limits>
 #include <map>
 #include <set>
@@ -256,6 +257,19 @@ Result<BoundaryPatches> physical_surfaces(const File& file, const Grid& grid,
     return list.finish();
 }
 
+/// Physical groups of volumes by name or number.
+std::vector<std::int32_t> chosen_groups(const FileInfo& info, const std::vector<std::string>& blocks) {
+    std::vector<std::int32_t> groups;
+    for (const std::string& block : blocks) {
+        std::int32_t number = 0;
+        const auto [end, error] = std::from_chars(block.data(), block.data() + block.size(), number);
+        if (error == std::errc() && end == block.data() + block.size()) groups.push_back(number);
+        for (const RegionName& region : info.regions)
+            if (region.name == block) groups.push_back(static_cast<std::int32_t>(region.number));
+    }
+    return groups;
+}
+
 /// A file of one partition may have a layer of elements of others; old files repeat those that are in several groups.
 Result<ReadResult> without_left_out(ReadResult result, const Mesh& mesh) {
     std::vector<std::uint8_t> left_out = mesh.left_out;
@@ -293,6 +307,7 @@ Result<ReadResult> parse_gmsh(std::string_view bytes, const ReadOptions& options
 
     Wants wants;
     wants.all_groups = !options.blocks.empty();
+    wants.groups = chosen_groups(contents->info, options.blocks);
     wants.physical = contents->tags.physical && wanted(options, Association::cell, physical_name);
     const bool wants_patches = options.patches && contents->tags.physical, wants_physical = wants.physical;
     wants.physical = wants.physical || wants_patches;

@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // $Entities, $PartitionedEntities, $Nodes and $Elements of MSH 4.0 and 4.1, ascii and binary.
+#include <algorithm>
 #include <map>
 #include <utility>
 
@@ -11,20 +12,27 @@ namespace isotet::io::gmsh {
 
 namespace {
 
-/// Dimension and number of an entity -> what its elements have; of the physical groups and partitions the first.
-using Entities = std::map<std::pair<std::int32_t, std::int32_t>, Tags>;
+/// What the elements of an entity have; of the partitions the first.
+struct Entity {
+    Tags tags;
+    std::vector<std::int32_t> other_groups = {}; ///< physical ones, but the first
+};
+
+/// By dimension and number.
+using Entities = std::map<std::pair<std::int32_t, std::int32_t>, Entity>;
 
 constexpr std::int32_t volume = 3; ///< the dimension
 
-/// Reads a count and as many integers; gives the first.
+/// Reads a count and as many integers: the first, and the others where they are wanted.
 template <class Source>
-bool read_list(Source& source, std::int32_t& first) {
+bool read_list(Source& source, std::int32_t& first, std::vector<std::int32_t>* others = nullptr) {
     std::int64_t count = 0;
     if (!source.count(count) || count < 0) return false;
     for (std::int64_t i = 0; i < count; ++i) {
         std::int32_t value = 0;
         if (!source.integer(value)) return false;
         if (i == 0) first = value;
+        else if (others) others->push_back(value);
     }
     return true;
 }
@@ -34,14 +42,18 @@ template <class Source>
 bool read_entity(Source& source, const File& file, std::int32_t dimension, bool partitioned, Entities& entities) {
     std::int32_t number = 0, bound = 0, parent_dimension = 0, parent = 0;
     if (!source.integer(number)) return false;
-    Tags tags;
+    Entity entity;
+    Tags& tags = entity.tags;
     tags.geometrical = number;
     if (partitioned) {
         if (!source.integer(parent_dimension) || !source.integer(parent) || !read_list(source, tags.partition))
             return false;
         if (parent_dimension == dimension) {
             const auto whole = entities.find({dimension, parent});
-            if (whole != entities.end()) tags.physical = whole->second.physical;
+            if (whole != entities.end()) {
+                tags.physical = whole->second.tags.physical;
+                entity.other_groups = whole->second.other_groups;
+            }
             tags.geometrical = parent;
         }
     }
@@ -49,8 +61,10 @@ bool read_entity(Source& source, const File& file, std::int32_t dimension, bool 
     for (int i = 0; i < (dimension == 0 && file.version == Version::v41 ? 3 : 6); ++i) {
         if (!source.real(coordinate)) return false;
     }
-    if (!read_list(source, tags.physical)) return false;
-    entities[{dimension, number}] = tags;
+    std::vector<std::int32_t> groups;
+    if (!read_list(source, tags.physical, &groups)) return false;
+    if (!groups.empty()) entity.other_groups = std::move(groups);
+    entities[{dimension, number}] = std::move(entity);
     return dimension == 0 || read_list(source, bound);
 }
 
@@ -65,7 +79,7 @@ Result<void> read_entities(const Section& section, Source& source, const File& f
             Tags tags;
             tags.left_out = true;
             whole = source.integer(number) && source.integer(tags.partition);
-            entities[{volume, number}] = tags;
+            entities[{volume, number}] = {tags};
         }
         if (!whole) return broken(section, "has no numbers of partitions and ghost entities");
     }
@@ -197,6 +211,16 @@ Result<void> read_nodes_from(const File& file, const Section& section, Source& s
     return finish_section(section, source);
 }
 
+/// With the first of the groups that are chosen, where the entity is in one; else with its first.
+Tags tags_for(const Entity& entity, std::int32_t dimension, const std::vector<std::int32_t>& chosen) {
+    Tags tags = entity.tags;
+    const auto is_chosen = [&](std::int32_t group) { return std::ranges::find(chosen, group) != chosen.end(); };
+    if (dimension != volume || chosen.empty() || is_chosen(tags.physical)) return tags;
+    const auto other = std::ranges::find_if(entity.other_groups, is_chosen);
+    if (other != entity.other_groups.end()) tags.physical = *other;
+    return tags;
+}
+
 template <class Source>
 Result<void> read_elements_from(const File& file, const Section& section, Source& source, const Wants& wants,
                                 const Entities& entities, Mesh& mesh, Pace& pace) {
@@ -218,7 +242,8 @@ Result<void> read_elements_from(const File& file, const Section& section, Source
                                                index + 1, block->count, most));
         }
         const auto entity = entities.find({block->dimension, block->entity});
-        const Tags tags = entity == entities.end() ? Tags{0, block->entity, 0, false} : entity->second;
+        const Entity own = entity == entities.end() ? Entity{{0, block->entity, 0, false}} : entity->second;
+        const Tags tags = tags_for(own, block->dimension, wants.groups);
         for (std::int64_t i = 0; i < block->count; ++i, ++done) {
             std::int64_t number = 0, node = 0;
             bool whole = source.number(number);
@@ -253,9 +278,9 @@ Result<Wants> tags_of_4(const File& file) {
     if (!entities) return entities.error();
     Wants wants;
     wants.geometrical = true;
-    for (const auto& [entity, tags] : *entities) {
-        wants.physical = wants.physical || tags.physical != 0;
-        wants.partition = wants.partition || tags.partition != 0;
+    for (const auto& [numbers, entity] : *entities) {
+        wants.physical = wants.physical || entity.tags.physical != 0;
+        wants.partition = wants.partition || entity.tags.partition != 0;
     }
     return wants;
 }

@@ -72,6 +72,7 @@ struct Wants {
     bool physical = false, geometrical = false, partition = false, element_numbers = false;
     bool element_points = false; ///< in the order of the file
     bool all_groups = false;     ///< elements once for each physical group they are in, where the file has them so
+    std::vector<std::int32_t> groups = {}; ///< that are chosen; none: all
 };
 
 /// Tags of one element, or of the elements of an entity.
