@@ -76,10 +76,10 @@ const std::vector<Quantity>& quantities() {
          {"alpha", "vof", "saturation", "sdf"},
          {"volumefraction", "volfrac", "phasefraction", "levelset", "saturat", "signeddistance"}},
         {{"T", "TEMP", "NDTEMP", "Temp"}, {"temp", "temperature"}, {"temperature"}},
-        {{"c", "C"}, {"conc", "diffused", "species"}, {"concentration", "massfraction", "molefraction"}},
+        {{"c", "C"}, {"conc", "diffused", "species", "salinity"}, {"concentration", "massfraction", "molefraction"}},
         {{"U", "V", "v", "VEL"}, {}, {}, 3},
         {{}, {"vel", "velo", "velocity", "speed", "umag", "vmag"}, {"velocity"}},
-        {{"p", "P", "p_rgh", "PRES", "PRESSURE"}, {"pres", "press", "pressure"}, {"pressure"}},
+        {{"p", "P", "p_rgh", "PRES", "PRESSURE"}, {"pres", "press", "pressure", "head"}, {"pressure"}},
         {{"Vm", "V"}, {"voltage", "potential", "vm"}, {"potential", "electricfield", "magneticfield"}},
         {{"E", "B", "H", "D"}, {"efield", "bfield", "hfield"}, {}, 3},
         {{}, {"mises", "vonmises"}, {"vonmises", "equivalentstress"}},
@@ -102,6 +102,15 @@ bool is_called(const Quantity& quantity, std::string_view name, const std::vecto
            holds_any(joined, quantity.parts);
 }
 
+/// "T" of "T [K]", "p(Pa)" and "U [m/s]".
+std::string_view without_unit(std::string_view name) {
+    const char last = name.empty() ? ' ' : name.back();
+    const std::size_t bracket = last == ']' ? name.rfind('[') : last == ')' ? name.rfind('(') : std::string_view::npos;
+    if (bracket == std::string_view::npos) return name;
+    const std::size_t end = name.find_last_not_of(' ', bracket == 0 ? 0 : bracket - 1);
+    return bracket == 0 || end == std::string_view::npos ? name : name.substr(0, end + 1);
+}
+
 /// "S_aq" and "S_w": saturations.
 bool is_short_saturation(std::string_view name) {
     return name.size() > 2 && name.size() <= 4 && (name[0] == 'S' || name[0] == 's') && name[1] == '_' &&
@@ -110,14 +119,16 @@ bool is_short_saturation(std::string_view name) {
 
 } // namespace
 
-RankedName rank_name(std::string_view name, std::size_t components) {
+RankedName rank_name(std::string_view stored, std::size_t components) {
+    const std::string_view name = without_unit(stored);
     const std::vector<std::string> words = words_of(name);
     std::string joined;
     for (const std::string& word : words) joined += word;
     const std::vector<Quantity>& list = quantities();
     const bool fraction = holds_any(joined, std::array<std::string_view, 2>{"fraction", "levelset"});
     if (!fraction && has_any(words, region_words)) return {NameKind::region};
-    if (!fraction && (has_any(words, bookkeeping_words) || holds_any(joined, bookkeeping_parts)))
+    const bool is_number = joined.starts_with("mach") || joined.starts_with("courant"); // what "number" says here
+    if (!fraction && !is_number && (has_any(words, bookkeeping_words) || holds_any(joined, bookkeeping_parts)))
         return {NameKind::bookkeeping};
     if (has_any(words, derived_words)) return {NameKind::plain};
     if (is_short_saturation(name)) return {NameKind::quantity, 0};

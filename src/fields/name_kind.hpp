@@ -20,6 +20,8 @@ struct RankedName {
     int rank = 0; ///< of quantities: 0 is first
 };
 
+/// A unit in brackets at the end of the name does not count.
+///
 /// `components`  of the field: "u" is a displacement as a vector, and any solution as a scalar
 RankedName rank_name(std::string_view name, std::size_t components);
 

@@ -245,6 +245,19 @@ TEST(FirstView, BearsBrokenCells) {
     EXPECT_EQ(view_of(Grid{}).draw, FirstDraw::boundary);
 }
 
+TEST(FirstCandidates, HaveNamesWithoutTheirUnitsInBrackets) {
+    for (const char* name : {"T [K]", "T (K)", "T [\u00b0C]", "p(Pa)", "Mach Number", "Head [m]", "Salinity"}) {
+        const auto candidates = first_candidates({{name, Association::point, ScalarType::float32, 1}});
+        ASSERT_EQ(candidates.size(), 1u) << name;
+        EXPECT_EQ(candidates[0].reason, FirstReason::name) << name;
+    }
+    for (const char* name : {"[K]", "(x)", "foo [1]"}) {
+        const auto candidates = first_candidates({{name, Association::point, ScalarType::float32, 1}});
+        ASSERT_EQ(candidates.size(), 1u) << name;
+        EXPECT_EQ(candidates[0].reason, FirstReason::variation) << name;
+    }
+}
+
 TEST(FirstCandidates, AreInTheOrderInWhichTheyAreLookedAt) {
     const std::vector<FieldInfo> fields{
         {"foo", Association::point, ScalarType::float32, 1}, {"T", Association::cell, ScalarType::float32, 1},
