@@ -377,6 +377,8 @@ Error GridSource::no_such_field(const std::string& name) const {
     std::vector<std::string> all;
     for (const FieldInfo& field : info_.fields)
         if (std::ranges::find(all, field.name) == all.end()) all.push_back(field.name);
+    if (!options_.blocks.empty() && std::ranges::find(all, name) != all.end())
+        return {ErrorCode::invalid_argument, fmt::format("the field '{}' is in no block that was chosen", name)};
     if (const std::size_t colon = name.rfind(':');
         colon != std::string::npos && std::ranges::find(all, name.substr(0, colon)) != all.end())
         return {ErrorCode::invalid_argument,

@@ -48,6 +48,7 @@ private:
     std::string why_left_out(const FieldInfo& field) const;
     Result<void> take_all_fields();
     Result<void> choose_cell_fields();
+    Result<void> leave_out_fields_of_other_blocks(const Grid& grid);
     Result<void> write_cell_fields(const Grid& grid, std::size_t step);
     std::vector<std::string> packed_names(const std::string& name) const;
     Result<void> pack_step(std::size_t step);
@@ -356,6 +357,21 @@ Result<void> PackRun::write_cell_fields(const Grid& grid, std::size_t step) {
     return {};
 }
 
+/// Of the fields that nobody named.
+Result<void> PackRun::leave_out_fields_of_other_blocks(const Grid& grid) {
+    std::vector<std::string> known{"x", "y", "z"}, left_out;
+    for (const auto* fields : {&grid.point_fields, &grid.cell_fields})
+        for (const Field& field : *fields) known.push_back(field.name);
+    std::erase_if(names_, [&](const std::string& name) {
+        const bool is_there = match_field_name(name, known).has_value();
+        if (!is_there) left_out.push_back(name);
+        return !is_there;
+    });
+    if (names_.empty()) return refusal("no field of the file is in the blocks that were chosen");
+    if (!left_out.empty()) caller_.note(fmt::format("not packed: {}, which other blocks have", quoted_list(left_out)));
+    return {};
+}
+
 Result<void> PackRun::pack_step(std::size_t step) {
     const core::Stopwatch reading;
     caller_.detail(fmt::format("reading step {}", step));
@@ -369,6 +385,8 @@ Result<void> PackRun::pack_step(std::size_t step) {
     add_names(*read.cell, job_.cell_fields);
     const Result<Grid> grid = source_->read(read, step, caller_);
     if (!grid) return grid.error();
+    if (job_.fields.empty() && !job_.grid.blocks.empty())
+        if (auto left = leave_out_fields_of_other_blocks(*grid); !left) return left;
     numbers_.cells = grid->cells.count();
     if (auto enough = check_memory(numbers_.cells, grid->points.tuples()); !enough) return enough;
     numbers_.read_seconds += reading.seconds();

@@ -16,6 +16,7 @@
 #include <isotet/jobs/grid_source.hpp>
 #include <isotet/jobs/look_into.hpp>
 #include <isotet/jobs/pack_file.hpp>
+#include <isotet/packed_file.hpp>
 #include <isotet/read.hpp>
 #include <isotet/write.hpp>
 
@@ -441,8 +442,16 @@ TEST(BlockChoice, PassesOverFieldsThatOtherBlocksHave) {
         ASSERT_TRUE(extracted) << field << ": " << extracted.error().message;
         EXPECT_EQ(extracted->cells, solid.cells.count());
         job.field.name = "u_x";
-        EXPECT_EQ(extract_files(job, listener).error().message, "there is no field 'u_x': the grid has 'heat'");
+        EXPECT_EQ(extract_files(job, listener).error().message, "the field 'u_x' is in no block that was chosen");
     }
+    PackJob pack;
+    pack.grid.file = file;
+    pack.grid.blocks = {"solid"};
+    pack.out = folder.file("solid.isotet");
+    ASSERT_TRUE(pack_file(pack, listener)) << "the other fields are left out";
+    const PackedFile packed = PackedFile::open(pack.out).value();
+    ASSERT_EQ(packed.info().fields.size(), 1u);
+    EXPECT_EQ(packed.info().fields[0].report.name, "heat");
 }
 
 FieldsToRead with_blocks() { return {std::vector<std::string>{}, std::vector<std::string>{"block"}}; }
