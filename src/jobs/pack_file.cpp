@@ -357,7 +357,7 @@ Result<void> PackRun::write_cell_fields(const Grid& grid, std::size_t step) {
     return {};
 }
 
-/// Of the fields that nobody named.
+/// Where no field was named.
 Result<void> PackRun::leave_out_fields_of_other_blocks(const Grid& grid) {
     std::vector<std::string> known{"x", "y", "z"}, left_out;
     for (const auto* fields : {&grid.point_fields, &grid.cell_fields})
