@@ -127,7 +127,7 @@ RankedName rank_name(std::string_view stored, std::size_t components) {
     const std::vector<Quantity>& list = quantities();
     const bool fraction = holds_any(joined, std::array<std::string_view, 2>{"fraction", "levelset"});
     if (!fraction && has_any(words, region_words)) return {NameKind::region};
-    const bool is_number = joined.starts_with("mach") || joined.starts_with("courant"); // what "number" says here
+    const bool is_number = has_any(words, std::array<std::string_view, 2>{"mach", "courant"}); // that has a name
     if (!fraction && !is_number && (has_any(words, bookkeeping_words) || holds_any(joined, bookkeeping_parts)))
         return {NameKind::bookkeeping};
     if (has_any(words, derived_words)) return {NameKind::plain};

@@ -251,6 +251,7 @@ TEST(FirstCandidates, HaveNamesWithoutTheirUnitsInBrackets) {
         ASSERT_EQ(candidates.size(), 1u) << name;
         EXPECT_EQ(candidates[0].reason, FirstReason::name) << name;
     }
+    EXPECT_TRUE(first_candidates({{"machine_id", Association::point, ScalarType::float32, 1}}).empty());
     for (const char* name : {"[K]", "(x)", "foo [1]"}) {
         const auto candidates = first_candidates({{name, Association::point, ScalarType::float32, 1}});
         ASSERT_EQ(candidates.size(), 1u) << name;
