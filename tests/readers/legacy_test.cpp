@@ -569,5 +569,21 @@ TEST(ReadLegacyNotes, NameWhatIsLeftOutAndAskingForItIsAnErrorWithTheReason) {
     EXPECT_EQ(asked.error().message, "point field 'odd' cannot be read: its type 'quad' is not known");
 }
 
+std::string blanked_grid(std::string_view marks) {
+    return fmt::format("# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_GRID\nDIMENSIONS 2 2 3\nBLANKING {}\n"
+                       "POINTS 12 float\n0 0 0 1 0 0 0 1 0 1 1 0 0 0 1 1 0 1 0 1 1 1 1 1 0 0 2 1 0 2 0 1 2 1 1 2\n"
+                       "POINT_DATA 12\nSCALARS f float\nLOOKUP_TABLE default\n0 1 2 3 4 5 6 7 8 9 10 11\n",
+                       marks);
+}
+
+TEST(ReadLegacy, LeavesOutCellsOfBlankedPoints) {
+    const io::Loaded loaded = load(blanked_grid("12 unsigned_char\n1 1 1 1 1 1 1 1 0 1 1 1"));
+    ASSERT_EQ(loaded.pieces.size(), 1U);
+    EXPECT_EQ(loaded.pieces.front().left_out, (std::vector<std::uint8_t>{0, 1}));
+    EXPECT_EQ(loaded.pieces.front().grid.point_fields.size(), 1U);
+    EXPECT_TRUE(load(blanked_grid("12 int\n1 1 1 1 1 1 1 1 1 1 1 1")).pieces.front().left_out.empty());
+    EXPECT_EQ(error_in_legacy(blanked_grid("3 int\n1 1 1")), "BLANKING has 3 marks, but the grid 2 x 2 x 3 points");
+}
+
 } // namespace
 } // namespace isotet::test

@@ -7,9 +7,13 @@
 #include <vtkPointData.h>
 #include <vtkRectilinearGrid.h>
 #include <vtkStructuredGrid.h>
+#include <vtkStructuredGridWriter.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkUnstructuredGrid.h>
 #include <vtkXMLImageDataWriter.h>
 #include <vtkXMLRectilinearGridWriter.h>
 #include <vtkXMLStructuredGridWriter.h>
+#include <vtkXMLUnstructuredGridWriter.h>
 
 #include <isotet/read.hpp>
 
@@ -68,8 +72,7 @@ TEST(ReadStructured, RectilinearGridIsHexahedra) {
     expect_hexahedra(folder.file("a.vtr"));
 }
 
-TEST(ReadStructured, StructuredGridIsHexahedra) {
-    const TemporaryFolder folder;
+vtkNew<vtkStructuredGrid> structured_grid() {
     vtkNew<vtkStructuredGrid> grid;
     grid->SetDimensions(3, 4, 5);
     vtkNew<vtkPoints> points;
@@ -77,8 +80,71 @@ TEST(ReadStructured, StructuredGridIsHexahedra) {
         for (int y = 0; y < 4; ++y)
             for (int x = 0; x < 3; ++x) points->InsertNextPoint(x, y, z);
     grid->SetPoints(points);
+    return grid;
+}
+
+TEST(ReadStructured, StructuredGridIsHexahedra) {
+    const TemporaryFolder folder;
+    const auto grid = structured_grid();
     write<vtkXMLStructuredGridWriter>(grid.Get(), folder.file("a.vts"));
     expect_hexahedra(folder.file("a.vts"));
+}
+
+/// Point 0 is hidden, and one within; others are marked as another piece's, which hides nothing.
+void hide_points(vtkDataSet* data) {
+    vtkNew<vtkUnsignedCharArray> marks;
+    marks->SetName("vtkGhostType");
+    for (int point = 0; point < 60; ++point) marks->InsertNextValue(point == 0 ? 2 : point == 28 ? 3 : point % 2);
+    data->GetPointData()->AddArray(marks);
+}
+
+/// Of 24 cells one has the first point, and eight the other.
+void expect_hidden(const std::string& path, const std::vector<bool>& visible) {
+    SCOPED_TRACE(path);
+    const auto result = read(path);
+    ASSERT_TRUE(result) << result.error().message;
+    std::vector<int> corners;
+    for (int cell = 0; cell < 24; ++cell)
+        if (visible[static_cast<std::size_t>(cell)]) corners.push_back(cell % 2 + 3 * (cell / 2 % 3) + 12 * (cell / 6));
+    ASSERT_EQ(result->grid.cells.count(), corners.size());
+    for (std::size_t i = 0; i < corners.size(); ++i)
+        EXPECT_EQ(result->grid.points.at(static_cast<std::size_t>(result->grid.cells.connectivity.at(8 * i)), 0),
+                  corners[i] % 3);
+    EXPECT_EQ(result->info.fields.size(), 1u);
+    ASSERT_EQ(result->notes.size(), 2u);
+    EXPECT_EQ(result->notes[1], "9 ghost or blanked cells were left out");
+}
+
+TEST(ReadStructured, CellsAtHiddenPointsAreLeftOut) {
+    const TemporaryFolder folder;
+    const auto grid = structured_grid();
+    hide_points(grid);
+    std::vector<bool> visible;
+    for (vtkIdType cell = 0; cell < 24; ++cell) visible.push_back(grid->IsCellVisible(cell) != 0);
+    write<vtkXMLStructuredGridWriter>(grid.Get(), folder.file("a.vts"));
+    expect_hidden(folder.file("a.vts"), visible);
+    write<vtkStructuredGridWriter>(grid.Get(), folder.file("a.vtk"));
+    expect_hidden(folder.file("a.vtk"), visible);
+    vtkNew<vtkImageData> image;
+    image->SetDimensions(3, 4, 5);
+    hide_points(image);
+    write<vtkXMLImageDataWriter>(image.Get(), folder.file("a.vti"));
+    expect_hidden(folder.file("a.vti"), visible);
+}
+
+TEST(ReadStructured, HiddenPointsOfUnstructuredGridsHideNoCells) {
+    const TemporaryFolder folder;
+    vtkNew<vtkUnstructuredGrid> grid;
+    vtkNew<vtkPoints> points;
+    for (int i = 0; i < 60; ++i) points->InsertNextPoint(i % 2, i / 2 % 2, i / 4);
+    grid->SetPoints(points);
+    const vtkIdType corners[] = {0, 1, 2, 4};
+    grid->InsertNextCell(VTK_TETRA, 4, corners);
+    hide_points(grid);
+    write<vtkXMLUnstructuredGridWriter>(grid.Get(), folder.file("a.vtu"));
+    const auto result = read(folder.file("a.vtu"));
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(result->grid.cells.count(), 1u);
 }
 
 } // namespace

@@ -33,9 +33,10 @@ constexpr std::array<std::string_view, 14> data_sections{"point_data",
                                                          "global_ids",
                                                          "pedigree_ids",
                                                          "edge_flags"};
-constexpr std::array<std::string_view, 16> other_sections{
-    "tensors6", "points", "cells",         "cell_types",    "vertices", "lines",        "polygons", "dimensions",
-    "extent",   "origin", "x_coordinates", "y_coordinates", "spacing",  "aspect_ratio", "dataset",  "z_coordinates"};
+constexpr std::array<std::string_view, 17> other_sections{
+    "tensors6", "points",       "cells",   "cell_types",    "vertices",      "lines",
+    "polygons", "dimensions",   "extent",  "origin",        "x_coordinates", "y_coordinates",
+    "spacing",  "aspect_ratio", "dataset", "z_coordinates", "blanking"};
 constexpr std::size_t most_words = 32;  ///< of a line that names an array
 constexpr std::size_t max_faults = 100; ///< each may take a search through the rest of the file
 

@@ -91,6 +91,7 @@ private:
             file_.has_cells = true;
             return read_legacy_cell_types(values_, wants_.geometry, file_);
         }
+        if (keyword == "blanking") return read_blanking();
         if (keyword == "dimensions") return read_dimensions();
         if (keyword == "extent") return read_extent();
         if (keyword == "origin") return read_three(file_.origin, keyword);
@@ -121,6 +122,25 @@ private:
         if (!points) return points.error();
         file_.points = std::move(*points);
         file_.has_points = true;
+        return {};
+    }
+
+    /// Of a structured grid: 0 hides a point.
+    Result<void> read_blanking() {
+        const auto count = values_.read_count("the number of marks");
+        if (!count) return count.error();
+        if (*count != product(file_.dimensions))
+            return invalid_data(fmt::format("BLANKING has {} marks, but the grid {} x {} x {} points", *count,
+                                            file_.dimensions[0], file_.dimensions[1], file_.dimensions[2]));
+        const auto type = values_.read_type();
+        if (!type) return type.error();
+        auto marks = values_.read_values(*type, *count, 1, "BLANKING", wants_.geometry);
+        if (!marks) return marks.error();
+        constexpr std::uint8_t hidden = 2;
+        if (wants_.geometry)
+            file_.point_data.push_back({"vtkGhostType", mapped<std::uint8_t>(*marks, [](auto mark) {
+                                            return mark == 0 ? hidden : std::uint8_t{0};
+                                        })});
         return {};
     }
 

@@ -295,8 +295,9 @@ Result<Loaded> load_legacy(const ByteSource& source, const ReadOptions& options,
         };
     wants.dataset = [&](std::string_view name) { return is_grid(kind = name); };
     wants.field = [&](Association association, std::string_view name) {
-        return wants.geometry && ((association == Association::cell && vtk_xml::is_ghost_array(name)) ||
-                                  (wanted(options, association, name) && !vtk_xml::is_ghost_array(name)));
+        if (!wants.geometry) return false;
+        if (!vtk_xml::is_ghost_array(name)) return wanted(options, association, name);
+        return association == Association::cell || kind != "unstructured_grid";
     };
     auto file = read_legacy_vtk(source, wants, progress);
     if (!kind.empty() && !is_grid(kind))
@@ -328,7 +329,11 @@ Result<Loaded> load_legacy(const ByteSource& source, const ReadOptions& options,
         piece.grid.points = std::move(file->points);
     }
     if (piece.grid.points.empty()) piece.grid.points = Array(ScalarType::float32, nullptr, 0, 3, nullptr);
-    for (Attribute& field : file->point_data) piece.grid.point_fields.push_back({field.name, std::move(field.values)});
+    const auto& [x, y, z] = file->dimensions;
+    for (Attribute& field : file->point_data)
+        if (!vtk_xml::is_ghost_array(field.name))
+            piece.grid.point_fields.push_back({field.name, std::move(field.values)});
+        else if (structured) vtk_xml::mark_around_hidden(field.values, field.name, {x, y, z}, piece.left_out);
     if (!structured)
         if (auto taken = take_cells(source, path, *file, progress, piece); !taken) return taken.error();
     const bool flat = structured && piece.cell_count() == 0; // a line or a point

@@ -151,10 +151,10 @@ Columns columns_of(const Document& document, Association association, const Layo
     return all;
 }
 
-/// Ghost marks decide which cells there are: those of cells must be sound.
-Result<void> check_ghosts(const Columns& columns, Association association) {
+/// Ghost marks that decide which cells there are must be sound.
+Result<void> check_ghosts(const Columns& columns) {
     for (const LeftOut& item : columns.left_out)
-        if (association == Association::cell && is_ghost_array(item.name))
+        if (is_ghost_array(item.name))
             return invalid_data(fmt::format("the array {}: {}", in_quotes(item.name), item.reason));
     return {};
 }
@@ -250,7 +250,8 @@ void add_jobs(const Document& document, Association association, const Layout& l
         Job job{{}, association, &layout, false, false, &column == ids, false, false, {}, {}};
         job.is_ghost = is_ghost_array(column.name);
         job.is_field = !job.is_ghost && io::wanted(wanted.options, association, column.name);
-        job.is_ghost = !of_points && (job.is_ghost || column.name == ghost_rank_name);
+        if (of_points) job.is_ghost = job.is_ghost && wanted.box;
+        else job.is_ghost = job.is_ghost || column.name == ghost_rank_name;
         if (!job.is_field && !job.is_ids && !job.is_ghost) continue;
         job.column = std::move(column);
         jobs.push_back(std::move(job));
@@ -279,10 +280,11 @@ std::uint64_t count_too_large(Document& document, const Job& job, const Progress
 }
 
 /// Puts what was read to its place in the piece.
-void give(Job& job, Piece& piece) {
+void give(Job& job, const Wanted& wanted, Piece& piece) {
     const bool of_points = job.association == Association::point;
     if (job.is_ids) (of_points ? piece.point_ids : piece.cell_ids) = job.values;
-    if (job.is_ghost) mark_left_out(job.values, job.column.name, piece.left_out);
+    if (job.is_ghost && of_points) mark_around_hidden(job.values, job.column.name, *wanted.box, piece.left_out);
+    else if (job.is_ghost) mark_left_out(job.values, job.column.name, piece.left_out);
     if (job.is_field)
         (of_points ? piece.grid.point_fields : piece.grid.cell_fields).push_back({job.column.name, job.values});
 }
@@ -422,7 +424,8 @@ Result<void> announce_fields(Document& document, const Layouts& layouts, const R
     for (const auto& [layout, association] :
          {std::pair(&layouts.points, Association::point), std::pair(&layouts.cells, Association::cell)}) {
         Columns columns = columns_of(document, association, *layout, *step);
-        if (auto sound = check_ghosts(columns, association); !sound) return sound;
+        if (association == Association::cell || document.type != "UnstructuredGrid")
+            if (auto sound = check_ghosts(columns); !sound) return sound;
         for (const Column& column : columns.columns)
             if (!is_ghost_array(column.name))
                 announce(info,
@@ -491,7 +494,7 @@ Result<void> load_fields(Document& document, const Layouts& layouts, const Wante
                 give_later(job, wanted, *later);
                 job.is_field = false;
             }
-            give(job, piece);
+            give(job, wanted, piece);
             continue;
         }
         if (!may_be_left_out(job, *job.error, wanted.options)) return *job.error;

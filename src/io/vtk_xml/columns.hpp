@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -61,12 +63,18 @@ Result<void> announce_fields(Document& document, const Layouts& layouts, const R
 Result<Array> load_points(Document& document, const std::vector<pugi::xml_node>& pieces, const Layout& layout,
                           std::size_t step, const Progress& progress);
 
+/// A grid of so many points along each axis, whose cells are implied.
+struct GridSize {
+    std::uint64_t x = 0, y = 0, z = 0;
+};
+
 /// What of a file becomes a Piece besides points and cells.
 struct Wanted {
     const ReadOptions& options;
     std::size_t step = 0;
-    bool ids = false;      ///< global numbers, to join files by
-    std::string path = {}; ///< where the file can be opened again; empty: nowhere
+    bool ids = false;                 ///< global numbers, to join files by
+    std::string path = {};            ///< where the file can be opened again; empty: nowhere
+    std::optional<GridSize> box = {}; ///< of a structured grid: hidden points take out the cells around them
 };
 
 /// Cell fields that stay in the file.
@@ -87,6 +95,14 @@ inline constexpr std::string_view ghost_rank_name = "ghostRank";
 
 /// Marks the cells that vtkGhostType, vtkGhostLevels or GEOS's ghostRank takes out; empty where there are none.
 ISOTET_API void mark_left_out(const Array& marks, std::string_view name, std::vector<std::uint8_t>& left_out);
+
+/// Marks the cells of a box around the points that vtkGhostType hides. VTK hides none of other grids' cells so.
+ISOTET_API void mark_around_hidden(const Array& marks, std::string_view name, const GridSize& points,
+                                   std::vector<std::uint8_t>& left_out);
+
+/// Marks the cells of a box that have a point marked in `hidden`.
+ISOTET_API void leave_out_around(const GridSize& points, std::span<const std::uint8_t> hidden,
+                                 std::vector<std::uint8_t>& left_out);
 
 /// True for arrays that describe the grid (ghost marks), which are no fields.
 ISOTET_API bool is_ghost_array(std::string_view name);

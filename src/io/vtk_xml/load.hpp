@@ -90,11 +90,6 @@ Result<Piece> load_structured(Document& document, const Wanted& wanted, const Pr
 /// Cost     one byte and one pass for each cell of the box around them
 Result<void> leave_out_overlaps(std::span<Loaded> parts);
 
-/// A grid of so many points along each axis, whose cells are implied.
-struct GridSize {
-    std::uint64_t x = 0, y = 0, z = 0;
-};
-
 /// Points of a box in the order of VTK, x fastest.
 ///
 /// As vtkImageData makes them: matrix (three rows) times the numbers along the axes, counted from `first`, and origin.

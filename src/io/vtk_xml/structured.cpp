@@ -328,6 +328,38 @@ std::string flatness(const GridSize& points) {
     return along.size() == 1 ? fmt::format("a line of {} points", along[0]) : "a single point";
 }
 
+void leave_out_around(const GridSize& points, std::span<const std::uint8_t> hidden,
+                      std::vector<std::uint8_t>& left_out) {
+    if (std::ranges::none_of(hidden, [](std::uint8_t mark) { return mark != 0; })) return;
+    const auto along = [](std::uint64_t count) { return std::max<std::uint64_t>(count - 1, 1); };
+    const std::uint64_t x_cells = along(points.x), y_cells = along(points.y), rows = y_cells * along(points.z);
+    left_out.resize(static_cast<std::size_t>(x_cells * rows));
+    core::parallel_each(static_cast<std::size_t>(rows), 64, [&](std::size_t row) {
+        std::uint8_t* const out = left_out.data() + row * x_cells;
+        const std::uint64_t first_y = row % y_cells, first_z = row / y_cells;
+        for (std::uint64_t z = first_z; z < std::min(first_z + 2, points.z); ++z)
+            for (std::uint64_t y = first_y; y < std::min(first_y + 2, points.y); ++y) {
+                const std::uint8_t* const line = hidden.data() + (z * points.y + y) * points.x;
+                for (std::uint64_t x = 0; x < x_cells; ++x)
+                    out[x] = out[x] != 0 || line[x] != 0 || line[std::min(x + 1, points.x - 1)] != 0;
+            }
+    });
+}
+
+void mark_around_hidden(const Array& marks, std::string_view name, const GridSize& points,
+                        std::vector<std::uint8_t>& left_out) {
+    constexpr int hidden_point = 2;
+    if (name != "vtkGhostType" || cells_in_box(points) == 0) return;
+    std::vector<std::uint8_t> hidden(marks.tuples());
+    marks.visit([&](auto values) {
+        core::parallel_each(hidden.size(), std::size_t{1} << 16, [&](std::size_t point) {
+            const auto value = static_cast<double>(values[point * marks.components()]);
+            hidden[point] = value > 0 && value < 0x1p31 && (static_cast<int>(value) & hidden_point) != 0;
+        });
+    });
+    leave_out_around(points, hidden, left_out);
+}
+
 Result<Layouts> layouts_of_structured(const Document& document) {
     const auto boxes = boxes_of(document);
     if (!boxes) return boxes.error();
@@ -402,7 +434,9 @@ Result<Piece> load_structured(Document& document, const Wanted& wanted, const Pr
     const Layouts layouts{layout_of(*boxes, true), layout_of(*boxes, false)};
     // Fields first: if they are as long as the extent says, the file is as large as the grid.
     Piece piece;
-    if (auto read = load_fields(document, layouts, wanted, progress, loaded, piece); !read) return read.error();
+    Wanted of_box = wanted;
+    of_box.box = size_of_box(boxes->whole);
+    if (auto read = load_fields(document, layouts, of_box, progress, loaded, piece); !read) return read.error();
     Result<Array> places = Array();
     if (document.type == "ImageData") places = image_points(document, boxes->whole);
     else if (document.type == "RectilinearGrid") places = rectilinear_points(document, *boxes, progress);

@@ -275,6 +275,22 @@ TEST_F(ReadVtkhdfParts, ImagesOfOneLayerOfPointsAreQuadrilaterals) {
     EXPECT_EQ(result->grid.cell_fields.at(0).values.at(7), 7);
 }
 
+TEST_F(ReadVtkhdfParts, LeavesOutCellsOfHiddenPointsOfImages) {
+    std::vector<std::uint8_t> marks(45, 1); // of another piece
+    marks[0] = 2;
+    {
+        Hdf5Writer file(folder_.file("a.vtkhdf"));
+        write_image(file, {1, 0, 0, 0, 1, 0, 0, 0, 1});
+        file.data<std::uint8_t>("/VTKHDF/PointData/vtkGhostType", marks, {3, 5, 3});
+        file.data<double>("/VTKHDF/CellData/c", counted(16), {2, 4, 2});
+    }
+    const auto result = read(folder_.file("a.vtkhdf"));
+    ASSERT_TRUE(result) << result.error().message;
+    ASSERT_EQ(result->grid.cells.count(), 15u);
+    EXPECT_EQ(result->grid.cell_fields.at(0).values.at(0), 1);
+    EXPECT_EQ(result->info.fields.size(), 1u);
+}
+
 TEST_F(ReadVtkhdfParts, ReadsTheStepOfAnImageThatIsAskedFor) {
     {
         Hdf5Writer file(folder_.file("a.vtkhdf"));

@@ -71,22 +71,10 @@ void read_block_points(EnsightFile& file, EnsightPart& part, const std::string& 
 
 /// Leaves out the cells that have a blanked node, which is marked 0.
 void blank(EnsightPart& part, const std::vector<std::int32_t>& marks) {
-    if (std::ranges::find(marks, 0) == marks.end()) return;
-    const auto& [nx, ny, nz] = part.size;
-    part.left_out.resize(part.cells);
-    const auto around = [](std::uint64_t node, std::uint64_t points) { // the cells along an axis
-        return std::pair(node > 0 ? node - 1 : 0, std::min(node + 1, cells_along(points)));
-    };
-    for (std::uint64_t node = 0; node < marks.size(); ++node) {
-        if (marks[node] != 0) continue;
-        const auto [x, x_end] = around(node % nx, nx);
-        const auto [y, y_end] = around(node / nx % ny, ny);
-        const auto [z, z_end] = around(node / nx / ny, nz);
-        for (std::uint64_t k = z; k < z_end; ++k)
-            for (std::uint64_t j = y; j < y_end; ++j)
-                for (std::uint64_t i = x; i < x_end; ++i)
-                    part.left_out[(k * cells_along(ny) + j) * cells_along(nx) + i] = 1;
-    }
+    std::vector<std::uint8_t> blanked(marks.size());
+    std::ranges::transform(marks, blanked.begin(), [](std::int32_t mark) { return mark == 0; });
+    const auto& [x, y, z] = part.size;
+    vtk_xml::leave_out_around({x, y, z}, blanked, part.left_out);
 }
 
 } // namespace

@@ -128,7 +128,7 @@ Result<void> HdfAmr::load_fields(std::size_t level, const amr::Level& boxes, Ass
     for (const amr::CellBox& box : boxes.boxes) rows += tuples(box); // the lattice bounds them
     for (const std::string& name : data_sets_of(path_, group(level) + "/" + data_of(association))) {
         const bool ghost = vtk_xml::is_ghost_array(name);
-        if (ghost ? of_points : !wanted(options, association, name)) continue;
+        if (!ghost && !wanted(options, association, name)) continue;
         const std::string full = fmt::format("{}/{}/{}", group(level), data_of(association), name);
         if (const auto shape = rows_.shape(full); !shape || shape->is_single) continue;
         const auto first = place_of_step(level, fmt::format("{}Offsets/{}", data_of(association), name), loaded.step);
@@ -141,9 +141,13 @@ Result<void> HdfAmr::load_fields(std::size_t level, const amr::Level& boxes, Ass
         }
         std::uint64_t place = 0;
         for (std::size_t box = 0; box < pieces.size(); ++box) {
-            const Array part = tuples_of(*values, place, tuples(boxes.boxes[box]));
+            const amr::CellBox& cells = boxes.boxes[box];
+            const Array part = tuples_of(*values, place, tuples(cells));
             place += part.tuples();
-            if (ghost) vtk_xml::mark_left_out(part, name, pieces[box].left_out);
+            if (ghost && of_points)
+                vtk_xml::mark_around_hidden(part, name, {cells.cells(0) + 1, cells.cells(1) + 1, cells.cells(2) + 1},
+                                            pieces[box].left_out);
+            else if (ghost) vtk_xml::mark_left_out(part, name, pieces[box].left_out);
             else (of_points ? pieces[box].grid.point_fields : pieces[box].grid.cell_fields).push_back({name, part});
         }
     }

@@ -59,8 +59,8 @@ Result<Array> HdfImage::read_field(Association association, const std::string& n
         expected.push_back(shape.back());
     }
     if (shape != expected)
-        return Error{ErrorCode::invalid_data,
-                     fmt::format("its shape is not that of the image's {}", association == Association::point ? "points" : "cells")};
+        return Error{ErrorCode::invalid_data, fmt::format("its shape is not that of the image's {}",
+                                                          association == Association::point ? "points" : "cells")};
     if (depth == Depth::description) return Array(described->values.type(), nullptr, 0, components, nullptr);
     if (!is_written(path_, full)) return Error{ErrorCode::invalid_data, "it has values that were never written"};
     Box box{std::vector<std::uint64_t>(shape.size(), 0), std::vector<std::uint64_t>(shape.size(), 1), shape};
@@ -92,9 +92,10 @@ Result<void> HdfImage::load_fields(Association association, const ReadOptions& o
     auto& fields = of_points ? piece.grid.point_fields : piece.grid.cell_fields;
     for (const std::string& name : data_sets_of(path_, group(association))) {
         const bool is_ghost = vtk_xml::is_ghost_array(name);
-        if (is_ghost ? of_points : !wanted(options, association, name)) continue;
+        if (!is_ghost && !wanted(options, association, name)) continue;
         auto values = read_field(association, name, loaded.step, Depth::arrays);
         if (!values) leave_out(loaded.info, {kind_of_field(association), name, values.error().message});
+        else if (is_ghost && of_points) vtk_xml::mark_around_hidden(*values, name, size_, piece.left_out);
         else if (is_ghost) vtk_xml::mark_left_out(*values, name, piece.left_out);
         else fields.push_back({name, *std::move(values)});
     }
