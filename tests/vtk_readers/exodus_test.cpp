@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <random>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <vtk_exodusII.h>
 
@@ -590,6 +591,21 @@ TEST_F(ReadExodusParts, IsAnErrorWhenSomePartsAreMissing) {
     ASSERT_FALSE(result);
     EXPECT_EQ(result.error().code, ErrorCode::file);
     EXPECT_NE(result.error().message.find("run.e.3.2"), std::string::npos) << result.error().message;
+}
+
+TEST_F(ReadExodusParts, SaysThatOneIsReadAlone) {
+    for (const auto& [name, missing] :
+         {std::pair{"alone.e.2.1", "'alone.e.2.0' is"}, {"alone.e.4.1", "'alone.e.4.0' and 2 more are"}}) {
+        std::filesystem::copy_file(folder_.file("run.e.2.1"), folder_.file(name));
+        const auto result = read(folder_.file(name));
+        ASSERT_TRUE(result) << result.error().message;
+        EXPECT_EQ(result->grid.cells.count(), 2u);
+        EXPECT_EQ(std::ranges::count(result->notes,
+                                     fmt::format("by its name the file is one of {} parts, but {} not there: only its "
+                                                 "own cells are read",
+                                                 name[8], missing)),
+                  1);
+    }
 }
 
 } // namespace

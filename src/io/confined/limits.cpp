@@ -58,7 +58,7 @@ std::optional<std::uint64_t> size_to_read(const Request& request) {
     if (request.format == "exodus") {
         std::uint64_t bytes = 0;
         if (const auto parts = exodus_parts(request.path))
-            for (const std::string& part : *parts) bytes += size_of_file(part);
+            for (const std::string& part : parts->files) bytes += size_of_file(part);
         return bytes;
     }
     return request.readable.empty() || request.options.allow_outside ? std::nullopt : size_below(request.readable[0]);

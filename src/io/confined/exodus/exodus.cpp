@@ -2,6 +2,7 @@
 // Exodus II: the blocks of a file share their nodes; the files of a parallel run ("name.4.0" to "name.4.3") are joined
 // by the global numbers of their nodes.
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <memory>
 
@@ -11,6 +12,7 @@
 #include "io/pieces/block_choice.hpp"
 #include "io/pieces/survey_unread.hpp"
 #include "io/files/escape.hpp"
+#include "io/files/text_scanner.hpp"
 #include "io/confined/exodus/exodus_cells.hpp"
 #include "io/confined/exodus/exodus_file.hpp"
 #include "io/confined/exodus/exodus_parts.hpp"
@@ -336,14 +338,24 @@ Result<Piece> read_chosen(const std::shared_ptr<OpenPart>& opened, const PartRea
     return piece;
 }
 
+void note_missing_parts(const std::vector<std::string>& missing, std::vector<std::string>& notes) {
+    if (missing.empty()) return;
+    const std::string first = in_quotes(std::filesystem::path(missing.front()).filename().string());
+    notes.push_back(fmt::format(
+        "by its name the file is one of {} parts, but {} not there: only its own cells are read", missing.size() + 1,
+        missing.size() == 1 ? first + " is" : fmt::format("{} and {} more are", first, missing.size() - 1)));
+}
+
 } // namespace
 
 Result<Loaded> load_exodus(const std::string& path, const ReadOptions& options, Depth depth) {
-    auto parts = exodus_parts(path);
-    if (!parts) return parts.error();
+    const auto found = exodus_parts(path);
+    if (!found) return found.error();
+    const std::vector<std::string>& parts = found->files;
     Loaded loaded;
+    note_missing_parts(found->missing, loaded.notes);
     std::vector<std::shared_ptr<OpenPart>> all_opened;
-    auto info = describe_parts(*parts, options, loaded.notes, all_opened);
+    auto info = describe_parts(parts, options, loaded.notes, all_opened);
     if (!info) return info.error();
     loaded.info = std::move(*info);
     const auto chosen = chosen_blocks(loaded.info.blocks, options);
@@ -352,15 +364,15 @@ Result<Loaded> load_exodus(const std::string& path, const ReadOptions& options, 
     const auto step = choose_step(loaded.info, options);
     if (!step) return step.error();
     loaded.step = *step;
-    for (std::size_t i = 0; i < parts->size(); ++i) {
-        const PartRead part{(*parts)[i], parts->size() > 1, parts->size() <= most_open};
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const PartRead part{parts[i], parts.size() > 1, parts.size() <= most_open};
         auto opened = part.stays_open ? Result(std::move(all_opened[i])) : open_part(part.path, options);
         if (!opened) return opened.error();
         auto piece = options.blocks.empty() ? read_piece(*opened, part, options, loaded)
                                             : read_chosen(*opened, part, options, *chosen, loaded);
         if (!piece) return piece.error();
         loaded.pieces.push_back(std::move(*piece));
-        report_progress(static_cast<double>(i + 1) / static_cast<double>(parts->size()));
+        report_progress(static_cast<double>(i + 1) / static_cast<double>(parts.size()));
     }
     return loaded;
 }

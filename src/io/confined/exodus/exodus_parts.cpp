@@ -2,6 +2,7 @@
 #include <charconv>
 #include <filesystem>
 #include <optional>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -21,8 +22,8 @@ std::optional<unsigned> whole_number(std::string_view text) {
 
 } // namespace
 
-Result<std::vector<std::string>> exodus_parts(const std::string& path) {
-    const std::vector<std::string> alone{path};
+Result<ExodusParts> exodus_parts(const std::string& path) {
+    const ExodusParts alone{{path}, {}};
     const auto last = path.rfind('.');
     if (last == std::string::npos || last == 0) return alone;
     const auto before = path.rfind('.', last - 1);
@@ -38,8 +39,7 @@ Result<std::vector<std::string>> exodus_parts(const std::string& path) {
         std::error_code no_error;
         (std::filesystem::is_regular_file(name, no_error) ? parts : missing).push_back(std::move(name));
     }
-    if (missing.empty()) return parts;
-    if (parts.size() == 1) return alone;
+    if (missing.empty() || parts.size() == 1) return ExodusParts{std::move(parts), std::move(missing)};
     return Error{ErrorCode::file, fmt::format("{}: it is one of {} parts, of which {} are missing, \"{}\" first",
                                               escaped(path), *count, missing.size(), escaped(missing.front()))};
 }
