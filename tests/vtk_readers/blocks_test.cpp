@@ -170,6 +170,40 @@ TEST_F(Blocks, MayBeGridsInPieces) {
     expect_sample(read_blocks({"p"}, "b.vtm"));
 }
 
+TEST_F(Blocks, WhoseFileIsMissingAreLeftOut) {
+    folder_.write("p.pvtu", "<VTKFile type=\"PUnstructuredGrid\"><PUnstructuredGrid>"
+                            "<Piece Source=\"gone_0.vtu\"/></PUnstructuredGrid></VTKFile>");
+    const std::string_view elements =
+        "<DataSet name=\"gone\" file=\"no.vtu\"/><DataSet name=\"there\" file=\"s.vtu\"/>";
+    folder_.write("m.vtm", multi_block(elements));
+    folder_.write("pieces.vtm", multi_block(std::string(elements) + "<DataSet name=\"p\" file=\"p.pvtu\"/>"));
+    folder_.write("m.vtpc", index("vtkPartitionedDataSetCollection",
+                                  "<Partitions name=\"gone\"><DataSet file=\"no.vtu\"/></Partitions>"
+                                  "<Partitions name=\"there\"><DataSet file=\"s.vtu\"/></Partitions>"));
+    for (const char* file : {"m.vtm", "m.vtpc", "pieces.vtm"}) {
+        SCOPED_TRACE(file);
+        expect_sample(read_blocks({"there"}, file));
+        const auto all = read_blocks({}, file);
+        expect_sample(all);
+        ASSERT_TRUE(all);
+        const std::string begin =
+            file == std::string("pieces.vtm") ? "2 files are left out, this one first: " : "a file is left out: ";
+        EXPECT_EQ(std::ranges::count_if(all->notes,
+                                        [&](const std::string& note) {
+                                            return note.starts_with(begin) && note.find("no.vtu") != std::string::npos;
+                                        }),
+                  1);
+        const auto gone = read_blocks({"gone"}, file);
+        ASSERT_FALSE(gone);
+        EXPECT_NE(gone.error().message.find("no.vtu"), std::string::npos) << gone.error().message;
+        ReadOptions options;
+        options.blocks = {"there"};
+        EXPECT_TRUE(inspect(folder_.file(file), options));
+    }
+    folder_.write("m.vtpd", index("vtkPartitionedDataSet", "<DataSet file=\"no.vtu\"/><DataSet file=\"s.vtu\"/>"));
+    EXPECT_FALSE(read_blocks({}, "m.vtpd")) << "its files are pieces of one grid";
+}
+
 TEST_F(Blocks, BrokenIndexesAreErrors) {
     EXPECT_NE(error_of("b.vtm", multi_block("")).find("names no files"), std::string::npos);
     EXPECT_NE(error_of("b.vtm", multi_block("<DataSet file=\"wall.vtp\"/>")).find("are surfaces"), std::string::npos);

@@ -23,6 +23,12 @@ namespace {
 
 constexpr std::size_t max_depth = 64;
 
+/// A file of a block that is not there.
+struct MissingFile {
+    Error why;
+    std::size_t block = 0;
+};
+
 /// A file of a grid, or of a grid in pieces.
 struct Leaf {
     std::string path;
@@ -39,6 +45,7 @@ public:
         : path_(std::move(path)), options_(options), progress_(progress) {}
 
     Result<void> read(std::string_view type) {
+        is_one_grid_ = type == "vtkPartitionedDataSet";
         const auto source = ByteSource::open(path_);
         if (!source) return source.error();
         auto document = vtk_xml::open_document(*source, progress_);
@@ -47,6 +54,7 @@ public:
             return broken(path_, fmt::format("this is a VTK file of type {}, which is not read, not {}",
                                              in_quotes(document->type), in_quotes(type)));
         if (auto walked = walk(document->primary(), {}, 0); !walked) return walked;
+        if (leaves.empty() && !missing.empty()) return missing.front().why;
         if (leaves.empty())
             return broken(path_, surfaces == 0 ? "the index names no files"
                                                : fmt::format("all {} files that it names are surfaces", surfaces));
@@ -58,6 +66,7 @@ public:
 
     Loaded said; ///< the time that the index states
     std::vector<Leaf> leaves;
+    std::vector<MissingFile> missing;
     std::vector<BlockInfo> blocks;
     std::size_t surfaces = 0;
 
@@ -101,18 +110,23 @@ private:
             return broken(path_, fmt::format("it names \"{}\", but only .vtu, .vti, .vtr, .vts and those in pieces are "
                                              "read",
                                              escaped(file.value())));
-        auto path = named_file(path_, file.value(), options_.allow_outside);
-        if (!path) return path.error();
         if (!block) {
             block = blocks.size();
             blocks.push_back({static_cast<std::int64_t>(blocks.size() + 1), name, "block", 0});
         }
+        const auto is_missing = [&](const Error& error) {
+            if (error.code != ErrorCode::file || is_one_grid_) return false;
+            missing.push_back({error, *block});
+            return true;
+        };
+        auto path = named_file(path_, file.value(), options_.allow_outside);
+        if (!path) return is_missing(path.error()) ? Result<void>() : path.error();
         if (!type.starts_with("P")) {
             leaves.push_back({std::move(*path), type, *block, grids_++});
             return {};
         }
         auto pieces = vtk_xml::files_of_pieces(*path, type, options_.allow_outside, progress_);
-        if (!pieces) return pieces.error();
+        if (!pieces) return is_missing(pieces.error()) ? Result<void>() : pieces.error();
         for (std::string& piece : *pieces) leaves.push_back({std::move(piece), vtk_xml::type_of_pieces(type), *block});
         return {};
     }
@@ -121,7 +135,23 @@ private:
     const ReadOptions& options_;
     const Progress& progress_;
     std::size_t grids_ = 0;
+    bool is_one_grid_ = false; ///< whose files are pieces: none may be missing
 };
+
+/// Of the blocks that are read; one that is asked for must be whole.
+Result<void> tell_missing(const std::vector<MissingFile>& missing, const std::vector<bool>& chosen,
+                          const ReadOptions& options, std::vector<std::string>& notes) {
+    std::vector<const MissingFile*> wanted;
+    for (const MissingFile& file : missing)
+        if (chosen[file.block]) wanted.push_back(&file);
+    if (wanted.empty()) return {};
+    const Error& first = wanted.front()->why;
+    if (!options.blocks.empty()) return first;
+    notes.push_back(wanted.size() == 1
+                        ? fmt::format("a file is left out: {}", first.message)
+                        : fmt::format("{} files are left out, this one first: {}", wanted.size(), first.message));
+    return {};
+}
 
 } // namespace
 
@@ -137,6 +167,9 @@ Result<Loaded> load_blocks(const std::string& path, std::string_view type, const
         if (!asked) return asked.error();
         chosen = std::move(*asked);
     }
+    std::vector<std::string> notes;
+    if (depth == Depth::arrays)
+        if (auto told = tell_missing(index.missing, chosen, options, notes); !told) return told.error();
     std::vector<vtk_xml::File> files;
     for (Leaf& leaf : index.leaves) {
         // Of the others, too, the fields and the number of cells are told.
@@ -152,6 +185,7 @@ Result<Loaded> load_blocks(const std::string& path, std::string_view type, const
         if (auto left_out = vtk_xml::leave_out_overlaps(of_grid); !left_out) return in_file(path, left_out.error());
     }
     Loaded loaded = vtk_xml::put_together(std::move(*parts));
+    std::ranges::move(notes, std::back_inserter(loaded.notes));
     if (!index.said.info.times.empty()) loaded.info.times = index.said.info.times;
     std::ranges::move(index.said.notes, std::back_inserter(loaded.notes));
     for (vtk_xml::File& file : files) loaded.info.files.push_back(std::move(file.path));

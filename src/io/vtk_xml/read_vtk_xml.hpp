@@ -28,9 +28,11 @@ std::string_view vtk_type_of_name(std::string_view name);
 Result<Loaded> load_vtk_file(const std::string& path, std::string_view type, const ReadOptions& options, Depth depth,
                              bool ids, const Progress& progress);
 
-/// A VTM, VTPC or VTPD: an index of files by block. Blocks that are surfaces are left out.
+/// A VTM, VTPC or VTPD: an index of files by block. Blocks that are surfaces are left out, and files that are not there,
+/// but of a VTPD.
 ///
-/// Errors   invalid_argument: a block that is not there; invalid_data: not such an index, blocks in more than 64 others,
+/// Errors   invalid_argument: a block that is not there; file: all files are missing, or one of a block that is asked
+///          for; invalid_data: not such an index, blocks in more than 64 others,
 ///          no block with a grid, a file of another kind; as load_files()
 Result<Loaded> load_blocks(const std::string& path, std::string_view type, const ReadOptions& options, Depth depth,
                            const Progress& progress);
