@@ -113,6 +113,14 @@ TEST_P(EnsightStepsInFiles, AreReadOneByOne) {
     for (const int step : {2, 0, 1}) expect_step(read_ensight(folder_, files, static_cast<std::size_t>(step)), step);
 }
 
+TEST_P(EnsightStepsInFiles, GoWithTheTimesAsTheyAreListed) {
+    EnsightFolder files = one_file();
+    std::string& text = files["a.case"];
+    text.replace(text.find("time values: 0\n1 2"), 18, "time values: 5\n0 2");
+    for (const auto& [step, place] : {std::pair{0, 1}, {1, 2}, {2, 0}})
+        expect_step(read_ensight(folder_, files, static_cast<std::size_t>(step)), place);
+}
+
 TEST_P(EnsightStepsInFiles, AreFoundInTheFileThatHasThem) {
     const Contents first = steps(0, 2), second = steps(2, 3);
     EnsightFolder files{{"g05", first.geometry},  {"n05", first.n},  {"v05", first.v},  {"e05", first.e},

@@ -293,6 +293,14 @@ std::optional<std::int64_t> number_of_file(const EnsightCase::TimeSet& set, std:
 }
 
 template <class Sets>
+/// The place, from 1, of the last time of the set that is not behind `time`; 0: all are. Times may be listed in any order.
+std::size_t step_at(const EnsightCase::TimeSet& set, double time) {
+    std::size_t step = 0;
+    for (std::size_t i = 0; i < set.values.size(); ++i)
+        if (set.values[i] <= time && (step == 0 || set.values[i] >= set.values[step - 1])) step = i + 1;
+    return step;
+}
+
 auto with_id(const Sets& sets, std::int64_t id) {
     return std::find_if(sets.begin(), sets.end(), [&](const auto& set) { return set.id == id; });
 }
@@ -324,12 +332,10 @@ EnsightTime::EnsightTime(const EnsightCase& from, std::size_t step) : case_(from
     if (!all.empty()) time_ = all[std::min(step, all.size() - 1)];
     const auto set = with_id(case_.time_sets, case_.model.time_set);
     if (set == case_.time_sets.end() || set->values.empty()) return;
-    model_time_ = set->values[0];
-    for (const double value : set->values) {
-        if (value > time_ || value <= model_time_) continue;
-        model_time_ = value;
-        ++model_step_;
-    }
+    model_step_ = step_at(*set, time_);
+    if (model_step_ == 0)
+        model_step_ = static_cast<std::size_t>(std::ranges::min_element(set->values) - set->values.begin()) + 1;
+    model_time_ = set->values[model_step_ - 1];
 }
 
 EnsightTime::Found EnsightTime::model() const {
@@ -342,14 +348,8 @@ EnsightTime::Found EnsightTime::file_of(const EnsightCase::File& file) const {
     if (!case_.has_time) return {EnsightPlace{file.name, 1}, {}};
     const auto set = with_id(case_.time_sets, file.time_set);
     if (set == case_.time_sets.end()) return {{}, fmt::format("there is no time set {}", file.time_set)};
-    std::size_t step = 0;
-    bool valid = false;
-    for (const double value : set->values) {
-        if (value > time_) continue;
-        ++step;
-        valid = valid || value >= model_time_;
-    }
-    if (!valid) return {};
+    const std::size_t step = step_at(*set, time_);
+    if (step == 0 || set->values[step - 1] < model_time_) return {};
     return place_of(file, step, *set);
 }
 
