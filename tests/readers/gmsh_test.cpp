@@ -248,6 +248,25 @@ TEST(ReadGmshSteps, AreByStepNumberWhereTimesRepeat) {
     EXPECT_EQ(result.grid.point_fields.at(0).values.at(0), 5);
 }
 
+std::string view_at(std::string_view name, double time, int value) {
+    return fmt::format("$NodeData\n1\n\"{}\"\n1\n{}\n3\n0\n1\n1\n1 {}\n$EndNodeData\n", name, time, value);
+}
+
+TEST(ReadGmshSteps, AreNotMadeByViewsThatHaveOne) {
+    const std::string bytes =
+        tets + view_at("k", 0, 1) + view_at("T", 0.25, 2) + view_at("T", 0.5, 3) + view_at("U", 9, 4);
+    for (const std::size_t step : {0, 1}) {
+        const ReadResult result = read_step(bytes, step);
+        EXPECT_EQ(result.info.times, (std::vector<double>{0.25, 0.5}));
+        std::vector<double> values;
+        for (const Field& field : result.grid.point_fields) values.push_back(field.values.at(0));
+        EXPECT_EQ(values, (std::vector<double>{1, step == 0 ? 2.0 : 3.0, 4}));
+    }
+    const ReadResult result = read_step(tets + view_at("k", 1, 1) + view_at("U", 9, 4), 0);
+    EXPECT_TRUE(result.info.times.empty());
+    EXPECT_EQ(result.grid.point_fields.size(), 2U);
+}
+
 TEST(ReadGmshSteps, OutOfRangeAreRefusedWithTheirNumber) {
     ReadOptions options;
     options.step = 2;

@@ -40,14 +40,12 @@ struct Contents {
     std::map<std::pair<Association, std::string>, std::vector<std::size_t>> sections_of; ///< of each field
 };
 
-/// Times by value; by step number where one field has two sections of one time value.
+/// Times by value; by step number where one field has two sections of one time value. Fields of one step hold always, and
+/// have no say where others have several.
 void find_times(Contents& contents) {
-    std::set<double> times, steps;
     std::set<std::tuple<Association, std::string, double, std::int32_t>> seen;
     bool by_step = false;
     for (const DataSection& data : contents.data) {
-        times.insert(data.time);
-        steps.insert(data.step);
         const auto next =
             seen.lower_bound({data.association(), data.name, data.time, std::numeric_limits<std::int32_t>::min()});
         const bool met = next != seen.end() && std::get<0>(*next) == data.association() &&
@@ -55,10 +53,16 @@ void find_times(Contents& contents) {
         by_step = by_step || (met && std::get<3>(*next) != data.step);
         seen.insert({data.association(), data.name, data.time, data.step});
     }
-    const std::set<double>& different = by_step ? steps : times;
-    const std::vector<double> all(different.begin(), different.end());
+    const auto value_of = [&](const DataSection& data) { return by_step ? data.step : data.time; };
+    std::map<std::pair<Association, std::string>, std::set<double>> of_fields;
+    for (const DataSection& data : contents.data) of_fields[{data.association(), data.name}].insert(value_of(data));
+    std::set<double> several, single;
+    for (const auto& [field, values] : of_fields)
+        (values.size() > 1 ? several : single).insert(values.begin(), values.end());
+    const std::set<double>& times = several.empty() && single.size() == 1 ? single : several;
+    const std::vector<double> all(times.begin(), times.end());
     for (const DataSection& data : contents.data) {
-        const auto step = std::lower_bound(all.begin(), all.end(), by_step ? data.step : data.time);
+        const auto step = std::lower_bound(all.begin(), all.end(), value_of(data));
         contents.step_of.push_back(static_cast<std::size_t>(step - all.begin()));
     }
     if (all.size() > 1 || (all.size() == 1 && all.front() != 0)) contents.info.times = all;
