@@ -585,5 +585,18 @@ TEST(ReadLegacy, LeavesOutCellsOfBlankedPoints) {
     EXPECT_EQ(error_in_legacy(blanked_grid("3 int\n1 1 1")), "BLANKING has 3 marks, but the grid 2 x 2 x 3 points");
 }
 
+TEST_P(ReadLegacyForm, MarksTheScalarsOfPointsAndOfCells) {
+    LegacyText file(GetParam());
+    file.start("3.0").tet().text("CELL_DATA 1\nSCALARS mat int\nLOOKUP_TABLE default\n").numbers<std::int32_t>({5});
+    file.text("POINT_DATA 9\nVECTORS U float\n")
+        .nine(1, 3)
+        .text("SCALARS T%20(K) float\nLOOKUP_TABLE default\n")
+        .nine(1);
+    std::vector<std::string> active;
+    for (const FieldInfo& field : load(file.str()).info.fields)
+        if (field.active) active.push_back(field.name);
+    EXPECT_EQ(active, (std::vector<std::string>{"mat", "T (K)"}));
+}
+
 } // namespace
 } // namespace isotet::test

@@ -190,7 +190,7 @@ Result<void> LegacyData::read_named(std::uint64_t components, bool normals) {
 
 Result<void> LegacyData::read_scalars() {
     Header header{read_name(words_behind_name()), {}, 1, tuples_};
-    scalars_.emplace_back(data_ == Data::points ? Association::point : Association::cell, header.name);
+    scalars_.emplace_back(data_ == Data::points ? Association::point : Association::cell, decoded_name(header.name));
     header.type = type_in(scanner_.word());
     if (!scanner_.at_line_end() && !scanner_.number_of_line(header.components))
         return values_.before_here("not a number of components");
