@@ -244,18 +244,64 @@ Result<ReadResult> read_surveyed(const GridReader& reader, const std::string& pa
 }
 
 /// How a reader is called: as itself, or for counting.
-using ReadWith = std::function<Result<ReadResult>(const GridReader& reader, const ReadOptions& options)>;
+/// The file of one step of an index by time, and the options to read it with; nothing where the index is read as one.
+struct StepInIndex {
+    FileOfTime file;
+    ReadOptions options;
+
+    /// `info`   of the file
+    Result<void> give_times(const GridReader& index, FileInfo& info) {
+        if (info.times.size() > 1)
+            return broken(file.path,
+                          fmt::format("it has {} time steps, but an index names a file for each", info.times.size()));
+        info.format = index.format.name;
+        info.times = std::move(file.times);
+        for (std::string& other : file.files)
+            if (std::ranges::find(info.files, other) == info.files.end()) info.files.push_back(std::move(other));
+        return {};
+    }
+};
+
+Result<std::optional<StepInIndex>> step_in_index(const GridReader& reader, const std::string& path,
+                                                 const ReadOptions& options, const Progress& progress) {
+    if (!reader.file_of_time) return std::optional<StepInIndex>();
+    auto file = reader.file_of_time(path, options, progress);
+    if (!file) return file.error();
+    if (!*file) return std::optional<StepInIndex>();
+    StepInIndex step{**std::move(file), options};
+    step.options.step.reset();
+    step.options.format.clear();
+    const auto inner = choose_reader(step.file.path, step.options);
+    if (!inner) return inner.error();
+    if ((*inner)->file_of_time)
+        return broken(path, fmt::format("it names {}, which is an index by time, too", in_quotes(step.file.path)));
+    step.options.format = (*inner)->format.name;
+    return std::optional(std::move(step));
+}
+
+using ReadWith =
+    std::function<Result<ReadResult>(const GridReader& reader, const std::string& path, const ReadOptions& options)>;
 
 Result<ReadResult> read_checked(const std::string& path, const ReadOptions& options, const Progress& progress,
                                 const ReadWith& read_with) {
     const auto reader = choose_reader(path, options);
     if (!reader) return reader.error();
     auto displaced_options = with_displacement(**reader, path, options, progress);
+    auto in_index = step_in_index(**reader, path, options, progress);
+    if (!in_index) return in_index.error();
+    if (StepInIndex* const step = *in_index ? &**in_index : nullptr) {
+        auto read = read_checked(step->file.path, step->options, progress, read_with);
+        if (!read) return read;
+        if (auto given = step->give_times(**reader, read->info); !given) return given.error();
+        read->step = options.step.value_or(0);
+        read->notes.insert(read->notes.begin(), step->file.notes.begin(), step->file.notes.end());
+        return read;
+    }
     if (!displaced_options) return displaced_options.error();
     const auto extended = with_regions(**reader, path, *std::move(displaced_options), progress);
     if (!extended) return extended.error();
     const ReadOptions& all = *extended;
-    auto result = read_with(**reader, all);
+    auto result = read_with(**reader, path, all);
     if (!result) return result;
     say_left_out(*result);
     if (auto known = check_blocks(result->info, options); !known) return known.error();
@@ -329,6 +375,14 @@ Result<FileInfo> inspect_one(const std::string& path, const ReadOptions& options
     const auto reader = choose_reader(path, options);
     if (!reader) return reader.error();
     if (options.kept) options.kept->look_at(path);
+    auto in_index = step_in_index(**reader, path, options, progress);
+    if (!in_index) return in_index.error();
+    if (StepInIndex* const step = *in_index ? &**in_index : nullptr) {
+        auto info = inspect_one(step->file.path, step->options, progress);
+        if (!info) return info;
+        if (auto given = step->give_times(**reader, *info); !given) return given.error();
+        return info;
+    }
     auto info = (*reader)->inspect(path, options, progress);
     if (!info) return info;
     if (auto known = check_blocks(*info, options); !known) return known.error();
@@ -352,10 +406,11 @@ Result<FileInfo> inspect_step(const std::string& path, const ReadOptions& option
 Result<ReadResult> read_step(const std::string& path, const ReadOptions& options, const Progress& progress,
                              SurveyedGrid* surveyed = nullptr) {
     const auto read_it = [&](const std::string& of_step, const ReadOptions& all) {
-        return read_checked(of_step, all, progress, [&](const GridReader& reader, const ReadOptions& extended) {
-            return surveyed ? read_surveyed(reader, of_step, extended, progress, *surveyed)
-                            : reader.read(of_step, extended, progress);
-        });
+        return read_checked(of_step, all, progress,
+                            [&](const GridReader& reader, const std::string& file, const ReadOptions& extended) {
+                                return surveyed ? read_surveyed(reader, file, extended, progress, *surveyed)
+                                                : reader.read(file, extended, progress);
+                            });
     };
     if (options.more_files.empty()) return read_it(path, options);
     const auto file = file_of_step(path, options);

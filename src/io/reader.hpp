@@ -3,14 +3,23 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <isotet/export.hpp>
 #include <isotet/read.hpp>
 
 namespace isotet::io {
+
+/// The file of one step of an index by time, which another reader reads.
+struct FileOfTime {
+    std::string path;
+    std::vector<double> times; ///< of all steps
+    std::vector<std::string> files, notes;
+};
 
 /// One grid format. `recognizes` sees the first bytes of the file (up to 4 KiB) and its lower-case extension (".vtu").
 struct GridReader {
@@ -23,6 +32,9 @@ struct GridReader {
     /// read_surveyed(); null: as read(), or by its pieces.
     Result<SurveyedGrid> (*survey)(const std::string& path, const ReadOptions& options,
                                    const Progress& progress) = nullptr;
+    /// Of an index by time; nothing where `read` reads the step itself. Null: it is none.
+    Result<std::optional<FileOfTime>> (*file_of_time)(const std::string& path, const ReadOptions& options,
+                                                      const Progress& progress) = nullptr;
 };
 
 /// Readers that are always there.

@@ -9,6 +9,7 @@
 #include <isotet/read.hpp>
 #include <isotet/write.hpp>
 
+#include "vtk_readers/sample_exodus.hpp"
 #include "vtk_readers/sample_grid.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -119,6 +120,51 @@ TEST_F(IndexFiles, PvdSortsItsTimes) {
     const auto second = read(path, options);
     ASSERT_TRUE(second) << second.error().message;
     expect_sample(second);
+}
+
+TEST_F(IndexFiles, ByTimeMayNameFilesOfOtherFormats) {
+    ExodusSample sample;
+    sample.steps = 1;
+    write_exodus(sample, folder_.file("case/a.e"));
+    folder_.write("case/b.inp", "4 1 0 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n1 1 tet 1 2 3 4\n");
+    const std::string series = R"({"file-series-version": "1.0", "files": [
+        {"name": "a.e", "time": 0.5}, {"name": "b.inp", "time": 2}, {"name": "parts/a.vtu", "time": 3}]})";
+    const std::size_t cells = read(folder_.file("case/a.e")).value().grid.cells.count();
+    for (const std::string& path :
+         {folder_.write("case/run.pvd", pvd({{"0.5", "a.e"}, {"2", "b.inp"}, {"3", "parts/a.vtu"}})),
+          folder_.write("case/run.e.series", series)}) {
+        SCOPED_TRACE(path);
+        ReadOptions options;
+        for (const std::size_t step : {0, 1, 2}) {
+            options.step = step;
+            const auto info = inspect(path, options);
+            ASSERT_TRUE(info) << info.error().message;
+            EXPECT_EQ(info->times, (std::vector<double>{0.5, 2, 3}));
+            EXPECT_EQ(info->files.size(), 3u);
+            const auto result = read(path, options);
+            ASSERT_TRUE(result) << result.error().message;
+            EXPECT_EQ(result->step, step);
+            EXPECT_EQ(result->info.times, info->times);
+            EXPECT_EQ(result->info.format, path.ends_with(".pvd") ? "pvd" : "series");
+            if (step < 2) EXPECT_EQ(result->grid.cells.count(), step == 0 ? cells : 1);
+            else expect_sample(result);
+        }
+    }
+}
+
+TEST_F(IndexFiles, ByTimeNameNoOthersByTimeAndNoStepsOfSeveralSteps) {
+    const auto error = [&](const std::string& path) {
+        const auto result = read(path);
+        return result ? "read" : result.error().message;
+    };
+    write_exodus(ExodusSample{}, folder_.file("case/two.e"));
+    EXPECT_NE(error(folder_.write("case/a.pvd", pvd({{"0", "two.e"}}))).find("2 time steps"), std::string::npos);
+    folder_.write("case/b.x", pvd({{"0", "parts/a.vtu"}}));
+    EXPECT_NE(error(folder_.write("case/a.pvd", pvd({{"0", "b.x"}}))).find("is an index by time, too"),
+              std::string::npos);
+    const std::string parts = "<VTKFile type='Collection'><Collection><DataSet timestep='0' part='0' file='two.e'/>"
+                              "<DataSet timestep='0' part='1' file='parts/a.vtu'/></Collection></VTKFile>";
+    EXPECT_NE(error(folder_.write("case/a.pvd", parts)).find("parts of a grid"), std::string::npos);
 }
 
 /// Grids told apart by their number of tets.
@@ -253,7 +299,7 @@ TEST_F(IndexFiles, UrlsAreRefusedAlways) {
 
 TEST_F(IndexFiles, AnIndexThatNamesItselfIsRefused) {
     EXPECT_NE(error_of("case/a.pvtu", pvtu({"a.pvtu"})).find("names itself"), std::string::npos);
-    EXPECT_NE(error_of("case/a.pvd", pvd({{"0", "a.pvd"}})).find("only .vtu, .vti"), std::string::npos);
+    EXPECT_NE(error_of("case/a.pvd", pvd({{"0", "a.pvd"}})).find("names itself"), std::string::npos);
 }
 
 TEST_F(IndexFiles, APieceThatIsMissingOrNoFileIsAnErrorThatNamesIt) {

@@ -1,10 +1,11 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// PVD: an index of VTK XML files by time step; the parts and groups of one time are pieces of one grid.
+// PVD: an index of files by time step; the parts and groups of one time are pieces of one grid.
 #include <algorithm>
 #include <filesystem>
 #include <map>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -98,21 +99,19 @@ std::string note_of_timeless(const std::vector<Entry>& entries) {
 
 } // namespace
 
-Result<Loaded> load_collection(const std::string& path, const ReadOptions& options, Depth depth,
-                               const Progress& progress) {
+Result<TimeIndex> index_of_collection(const std::string& path) {
     const auto all = entries(path);
     if (!all) return all.error();
-    NamesByTime names;
+    TimeIndex index;
     std::size_t kept = 0;
     for (const auto& [time, of_time] : last_ones(*all))
         for (const Entry* entry : of_time) {
-            names[time].push_back(entry->file);
+            index.names[time].push_back(entry->file);
             ++kept;
         }
-    auto loaded = load_times(path, names, options, depth, progress);
-    if (loaded && kept < all->size()) loaded->notes.insert(loaded->notes.begin(), note_of_replaced(*all, kept));
-    if (const std::string note = note_of_timeless(*all); loaded && !note.empty()) loaded->notes.push_back(note);
-    return loaded;
+    if (kept < all->size()) index.notes.push_back(note_of_replaced(*all, kept));
+    if (std::string note = note_of_timeless(*all); !note.empty()) index.notes.push_back(std::move(note));
+    return index;
 }
 
 } // namespace isotet::io

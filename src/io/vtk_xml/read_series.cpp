@@ -34,15 +34,20 @@ bool has_no_times(const Json& files) {
 }
 
 /// Of several files of one time the last counts, as where a run was restarted. Without times their numbers are these.
-Result<NamesByTime> entries(const std::string& path, std::string_view text, std::vector<std::string>& notes) {
-    const Json series = Json::parse(text, nullptr, false);
-    if (series.is_discarded()) return broken(path, "this is not JSON");
+Result<TimeIndex> entries(const std::string& path, std::string_view text) {
+    Json series;
+    try {
+        series = Json::parse(text);
+    } catch (const Json::parse_error& error) {
+        return broken(path, fmt::format("this is not JSON, from byte {} on", error.byte));
+    }
     const auto files = series.is_object() ? series.find("files") : series.end();
     if (!series.is_object() || files == series.end() || !files->is_array() || files->empty())
         return broken(path, "there is no list \"files\" with entries");
-    NamesByTime names;
+    TimeIndex index;
+    auto& names = index.names;
     const bool numbered = has_no_times(*files);
-    if (numbered) notes.emplace_back("the series has no times: the numbers of its files were taken, from 0");
+    if (numbered) index.notes.emplace_back("the series has no times: the numbers of its files were taken, from 0");
     for (const Json& file : *files) {
         if (!file.is_object() || !file.contains("name") || !file["name"].is_string())
             return broken(path, "an entry of \"files\" has no \"name\"");
@@ -52,21 +57,21 @@ Result<NamesByTime> entries(const std::string& path, std::string_view text, std:
         names[*time] = {name};
     }
     if (const std::size_t replaced = files->size() - names.size(); replaced > 0)
-        notes.push_back(fmt::format("{} of {} files of the series {} replaced by a later one of the same time",
-                                    replaced, files->size(), replaced == 1 ? "is" : "are"));
-    return names;
+        index.notes.push_back(fmt::format("{} of {} files of the series {} replaced by a later one of the same time",
+                                          replaced, files->size(), replaced == 1 ? "is" : "are"));
+    return index;
+}
+
+Result<TimeIndex> index_of(const std::string& path, const Progress& progress) {
+    const auto file = WholeFile::read(path, progress);
+    if (!file) return file.error();
+    return entries(path, file->text());
 }
 
 Result<Loaded> load(const std::string& path, const ReadOptions& options, Depth depth, const Progress& progress) {
-    const auto file = WholeFile::read(path, progress);
-    if (!file) return file.error();
-    std::vector<std::string> notes;
-    const auto names = entries(path, file->text(), notes);
-    if (!names) return names.error();
-    auto loaded = load_times(path, *names, options, depth, progress);
+    auto loaded = load_times(path, index_of(path, progress), options, depth, progress);
     if (!loaded) return loaded;
     loaded->info.format = "series";
-    loaded->notes.insert(loaded->notes.begin(), notes.begin(), notes.end());
     return loaded;
 }
 
@@ -86,6 +91,9 @@ GridReader series_reader() {
     };
     reader.read = [](const std::string& path, const ReadOptions& options, const Progress& progress) {
         return load_and_join([&] { return load(path, options, Depth::arrays, progress); }, options, progress);
+    };
+    reader.file_of_time = [](const std::string& path, const ReadOptions& options, const Progress& progress) {
+        return file_of_time(path, index_of(path, progress), options);
     };
     return reader;
 }

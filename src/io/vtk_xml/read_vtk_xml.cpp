@@ -34,7 +34,7 @@ bool is_collection(const Named& kind) { return std::string_view(kind.type) == "C
 
 Result<Loaded> load(const Named& kind, const std::string& path, const ReadOptions& options, Depth depth,
                     const Progress& progress) {
-    auto loaded = is_collection(kind) ? load_collection(path, options, depth, progress)
+    auto loaded = is_collection(kind) ? load_times(path, index_of_collection(path), options, depth, progress)
                                       : load_vtk_file(path, kind.type, options, depth, false, progress);
     if (loaded) loaded->info.format = kind.name;
     return loaded;
@@ -57,6 +57,10 @@ GridReader reader() {
         return load_and_join([&] { return load(kinds[number], path, options, Depth::arrays, progress); }, options,
                              progress);
     };
+    if (is_collection(kinds[number]))
+        result.file_of_time = [](const std::string& path, const ReadOptions& options, const Progress&) {
+            return file_of_time(path, index_of_collection(path), options);
+        };
     return result;
 }
 

@@ -43,15 +43,23 @@ Result<Loaded> load_blocks(const std::string& path, std::string_view type, const
 ///          its box is; as load_files() and amr::boxes_as_pieces()
 Result<Loaded> load_amr(const std::string& path, const ReadOptions& options, Depth depth, const Progress& progress);
 
-/// A PVD: an index of files of these formats by time; those of one time are pieces of one grid.
-Result<Loaded> load_collection(const std::string& path, const ReadOptions& options, Depth depth,
-                               const Progress& progress);
+/// Names of files by time.
+struct TimeIndex {
+    std::map<double, std::vector<std::string>> names;
+    std::vector<std::string> notes;
+};
 
-using NamesByTime = std::map<double, std::vector<std::string>>;
+/// What a PVD names.
+Result<TimeIndex> index_of_collection(const std::string& path);
 
-/// The same of any index by time, whose files are of these formats or legacy VTK.
-Result<Loaded> load_times(const std::string& path, const NamesByTime& names, const ReadOptions& options, Depth depth,
-                          const Progress& progress);
+/// The grid of a step of an index by time, whose files are of these formats or legacy VTK; those of one time are pieces of
+/// one grid.
+Result<Loaded> load_times(const std::string& path, const Result<TimeIndex>& index, const ReadOptions& options,
+                          Depth depth, const Progress& progress);
+
+/// The file of a step; nothing where load_times() reads it, or tells why not.
+Result<std::optional<FileOfTime>> file_of_time(const std::string& path, const Result<TimeIndex>& index,
+                                               const ReadOptions& options);
 
 /// A file series of ParaView (.vtm.series, .vtu.series and so on): JSON that names the files.
 GridReader series_reader();
