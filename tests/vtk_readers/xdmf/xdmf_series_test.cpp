@@ -297,6 +297,8 @@ TEST_F(ReadXdmfSeries, TimesAreListedInAnyWay) {
     using Times = std::vector<double>;
     EXPECT_EQ(times(""), (Times{0, 1, 2}));
     EXPECT_EQ(times("<Time TimeType='List'>" + xdmf_item("Dimensions='3'", "2 4 8") + "</Time>"), (Times{2, 4, 8}));
+    EXPECT_EQ(times("<Time TimeType='List'>" + xdmf_item("Dimensions='3'", "0.1 0.2 1e-3") + "</Time>"),
+              (Times{0.1, 0.2, 1e-3}));
     EXPECT_EQ(times("<Time TimeType='List'>" + xdmf_item("Format='HDF' Dimensions='3'", "times.h5:/t") + "</Time>"),
               (Times{2, 4, 8}));
     EXPECT_EQ(times("<Time Type='List'>2 4 8</Time>"), (Times{2, 4, 8}));

@@ -9,6 +9,7 @@
 
 #include "io/files/escape.hpp"
 #include "io/files/text_scanner.hpp"
+#include "io/files/time_values.hpp"
 #include "io/pieces/loaded.hpp"
 
 namespace isotet::io::confined {
@@ -174,14 +175,17 @@ private:
     }
 
     Result<std::vector<double>> numbers_of(pugi::xml_node time) const {
-        std::vector<double> values;
         if (const pugi::xml_node item = document_.child(time, "DataItem")) {
             const auto read = data_.read(item, Depth::arrays);
             if (!read) return read.error();
-            for (std::size_t i = 0; i < read->values.size(); ++i) values.push_back(read->values.at(i));
-            return values;
+            // Without a Precision text stands for float32, but means what it says.
+            auto text = numbers_in(text_of(document_.resolve(item)));
+            return text.size() == read->values.size() ? std::move(text) : time_values(read->values);
         }
-        const std::string text = text_of(time);
+        return numbers_in(text_of(time));
+    }
+    static std::vector<double> numbers_in(const std::string& text) {
+        std::vector<double> values;
         TextScanner scanner(text);
         for (double value = 0; scanner.number(value);) values.push_back(value);
         return values;
