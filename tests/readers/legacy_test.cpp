@@ -598,5 +598,21 @@ TEST_P(ReadLegacyForm, MarksTheScalarsOfPointsAndOfCells) {
     EXPECT_EQ(active, (std::vector<std::string>{"mat", "T (K)"}));
 }
 
+/// As VisIt writes it.
+TEST_P(ReadLegacyForm, HasTheTimeOfTheFile) {
+    LegacyText file(GetParam());
+    file.text(fmt::format("# vtk DataFile Version 3.0\ntitle\n{}\nDATASET UNSTRUCTURED_GRID\nFIELD FieldData 1\n"
+                          "TIME 1 1 double\n",
+                          GetParam() ? "BINARY" : "ASCII"));
+    file.numbers<double>({2.5}).text("POINTS 4 float\n").numbers<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}).tet();
+    EXPECT_EQ(load(file.str()).info.times, std::vector<double>{2.5});
+}
+
+TEST(ReadLegacy, TellsOfArraysOfText) {
+    LegacyText file(false);
+    file.start("3.0").tet().text("POINT_DATA 9\nFIELD a 2\nnames 1 9 string\na\nb\nc\nd\ne\nf\ng\nh\ni\n").sound_array("sound");
+    expect_sound(file.str(), {"point field names: it holds text, not numbers"});
+}
+
 } // namespace
 } // namespace isotet::test

@@ -13,6 +13,7 @@
 
 #include "base/errors.hpp"
 #include "io/files/text_scanner.hpp"
+#include "io/files/time_values.hpp"
 #include "io/pieces/loaded.hpp"
 #include "io/pieces/tensor_order.hpp"
 
@@ -298,7 +299,8 @@ Result<void> LegacyData::read_array(const Header& header) {
     }
     const std::string name = decoded_name(header.name);
     const bool of_file = data_ == Data::none && !wants_.file_arrays.empty() && name.starts_with(wants_.file_arrays);
-    const bool is_wanted = of_file || (data_ != Data::none && !name.empty() && wants_.field(association(), name));
+    const bool is_time = data_ == Data::none && (name == "TIME" || name == "TimeValue") && header.tuples == 1;
+    const bool is_wanted = of_file || is_time || (data_ != Data::none && !name.empty() && wants_.field(association(), name));
     const bool stays = is_wanted && may_stay(name, *type, header);
     const std::size_t before = scanner_.position();
     auto values =
@@ -309,6 +311,7 @@ Result<void> LegacyData::read_array(const Header& header) {
         return go_on_behind(header.left_in_field, values.error());
     }
     if (data_ == Data::none) {
+        if (is_time && values->components() == 1) file_.info.times = time_values(*values);
         if (of_file) file_.field_data.push_back({name, *std::move(values)});
         return {};
     }
@@ -333,6 +336,7 @@ Result<void> LegacyData::read_array(const Header& header) {
 /// has a line in both.
 Result<void> LegacyData::skip_strings(const Header& header) {
     const std::uint64_t components = header.components, tuples = header.tuples;
+    leave_out_array(header, "it holds text, not numbers");
     if (components == 0 || tuples > scanner_.left() / components)
         return invalid_data(fmt::format("{} x {} strings do not fit into the file", tuples, components));
     scanner_.next_line();

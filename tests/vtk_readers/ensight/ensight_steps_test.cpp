@@ -289,7 +289,8 @@ TEST(EnsightCaseFile, LeavesOutWhatIsNotKnownAndSaysSo) {
     folder.write("grid.geo", geometry.text());
     folder.write("t.scl", values.text());
     const std::string head = "Format\n type: EnSight Gold\n GEOMETRY\n  model: grid.geo\n";
-    for (const char* line : {"scalar per ulement: t t.scl", "scalar per node: t", "complex scalar per node: t t.scl"}) {
+    for (const char* line : {"scalar per ulement: t t.scl", "scalar per node: t", "complex scalar per node: t t.scl",
+                             "constant per case: a 1"}) {
         const auto result =
             read(folder.write("a.case", head + "VARIABLE\n " + line + "\nscalar per node: t t.scl\nQUERY\nx y: z\n"));
         ASSERT_TRUE(result) << line << ": " << result.error().message;

@@ -223,8 +223,9 @@ private:
             if (!line.starts_with('m') && key != "boundary" && key != "rigid_body") refuse(line, "model:");
             return;
         case Section::variable:
-            if (line.starts_with("constant")) return;
-            if (auto variable = variable_of(key)) {
+            if (line.starts_with("constant"))
+                found_.left_out.push_back({"variable", std::string(line), "it is a constant, no field"});
+            else if (auto variable = variable_of(key)) {
                 if (take_files(*variable, rest)) found_.variables.push_back(*std::move(variable));
                 else found_.left_out.push_back({"variable", std::string(line), "a name and a file are not there"});
             } else if (key.empty()) refuse(line, "a variable");
@@ -292,7 +293,6 @@ std::optional<std::int64_t> number_of_file(const EnsightCase::TimeSet& set, std:
     return std::nullopt;
 }
 
-template <class Sets>
 /// The place, from 1, of the last time of the set that is not behind `time`; 0: all are. Times may be listed in any order.
 std::size_t step_at(const EnsightCase::TimeSet& set, double time) {
     std::size_t step = 0;
@@ -301,6 +301,7 @@ std::size_t step_at(const EnsightCase::TimeSet& set, double time) {
     return step;
 }
 
+template <class Sets>
 auto with_id(const Sets& sets, std::int64_t id) {
     return std::find_if(sets.begin(), sets.end(), [&](const auto& set) { return set.id == id; });
 }

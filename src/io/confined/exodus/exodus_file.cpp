@@ -65,7 +65,7 @@ Error ExodusFile::failed(std::string_view what) const {
 Result<ExodusFile> ExodusFile::open(const std::string& path) {
     auto opened = NetcdfFile::open(path);
     if (!opened) return opened.error();
-    if (!(*opened)->dimension("num_dim")) return broken(path, "it is no Exodus file: it has no dimension \"num_dim\"");
+    if (!(*opened)->dimension("num_dim")) return broken(path, "it is a NetCDF file, but not Exodus II: it has no dimension \"num_dim\"");
     ExodusFile file(path, *std::move(opened));
     if (auto read = file.read_contents(); !read) return read.error();
     return file;
