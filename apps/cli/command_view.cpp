@@ -67,8 +67,7 @@ public:
             return paths.error();
         if (Result<void> found = check_view_fields(*source_, command_.field, command_.color_by); !found) return found;
         if (command_.grid.time || command_.grid.step)
-            if (const auto steps = choose_steps(source_->info(), command_.grid, Steps::one, console_); !steps)
-                return steps.error();
+            if (const auto steps = source_->choose_steps(Steps::one, console_); !steps) return steps.error();
         return {};
     }
 

@@ -91,7 +91,7 @@ Result<std::vector<double>> isovalues_of(const ExportCommand& command, const Gri
     if (command.shares.empty()) return isovalues;
     const auto source = GridSource::open(grid_options, console);
     if (!source) return source.error();
-    const auto steps = choose_steps(source->info(), grid_options, Steps::one, console);
+    const auto steps = source->choose_steps(Steps::one, console);
     if (!steps) return steps.error();
     Grid grid;
     const auto values = read_field(*source, steps->front(), {field, command.field.cell_field}, {}, console, grid);

@@ -24,6 +24,7 @@
 #include "io/files/kept_files.hpp"
 #include "io/files/text_scanner.hpp"
 #include "io/formats.hpp"
+#include "io/pieces/block_choice.hpp"
 #include "io/pieces/join/join.hpp"
 #include "io/pieces/region_choice.hpp"
 #include "io/pieces/survey_unread.hpp"
@@ -243,7 +244,6 @@ Result<ReadResult> read_surveyed(const GridReader& reader, const std::string& pa
     return std::move(surveyed->read);
 }
 
-/// How a reader is called: as itself, or for counting.
 /// The file of one step of an index by time, and the options to read it with; nothing where the index is read as one.
 struct StepInIndex {
     FileOfTime file;
@@ -279,6 +279,7 @@ Result<std::optional<StepInIndex>> step_in_index(const GridReader& reader, const
     return std::optional(std::move(step));
 }
 
+/// How a reader is called: as itself, or for counting.
 using ReadWith =
     std::function<Result<ReadResult>(const GridReader& reader, const std::string& path, const ReadOptions& options)>;
 
@@ -286,7 +287,6 @@ Result<ReadResult> read_checked(const std::string& path, const ReadOptions& opti
                                 const ReadWith& read_with) {
     const auto reader = choose_reader(path, options);
     if (!reader) return reader.error();
-    auto displaced_options = with_displacement(**reader, path, options, progress);
     auto in_index = step_in_index(**reader, path, options, progress);
     if (!in_index) return in_index.error();
     if (StepInIndex* const step = *in_index ? &**in_index : nullptr) {
@@ -297,6 +297,7 @@ Result<ReadResult> read_checked(const std::string& path, const ReadOptions& opti
         read->notes.insert(read->notes.begin(), step->file.notes.begin(), step->file.notes.end());
         return read;
     }
+    auto displaced_options = with_displacement(**reader, path, options, progress);
     if (!displaced_options) return displaced_options.error();
     const auto extended = with_regions(**reader, path, *std::move(displaced_options), progress);
     if (!extended) return extended.error();
@@ -374,7 +375,6 @@ Result<void> number_steps(const FileOfStep& file, FileInfo& info) {
 Result<FileInfo> inspect_one(const std::string& path, const ReadOptions& options, const Progress& progress) {
     const auto reader = choose_reader(path, options);
     if (!reader) return reader.error();
-    if (options.kept) options.kept->look_at(path);
     auto in_index = step_in_index(**reader, path, options, progress);
     if (!in_index) return in_index.error();
     if (StepInIndex* const step = *in_index ? &**in_index : nullptr) {
@@ -383,9 +383,12 @@ Result<FileInfo> inspect_one(const std::string& path, const ReadOptions& options
         if (auto given = step->give_times(**reader, *info); !given) return given.error();
         return info;
     }
+    if (options.kept) options.kept->look_at(path);
     auto info = (*reader)->inspect(path, options, progress);
     if (!info) return info;
     if (auto known = check_blocks(*info, options); !known) return known.error();
+    if (!info->blocks.empty() && region_field(*info).empty())
+        if (const auto chosen = chosen_blocks(info->blocks, options); !chosen) return chosen.error();
     if (!options.blocks.empty()) info->least = {};
     if (info->cells == 0)
         for (const BlockInfo& block : info->blocks) info->cells += block.cells;

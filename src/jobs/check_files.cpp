@@ -26,7 +26,7 @@ Result<Origin> read_origin(const CheckJob& job, Caller& caller) {
     const Result<GridSource> source = GridSource::open(job.grid, caller);
     if (!source) return source.error();
     if (auto paths = check_output_paths(source->info().files, job.other_outputs); !paths) return paths.error();
-    const auto steps = choose_steps(source->info(), job.grid, Steps::one, caller);
+    const auto steps = source->choose_steps(Steps::one, caller);
     if (!steps) return steps.error();
     FieldsToRead fields{std::vector<std::string>{}, std::vector<std::string>{}};
     std::optional<FoundField> found;

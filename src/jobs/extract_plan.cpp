@@ -240,7 +240,7 @@ bool streams(const ExtractJob& job, const GridSource& source) {
 Result<void> choose_first_of(ExtractJob& job, GridSource& source, ExtractPlan& plan, Caller& caller) {
     ChoiceWish wish{job.all_steps ? Steps::all : Steps::one, job.field};
     if (job.field.shape) { // any step has it
-        auto steps = choose_steps(source.info(), job.grid, wish.steps, caller);
+        auto steps = source.choose_steps(wish.steps, caller);
         if (!steps) return steps.error();
         plan.steps = *std::move(steps);
         return {};

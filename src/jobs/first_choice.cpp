@@ -208,7 +208,7 @@ Result<FirstChoice> choose_first(GridSource& source, const GridOptions& options,
     const bool is_open = count > 1 && wish.steps == Steps::one && !options.time && !options.step;
     FirstChoice choice;
     if (!is_open) {
-        auto steps = choose_steps(source.info(), options, wish.steps, caller);
+        auto steps = source.choose_steps(wish.steps, caller);
         if (!steps) return steps.error();
         choice.steps = *std::move(steps);
     }
@@ -216,9 +216,12 @@ Result<FirstChoice> choose_first(GridSource& source, const GridOptions& options,
     if (!known.empty()) choice.view = {FirstDraw::isosurfaces, known, Association::point, FirstReason::only, false};
     const bool needs_view = known.empty() && wish.needs_view && !source.info().fields.empty();
     if (!needs_view && !is_open) return choice;
-    std::vector<std::size_t> steps{0};
+    const std::size_t first = source.first_step();
+    std::vector<std::size_t> steps{first};
     if (!is_open && wish.steps == Steps::one) steps = choice.steps;
-    else if (count > 1) steps = count > 2 ? std::vector<std::size_t>{0, 1, count - 1} : std::vector<std::size_t>{0, 1};
+    else
+        for (const std::size_t step : {first + 1, count - 1})
+            if (step > steps.back() && step < count) steps.push_back(step);
     FirstLook look(source, wish, caller, run);
     std::size_t taken = steps.front();
     bool varies = false;
@@ -237,9 +240,10 @@ Result<FirstChoice> choose_first(GridSource& source, const GridOptions& options,
     if (!is_open) return choice;
     choice.steps = {taken};
     const std::string& name = wish.field.name;
-    const std::string why = taken == 0     ? std::string()
-                            : name.empty() ? std::string(", and no field varies at step 0")
-                                           : fmt::format(", and '{}' does not vary at step 0", name);
+    const std::string why =
+        taken == first ? first == 0 ? std::string() : std::string(", the chosen blocks are not in those before")
+        : name.empty() ? fmt::format(", and no field varies at step {}", first)
+                       : fmt::format(", and '{}' does not vary at step {}", name, first);
     caller.note(fmt::format("the file has {} time steps{}: step {}, time {}, was taken; `time` and `step` choose "
                             "another",
                             count, why, taken, shortest(source.info().times[taken])));

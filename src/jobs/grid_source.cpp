@@ -12,6 +12,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <isotet/contour.hpp>
 #include <isotet/fields.hpp>
@@ -286,6 +287,10 @@ Result<GridSource> GridSource::open(const GridOptions& options, Caller& caller) 
     }
     source.described_ = read_options.step.value_or(0);
     read_options.step.reset();
+    if (!info && !options.step && !options.time) {
+        info = source.inspect_first_with_blocks(info.error(), caller);
+        source.described_ = source.first_step_;
+    }
     if (!info) {
         const FileKinds kinds = kinds_of(options.file);
         if (info.error().code != ErrorCode::file || !kinds.surface || kinds.grid || !options.format.empty() ||
@@ -310,6 +315,57 @@ Result<GridSource> GridSource::open(const GridOptions& options, Caller& caller) 
     }
     if (auto taken = source.take_choices(); !taken) return taken.error();
     return source;
+}
+
+/// What the file holds at the first step that has the chosen blocks; `error`, that of step 0, where none has.
+Result<FileInfo> GridSource::inspect_first_with_blocks(Error error, Caller& caller) {
+    ReadOptions whole = read_options_, chosen = read_options_;
+    whole.blocks.clear();
+    if (options_.blocks.empty() || error.code != ErrorCode::invalid_argument) return error;
+    const Result<FileInfo> all = inspect(options_.file, whole, caller.run());
+    for (std::size_t step = 1; all && step < all->times.size(); ++step) {
+        if (caller.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
+        chosen.step = step;
+        Result<FileInfo> info = inspect(options_.file, chosen, caller.run());
+        if (!info) continue;
+        first_step_ = step;
+        return info;
+    }
+    return error;
+}
+
+bool GridSource::lacks_blocks(std::size_t step, const Run& run) const {
+    ReadOptions options = read_options_;
+    options.step = step;
+    const Result<FileInfo> info = inspect(options_.file, options, run);
+    if (info || info.error().code != ErrorCode::invalid_argument) return false;
+    options.blocks.clear();
+    return static_cast<bool>(inspect(options_.file, options, run));
+}
+
+Result<std::vector<std::size_t>> GridSource::choose_steps(Steps steps, Caller& caller) const {
+    const std::string blocks = quoted_list(options_.blocks);
+    const std::size_t count = info_.times.size();
+    if (steps == Steps::one && first_step_ > 0 && !options_.step && !options_.time) {
+        caller.note(
+            fmt::format("the file has {} time steps, and step {}, time {}, is the first with the blocks {}: it was "
+                        "taken; `time` and `step` choose another",
+                        count, first_step_, shortest(info_.times[first_step_]), blocks));
+        return std::vector<std::size_t>{first_step_};
+    }
+    auto chosen = jobs::choose_steps(info_, options_, steps, caller);
+    if (!chosen || steps == Steps::one || options_.blocks.empty() || count < 2) return chosen;
+    std::vector<std::size_t> without;
+    for (const std::size_t step : *chosen) {
+        if (caller.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
+        if (lacks_blocks(step, caller.run())) without.push_back(step);
+    }
+    if (without.empty()) return chosen;
+    caller.note(fmt::format("{} of the {} time steps {} not have the blocks {} and {} skipped: {}", without.size(),
+                            count, without.size() == 1 ? "does" : "do", blocks, without.size() == 1 ? "is" : "are",
+                            fmt::join(without, ", ")));
+    std::erase_if(*chosen, [&](std::size_t step) { return std::ranges::binary_search(without, step); });
+    return chosen;
 }
 
 Result<void> GridSource::take_choices() {

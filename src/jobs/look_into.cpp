@@ -71,11 +71,10 @@ void widen(ComponentStatistics& all, const ComponentStatistics& one) {
 
 /// Ranges and counts become those of all time steps; fields that only others have come behind.
 Result<void> add_other_steps(GridSource& source, GridSummary& summary, Caller& caller) {
-    const std::size_t steps = std::max<std::size_t>(summary.file.times.size(), 1);
-    std::vector<std::size_t> all(steps);
-    std::iota(all.begin(), all.end(), std::size_t{0});
-    if (auto looked = source.look_at_steps(all, caller); !looked) return looked;
-    for (const std::size_t step : all) {
+    const auto all = source.choose_steps(Steps::all, caller);
+    if (!all) return all.error();
+    if (auto looked = source.look_at_steps(*all, caller); !looked) return looked;
+    for (const std::size_t step : *all) {
         if (step == summary.step) continue;
         const Result<Grid> grid = source.read({}, step, caller);
         if (!grid) return grid.error();
@@ -92,7 +91,7 @@ Result<void> add_other_steps(GridSource& source, GridSummary& summary, Caller& c
                     widen(same->components[c], field.components[c]);
         }
     }
-    summary.steps = steps;
+    summary.steps = all->size();
     return {};
 }
 
@@ -124,8 +123,9 @@ std::vector<VectorSummary> vectors_of(const std::vector<FieldInfo>& fields) {
 Result<GridSummary> look_at_heads(const GridSource& source, const GridOptions& options, Caller& caller) {
     GridSummary summary;
     summary.file = source.info();
+    summary.step = source.first_step();
     if (options.step || options.time) {
-        const auto steps = choose_steps(summary.file, options, Steps::one, caller);
+        const auto steps = source.choose_steps(Steps::one, caller);
         if (!steps) return steps.error();
         summary.step = steps->front();
     }

@@ -123,7 +123,7 @@ Result<void> PackRun::open() {
     if (auto enough = check_scratch(source_->info().cells); !enough) return enough;
     if (auto paths = check_output_paths(source_->info().files, outputs); !paths) return paths;
     const Steps which = job_.all_steps ? Steps::all : Steps::one;
-    auto steps = choose_steps(source_->info(), job_.grid, which, caller_);
+    auto steps = source_->choose_steps(which, caller_);
     if (!steps) return steps.error();
     steps_ = *std::move(steps);
     numbers_.grid = job_.grid.file;

@@ -109,7 +109,7 @@ Result<void> BenchRun::run_file() {
     const Result<GridSource> source = GridSource::open(options, caller_);
     if (!source) return source.error();
     if (auto paths = check_output_paths(source->info().files, job_.other_outputs); !paths) return paths;
-    const auto steps = choose_steps(source->info(), job_.grid, Steps::one, caller_);
+    const auto steps = source->choose_steps(Steps::one, caller_);
     if (!steps) return steps.error();
     Grid grid;
     const Result<PointField> field = read_field(*source, steps->front(), job_.field, {}, caller_, grid);

@@ -259,5 +259,53 @@ TEST_F(SeriesFields, OfBrokenStepsAloneAreAnError) {
     EXPECT_FALSE(extract_files(job, listener));
 }
 
+/// Of two data sets of the series above, side by side: b, of steps 1 and 2.
+TEST_F(SeriesFields, StepsWithoutTheChosenBlockAreSkipped) {
+    const auto index = [](const std::string& more) {
+        return "<VTKFile type='vtkMultiBlockDataSet'><vtkMultiBlockDataSet><DataSet name='a' file='a.vtu'/>" + more +
+               "</vtkMultiBlockDataSet></VTKFile>";
+    };
+    folder.write("0.vtm", index(""));
+    for (const char* name : {"1.vtm", "2.vtm"}) folder.write(name, index("<DataSet name='b' file='b.vtu'/>"));
+    const std::string grid = folder.write("b.pvd", "<VTKFile type='Collection'><Collection>"
+                                                   "<DataSet timestep='0' file='0.vtm'/><DataSet timestep='1' "
+                                                   "file='1.vtm'/><DataSet timestep='2' file='2.vtm'/>"
+                                                   "</Collection></VTKFile>");
+    ExtractJob job = job_of(grid, "T");
+    job.grid.blocks = {"b"};
+    const auto one = extract_files(job, listener);
+    ASSERT_TRUE(one) << one.error().message;
+    EXPECT_EQ(one->surfaces.at(0).time, 1.0);
+    job.all_steps = true;
+    job.out = folder.file("o_{step}.vtp");
+    const auto all = extract_files(job, listener);
+    ASSERT_TRUE(all) << all.error().message;
+    EXPECT_EQ(all->surfaces.size(), 2u);
+    EXPECT_FALSE(std::filesystem::exists(folder.file("o_0.vtp")));
+    EXPECT_EQ(
+        std::ranges::count(listener.noted, "1 of the 3 time steps does not have the blocks 'b' and is skipped: 0"), 1);
+    InfoJob info;
+    info.grid = job.grid;
+    info.all_steps = true;
+    const auto summary = look_into(info, listener);
+    ASSERT_TRUE(summary) << summary.error().message;
+    EXPECT_EQ(summary->step, 1u);
+    EXPECT_EQ(summary->steps, 2u);
+    info.heads = true;
+    EXPECT_EQ(look_into(info, listener).value().step, 1u);
+    PackJob pack;
+    pack.grid = job.grid;
+    pack.out = folder.file("o.isotet");
+    const auto packed = pack_file(pack, listener);
+    EXPECT_TRUE(packed) << packed.error().message;
+    info.grid.blocks = {"c"};
+    const auto none = look_into(info, listener);
+    ASSERT_FALSE(none);
+    EXPECT_EQ(none.error().message, "block 'c' is not in the file, which has 1 'a'");
+    info.grid.blocks = {"b"};
+    info.grid.step = 0;
+    EXPECT_FALSE(look_into(info, listener));
+}
+
 } // namespace
 } // namespace isotet::jobs

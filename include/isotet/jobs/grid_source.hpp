@@ -72,10 +72,12 @@ struct BesideGrid {
     std::uint64_t bytes_a_point = 0;
 };
 
+enum class Steps { one, all };
+
 class GridSource {
 public:
     /// Finds out what the file holds, or what the grid to make will hold: of several steps the one that the options ask
-    /// for, else the first.
+    /// for, else the first that has the chosen blocks.
     static Result<GridSource> open(const GridOptions& options, Caller& caller);
 
     const FileInfo& info() const noexcept { return info_; }
@@ -89,6 +91,12 @@ public:
 
     /// Whether a step that was looked at has a field of this name, or a component of it is meant; coordinates all have.
     bool has_field(std::size_t step, const std::string& name) const;
+
+    /// The first step that has the chosen blocks.
+    std::size_t first_step() const noexcept { return first_step_; }
+
+    /// jobs::choose_steps(), of all steps without those that do not have the chosen blocks, which are noted.
+    Result<std::vector<std::size_t>> choose_steps(Steps steps, Caller& caller) const;
 
     /// Names of the point or the cell fields.
     std::vector<std::string> names(Association association) const;
@@ -178,6 +186,8 @@ private:
     void choose_fields(const FieldsToRead& fields, std::size_t step, ReadOptions& options) const;
 
     Result<void> look_at(std::size_t step, const Run& run);
+    Result<FileInfo> inspect_first_with_blocks(Error error, Caller& caller);
+    bool lacks_blocks(std::size_t step, const Run& run) const;
     Result<void> require_room_once(const FieldsToRead& fields, std::size_t step, bool all_cells) const;
 
     GridOptions options_;
@@ -185,7 +195,8 @@ private:
     std::shared_ptr<const Grid> surface_;                    ///< where the file is a surface: its triangles as cells
     std::shared_ptr<const std::vector<CellChoice>> choices_; ///< those of GridOptions::cells; null: none
     FileInfo info_;
-    bool knows_blocks_ = false;            ///< cell_names() has "block"
+    bool knows_blocks_ = false; ///< cell_names() has "block"
+    std::size_t first_step_ = 0;
     std::optional<std::size_t> described_; ///< the step whose fields info_ has; nothing: of several
     std::map<std::size_t, std::vector<FieldInfo>> step_fields_; ///< of the steps that were looked at
     ReadOptions read_options_;
@@ -197,7 +208,6 @@ private:
 
 /// The steps that --time, --step or --all-steps ask for; the first, with a note, when none does and there are several.
 /// Errors   invalid_argument: a step or time that the file does not have, with those that it has
-enum class Steps { one, all };
 Result<std::vector<std::size_t>> choose_steps(const FileInfo& info, const GridOptions& options, Steps steps,
                                               Caller& caller);
 
