@@ -26,7 +26,7 @@ struct FindFieldOptions {
 /// Finds the scalar field called `name` on a grid.
 ///
 /// The name is first taken whole; only if no field has it is the part after the last colon a component: `x`, `y`, `z`,
-/// `mag`, or a number from 0. A name that no field has may be that of a component group (ComponentGroup). A name
+/// `mag`, a number from 0, or of tensors `xx`, `xy` ... `zz` (6 components: XX YY ZZ XY YZ XZ; 9: row by row). A name that no field has may be that of a component group (ComponentGroup). A name
 /// that is both a point and a cell field means the preferred one, with a note. If no field is meant, `x`, `y`, `z` are
 /// the coordinates. An empty name means the only field there is.
 /// A cell field is averaged to the points, weighted by the volumes of the cells around each; cells where it is NaN are

@@ -172,7 +172,8 @@ std::optional<FieldName> match_component_group(std::string_view name, const std:
         const auto scalar = parse_scalar(name.substr(colon + 1));
         if (!scalar) continue;
         if (scalar->magnitude) return FieldName{group.name, "mag", group.parts};
-        if (scalar->component < group.parts.size()) return FieldName{group.parts[scalar->component], std::nullopt};
+        if (const auto place = scalar->place_in(group.parts.size()))
+            return FieldName{group.parts[*place], std::nullopt};
     }
     return std::nullopt;
 }

@@ -7,6 +7,7 @@
 #include <isotet/grid.hpp>
 
 #include "fields/component_groups.hpp"
+#include "grid/values/scalar_of.hpp"
 
 namespace isotet {
 
@@ -14,8 +15,7 @@ namespace {
 
 bool is_component(std::string_view text) {
     const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
-    return text == "x" || text == "y" || text == "z" || text == "mag" ||
-           (!text.empty() && std::ranges::all_of(text, is_digit));
+    return core::parse_scalar(text) || (!text.empty() && std::ranges::all_of(text, is_digit));
 }
 
 /// Only A to Z, whatever the locale; other bytes are compared as they are.

@@ -35,16 +35,17 @@ std::string in_quotes(const std::vector<std::string>& names) {
 Result<core::Scalar> choose_scalar(const Field& field, const std::optional<std::string>& component) {
     const std::size_t components = field.values.components();
     if (!component && components != 1)
-        return invalid_argument(
-            fmt::format("the field '{}' has {} components, but one is needed: ask for '{}:x', '{}:0' or '{}:mag'",
-                        field.name, components, field.name, field.name, field.name));
+        return invalid_argument(fmt::format(
+            "the field '{}' has {} components, but one is needed: ask for '{}:{}', '{}:0' or '{}:mag'", field.name,
+            components, field.name, components == 6 || components == 9 ? "xx" : "x", field.name, field.name));
     if (!component) return core::Scalar{};
     const auto scalar = core::parse_scalar(*component);
-    if (!scalar || scalar->component >= components)
+    const auto place = scalar ? scalar->place_in(components) : std::nullopt;
+    if (!place)
         return invalid_argument(
             fmt::format("component '{}' of the field '{}' is asked for, but it has {} (counted from 0)", *component,
                         field.name, components));
-    return *scalar;
+    return core::Scalar{*place, scalar->magnitude};
 }
 
 Result<PointField> coordinate(const Grid& grid, std::string_view name) {

@@ -435,11 +435,15 @@ Error GridSource::no_such_field(const std::string& name) const {
         if (std::ranges::find(all, field.name) == all.end()) all.push_back(field.name);
     if (!options_.blocks.empty() && std::ranges::find(all, name) != all.end())
         return {ErrorCode::invalid_argument, fmt::format("the field '{}' is in no block that was chosen", name)};
-    if (const std::size_t colon = name.rfind(':');
-        colon != std::string::npos && std::ranges::find(all, name.substr(0, colon)) != all.end())
+    const std::size_t colon = std::min(name.rfind(':'), name.size());
+    if (const auto field = std::ranges::find(info_.fields, name.substr(0, colon), &FieldInfo::name);
+        colon < name.size() && field != info_.fields.end())
         return {ErrorCode::invalid_argument,
-                fmt::format("field '{}' has no component '{}': components are x, y, z, mag, or numbers from 0",
-                            name.substr(0, colon), name.substr(colon + 1))};
+                fmt::format("field '{}' has no component '{}': components are {}, mag, or numbers from 0", field->name,
+                            name.substr(colon + 1),
+                            field->components == 6   ? "xx, yy, zz, xy, yz, xz"
+                            : field->components == 9 ? "xx, xy, xz, yx, yy, yz, zx, zy, zz"
+                                                     : "x, y, z")};
     return {ErrorCode::invalid_argument,
             fmt::format("there is no field '{}': the grid has {}", name,
                         all.empty() ? "none; x, y and z are its coordinates" : quoted_list(nearest_first(name, all)))};

@@ -153,7 +153,7 @@ TEST(Expression, TellsWhatIsWrongAndWhere) {
         {"sqrt(p, 2)", "character 1: sqrt() takes one value, but 2 are given"},
         {"atan2(p)", "character 1: atan2() takes 2 values, but one is given"},
         {"min(p)", "min() takes 2 or more values, but one is given"},
-        {"U:w*1", "character 3: a component is x, y, z, mag or a number from 0, not 'w'"},
+        {"U:w*1", "character 3: a component is x, y, z, of tensors xx and so on, mag or a number from 0, not 'w'"},
         {"(U):3", "'(U)' has 3 components (counted from 0), but 3 is asked for"},
         {"`p", "character 1: a backquote is not closed"},
         {"1e999*p", "character 1: the number is too large or too small for a double"},

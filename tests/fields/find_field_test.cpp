@@ -59,6 +59,22 @@ TEST(FindField, TakesComponentsInTheirOwnType) {
     EXPECT_EQ(values_of<std::int64_t>(grid, "v:1"), (std::vector<std::int64_t>{2, 5, 8, 11}));
 }
 
+TEST(FindField, TakesComponentsOfTensorsByName) {
+    std::vector<double> six, nine;
+    for (int i = 0; i < 24; ++i) six.push_back(i);
+    for (int i = 0; i < 36; ++i) nine.push_back(i);
+    const Grid grid =
+        tet({field<double>("s", six, 6), field<double>("t", nine, 9), field<double>("v", {0, 1, 2, 3}, 1)});
+    const auto first = [&](const char* name) { return values_of<double>(grid, name).at(0); };
+    const char* const of_six[] = {"s:xx", "s:yy", "s:zz", "s:xy", "s:yz", "s:xz"};
+    const char* const of_nine[] = {"t:XX", "t:XY", "t:XZ", "t:YX", "t:YY", "t:YZ", "t:ZX", "t:ZY", "t:ZZ"};
+    for (int i = 0; i < 6; ++i) EXPECT_EQ(first(of_six[i]), i) << of_six[i];
+    for (int i = 0; i < 9; ++i) EXPECT_EQ(first(of_nine[i]), i) << of_nine[i];
+    EXPECT_EQ(first("s:zx"), 5);
+    EXPECT_EQ(first("2*s:xz + t:yx"), 13);
+    for (const char* name : {"s:xX", "s:xw", "v:xx", "2*v:xx"}) EXPECT_FALSE(find_field(grid, name)) << name;
+}
+
 TEST(FindField, TakesMagnitudesWithoutOverflow) {
     const Grid grid = tet({field<double>("v", {3, 4, 0, 0, -1.5e248, 2e248, 6e-200, 8e-200}, 2)});
     const auto magnitudes = values_of<double>(grid, "v:mag");

@@ -23,6 +23,10 @@ namespace isotet::core {
 
 namespace {
 
+std::optional<std::size_t> place_of(const ExpressionNode& node, std::size_t components) {
+    return Scalar{node.component, false, node.of_tensor}.place_in(components);
+}
+
 constexpr std::size_t block_size = 512, blocks_a_task = 16;
 
 /// A node in the order of computing, and where its block of values stands.
@@ -140,9 +144,11 @@ private:
         case ExpressionOp::coordinate:
         case ExpressionOp::gradient: break;
         case ExpressionOp::component:
-            if (node.component >= of(0))
+            if (!place_of(node, of(0)))
                 return wrong(argument(0), fmt::format("has {} component{} (counted from 0), but {} is asked for", of(0),
-                                                      of(0) == 1 ? "" : "s", node.component));
+                                                      of(0) == 1 ? "" : "s",
+                                                      node.of_tensor ? std::string("one of a tensor")
+                                                                     : std::to_string(node.component)));
             break;
         case ExpressionOp::magnitude: break;
         case ExpressionOp::unary:
@@ -246,7 +252,7 @@ private:
                 each([&](std::size_t, std::size_t i) { return static_cast<double>(typed[first + i]); });
             });
             break;
-        case ExpressionOp::component: std::copy_n(row(0, node.component), count, out); break;
+        case ExpressionOp::component: std::copy_n(row(0, *place_of(node, width(0))), count, out); break;
         case ExpressionOp::unary:
             if (node.unary) each([&](std::size_t, std::size_t i) { return node.unary(row(0, 0)[i]); });
             else each([&](std::size_t c, std::size_t i) { return -row(0, c)[i]; });

@@ -118,9 +118,12 @@ private:
         const std::string_view name = std::string_view(tree_.text).substr(begin, place_ - begin);
         const auto scalar = parse_scalar(name);
         if (!scalar)
-            return wrong_at(begin, fmt::format("a component is x, y, z, mag or a number from 0, not '{}'", name));
+            return wrong_at(
+                begin,
+                fmt::format("a component is x, y, z, of tensors xx and so on, mag or a number from 0, not '{}'", name));
         return add({.op = scalar->magnitude ? ExpressionOp::magnitude : ExpressionOp::component,
                     .component = scalar->component,
+                    .of_tensor = scalar->of_tensor,
                     .arguments = {*value},
                     .begin = tree_.nodes[*value].begin,
                     .end = place_});

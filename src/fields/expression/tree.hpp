@@ -47,6 +47,7 @@ struct ExpressionNode {
     double number = 0;
     FieldName field = {};          ///< of `field`
     std::size_t component = 0;     ///< of `component` and `coordinate`
+    bool of_tensor = false;        ///< `component` is as in core::Scalar
     UnaryFunction unary = nullptr; ///< of `unary`; none: the sign
     BinaryFunction binary = nullptr;
     std::vector<std::size_t> arguments = {}; ///< nodes before this one

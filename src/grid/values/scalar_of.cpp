@@ -24,9 +24,19 @@ Array fill(std::size_t count, const At& at) {
 
 } // namespace
 
+std::optional<std::size_t> Scalar::place_in(std::size_t components) const {
+    constexpr std::size_t symmetric[] = {0, 3, 5, 3, 1, 4, 5, 4, 2};
+    if (magnitude) return 0;
+    if (of_tensor && components == 6) return symmetric[component];
+    return component < components && (!of_tensor || components == 9) ? std::optional(component) : std::nullopt;
+}
+
 std::optional<Scalar> parse_scalar(std::string_view text) {
     if (text == "mag") return Scalar{0, true};
     if (text == "x" || text == "y" || text == "z") return Scalar{static_cast<std::size_t>(text[0] - 'x'), false};
+    for (const char first : {'x', 'X'})
+        if (text.size() == 2 && std::ranges::all_of(text, [&](char c) { return c >= first && c <= first + 2; }))
+            return Scalar{static_cast<std::size_t>(3 * (text[0] - first) + text[1] - first), false, true};
     Scalar scalar;
     const char* end = text.data() + text.size();
     const auto [stopped, fault] = std::from_chars(text.data(), end, scalar.component);

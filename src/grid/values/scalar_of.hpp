@@ -16,9 +16,14 @@ namespace isotet::core {
 struct Scalar {
     std::size_t component = 0;
     bool magnitude = false;
+    bool of_tensor = false; ///< `component` is one of 9, row by row
+
+    /// The component of a tuple of so many; nothing where it has no such. Symmetric tensors have 6: XX YY ZZ XY YZ XZ.
+    std::optional<std::size_t> place_in(std::size_t components) const;
 };
 
-/// `x`, `y`, `z`, `mag` or a number; nothing for other text or a number beyond 64 bits.
+/// `x`, `y`, `z`, `mag`, a number, or of tensors `xx`, `xy` and so on, also `XX`; nothing for other text or a number beyond
+/// 64 bits.
 std::optional<Scalar> parse_scalar(std::string_view text);
 
 /// The length of a tuple. Neither overflows nor underflows.
