@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <span>
 #include <tuple>
 
@@ -14,17 +15,72 @@ namespace isotet::render {
 
 namespace {
 
-constexpr float opaque_enough = 0.998F; ///< nothing is seen behind
+constexpr float opaque_enough = 0.998F;     ///< nothing is seen behind
+constexpr std::size_t samples_together = 4; ///< samples that are compared together
+
+/// Of values none of which is NaN, in as many lanes as a processor may have.
+float greatest_of(std::span<const float> values) {
+    std::array<float, 32> greatest;
+    greatest.fill(-INFINITY);
+    std::size_t i = 0;
+    for (; i + greatest.size() <= values.size(); i += greatest.size())
+        for (std::size_t k = 0; k < greatest.size(); ++k)
+            greatest[k] = values[i + k] > greatest[k] ? values[i + k] : greatest[k];
+    for (; i < values.size(); ++i) greatest[0] = std::max(greatest[0], values[i]);
+    return std::ranges::max(greatest);
+}
+
+/// The samples of a plane that lie before some depths, and those that lie as deep. As many of `right`, `down` and `depths`
+/// are read as there are samples, rounded up to a multiple of 4.
+struct Compared {
+    SampleMask before = 0, equal = 0;
+};
+Compared compare_depths(const DepthPlane& plane, float middle, const float* right, const float* down,
+                        const float* depths, std::size_t samples) {
+    const auto per_x = static_cast<float>(plane.per_x), per_y = static_cast<float>(plane.per_y);
+    Compared found;
+#if defined(__SSE2__)
+    const __m128 x = _mm_set1_ps(per_x), y = _mm_set1_ps(per_y), at_middle = _mm_set1_ps(middle);
+    const __m128 lower = _mm_set1_ps(plane.lower), upper = _mm_set1_ps(plane.upper);
+    for (std::size_t i = 0; i < samples; i += samples_together) {
+        const __m128 across = _mm_add_ps(at_middle, _mm_mul_ps(x, _mm_loadu_ps(right + i)));
+        const __m128 anywhere = _mm_add_ps(across, _mm_mul_ps(y, _mm_loadu_ps(down + i)));
+        const __m128 at = _mm_min_ps(_mm_max_ps(anywhere, lower), upper), others = _mm_loadu_ps(depths + i);
+        found.before |= static_cast<SampleMask>(_mm_movemask_ps(_mm_cmplt_ps(at, others))) << i;
+        found.equal |= static_cast<SampleMask>(_mm_movemask_ps(_mm_cmpeq_ps(at, others))) << i;
+    }
+#else
+    for (std::size_t i = 0; i < samples; ++i) {
+        const float at = std::clamp(middle + per_x * right[i] + per_y * down[i], plane.lower, plane.upper);
+        found.before |= SampleMask{at < depths[i]} << i;
+        found.equal |= SampleMask{at == depths[i]} << i;
+    }
+#endif
+    return found;
+}
+
+/// The samples that one facet has, likewise; bits behind the last may be set.
+SampleMask samples_of(std::uint32_t owner, const std::uint32_t* owners, std::size_t samples) {
+    SampleMask mask = 0;
+#if defined(__SSE2__)
+    const __m128i wanted = _mm_set1_epi32(static_cast<int>(owner));
+    for (std::size_t i = 0; i < samples; i += samples_together) {
+        const __m128i own = _mm_loadu_si128(reinterpret_cast<const __m128i*>(owners + i));
+        mask |= static_cast<SampleMask>(_mm_movemask_ps(_mm_castsi128_ps(_mm_cmpeq_epi32(own, wanted)))) << i;
+    }
+#else
+    for (std::size_t i = 0; i < samples; ++i) mask |= SampleMask{owners[i] == owner} << i;
+#endif
+    return mask;
+}
 
 } // namespace
 
 Tile::Tile(const TileScene& scene)
-    : scene_(scene),
-      count_(scene.screen.samples * scene.screen.samples),
-      all_(first_samples(count_)),
-      right_(count_),
-      down_(count_) {
+    : scene_(scene), count_(scene.screen.samples * scene.screen.samples), all_(first_samples(count_)) {
     const std::uint32_t s = scene.screen.samples;
+    right_.resize((count_ + samples_together - 1) / samples_together * samples_together);
+    down_.resize(right_.size());
     for (std::uint32_t i = 0; i < count_; ++i) {
         right_[i] = static_cast<float>(i % s) - 0.5F * static_cast<float>(s - 1);
         down_[i] = static_cast<float>(i / s) - 0.5F * static_cast<float>(s - 1);
@@ -78,8 +134,8 @@ void Tile::start(std::size_t number) {
     until_measured_ = 0;
     if (volumes_) volumes_->start(number, column, row);
     fragments_.clear();
-    depths_.assign(pixels * count_, INFINITY);
-    owners_.assign(pixels * count_, 0);
+    depths_.assign(pixels * count_ + samples_together - 1, INFINITY);
+    owners_.assign(depths_.size(), 0);
     heads_.assign(pixels, 0);
     covered_.assign(pixels, 0);
 }
@@ -113,8 +169,8 @@ bool Tile::may_be_seen(float nearest) {
     constexpr std::size_t triangles_between = 64; // a look at all samples takes as long as a few triangles
     if (until_measured_-- == 0) {
         until_measured_ = triangles_between;
-        farthest_ =
-            std::ranges::find(covered_, std::uint8_t{0}) == covered_.end() ? std::ranges::max(depths_) : INFINITY;
+        const bool all = std::memchr(covered_.data(), 0, covered_.size()) == nullptr;
+        farthest_ = all ? greatest_of(std::span(depths_).first(covered_.size() * count_)) : INFINITY;
     }
     return nearest <= farthest_; // of those at the same depth the first one is seen, in the order of sheets
 }
@@ -133,15 +189,9 @@ void Tile::measure_opaque() {
 /// The samples of a mask that lie in front of what is opaque: an opaque facet also where the other one comes later, so
 /// that the order of drawing shows nowhere.
 SampleMask Tile::in_front(const Facet& facet, std::size_t pixel, float depth, SampleMask mask) const {
-    const DepthPlane& plane = facet.depth;
-    const auto per_x = static_cast<float>(plane.per_x), per_y = static_cast<float>(plane.per_y);
-    const float* const nearest = depths_.data() + pixel * count_;
-    SampleMask seen = 0, equal = 0;
-    for (std::uint32_t i = 0; i < count_; ++i) {
-        const float at = std::clamp(depth + per_x * right_[i] + per_y * down_[i], plane.lower, plane.upper);
-        seen |= SampleMask{at < nearest[i]} << i;
-        equal |= SampleMask{at == nearest[i]} << i;
-    }
+    const Compared compared =
+        compare_depths(facet.depth, depth, right_.data(), down_.data(), depths_.data() + pixel * count_, count_);
+    SampleMask seen = compared.before, equal = compared.equal;
     if (!facet.sheet->translucent)
         for (equal &= mask; equal; equal &= equal - 1) {
             const auto i = static_cast<std::size_t>(std::countr_zero(equal));
@@ -227,8 +277,7 @@ void Tile::take_opaque(std::int32_t x, std::int32_t y) {
     const std::uint32_t* const owners = owners_.data() + pixel * count_;
     for (SampleMask left = all_; left;) {
         const std::uint32_t owner = owners[std::countr_zero(left)];
-        SampleMask mask = 0;
-        for (std::uint32_t i = 0; i < count_; ++i) mask |= SampleMask{owners[i] == owner} << i;
+        const SampleMask mask = samples_of(owner, owners, count_) & all_;
         left &= ~mask;
         if (owner == 0) continue;
         const Blend color{opaque_color(facets_[owner - 1], x, y, mask), 1};
