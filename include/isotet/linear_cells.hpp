@@ -102,6 +102,7 @@ struct ISOTET_API LinearGrid {
     LinearizeReport report;
     RefinedPoints refined;       ///< of quadratic cells; none where there are none
     RefinementReport refinement; ///< likewise
+    Array derived_numbers = {};  ///< uint64, of derived points: theirs with all polyhedra, where these were asked for
 
     /// An array of one tuple a user's point, continued for the derived points: computed in double, rounded once.
     /// float32 and float64 keep their type; integers become float64. NaN at a derived point where one of its points has NaN.
@@ -129,6 +130,7 @@ struct LinearizeOptions {
     std::vector<double> isovalues = {};
     Array values = {};
     std::vector<std::uint64_t> also = {}; ///< user's cells that stay though no isovalue meets them, ascending
+    bool numbers = false;                 ///< LinearGrid::derived_numbers, for which all are split, but not kept
     bool around = false; ///< polyhedra that share a point with a cell that is met stay, too: for gradients
 };
 

@@ -130,6 +130,30 @@ Result<void> check_selection(const Grid& grid, const LinearizeOptions& options) 
     return {};
 }
 
+/// Of the derived points of blocks their numbers among those of all cells.
+class RowNumbers {
+public:
+    explicit RowNumbers(std::size_t blocks) : numbers_(blocks), rows_(blocks) {}
+
+    /// When a cell of a block was kept, whose rows are now so many, or left out with so many rows.
+    void keep(std::size_t block, std::size_t rows) {
+        while (numbers_[block].size() < rows) numbers_[block].push_back(rows_[block]++);
+    }
+    void leave_out(std::size_t block, std::size_t rows) { rows_[block] += rows; }
+
+    Array join(std::uint64_t user_points) && {
+        std::vector<std::uint64_t> all;
+        std::uint64_t first = user_points;
+        for (std::size_t block = 0; block < numbers_.size(); first += rows_[block++])
+            for (const std::uint64_t number : numbers_[block]) all.push_back(first + number);
+        return Array::own(std::move(all));
+    }
+
+private:
+    std::vector<std::vector<std::uint64_t>> numbers_;
+    std::vector<std::uint64_t> rows_;
+};
+
 /// `polyhedra`   nothing: they stay for later, without their faces
 LinearGrid split_blocks(const Grid& grid, const core::CellReader& cells, const core::FaceReader& faces,
                         const LinearizeOptions& options, std::optional<LargeFaces> polyhedra,
@@ -138,22 +162,28 @@ LinearGrid split_blocks(const Grid& grid, const core::CellReader& cells, const c
     const MetCells met(cells, options, progress);
     const std::size_t cells_per_block = cells_of_block(cells.count());
     std::vector<KeptParts> blocks((cells.count() + cells_per_block - 1) / cells_per_block);
+    RowNumbers numbers(blocks.size());
     core::parallel_ranges(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
         PolyhedronSplitter splitter(grid, cells, faces, options, polyhedra.value_or(LargeFaces::quadrilaterals));
         HighDegreeSplitter by_degree(cells);
         std::vector<double> corner_values;
-        Parts parts;
+        Parts parts, left_out;
         for (std::size_t b = begin; b < end && !progress.cancelled(); ++b) {
             const std::size_t last = std::min(cells.count(), (b + 1) * cells_per_block);
             for (std::size_t cell = b * cells_per_block; cell < last; ++cell) {
                 const bool is_split = polyhedra && core::is_polyhedron(cells, faces, cell);
                 if (is_split && !options.isovalues.empty() && !met.meets(cell, corner_values) && !met.is_around(cell) &&
-                    !std::ranges::binary_search(options.also, cell))
+                    !std::ranges::binary_search(options.also, cell)) {
                     ++parts.report.unmet;
-                else if (is_split) splitter.split(cell, parts);
+                    if (!options.numbers) continue;
+                    splitter.split(cell, left_out);
+                    numbers.leave_out(b, left_out.rows());
+                    left_out.clear();
+                } else if (is_split) splitter.split(cell, parts);
                 else if (const auto what = high_degree_of(cells.type(cell), cells.corners(cell)))
                     by_degree.split(cell, *what, parts);
                 else parts.keep_cell(cells, cell);
+                if (options.numbers) numbers.keep(b, parts.rows());
             }
             blocks[b] = KeptParts(parts, narrow);
         }
@@ -161,6 +191,7 @@ LinearGrid split_blocks(const Grid& grid, const core::CellReader& cells, const c
     if (progress.cancelled()) return {};
     LinearGrid out = joined(blocks, grid.points.tuples());
     out.user_cells = cells.count();
+    if (options.numbers) out.derived_numbers = std::move(numbers).join(grid.points.tuples());
     if (out.report.high_degree > 0) merge_rows(out);
     return out;
 }

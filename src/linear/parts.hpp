@@ -34,6 +34,7 @@ public:
     std::span<const std::uint8_t> types() const { return types_; }
     std::span<const std::uint32_t> corner_counts() const { return corner_counts_; }
     std::span<const std::uint64_t> corners() const { return corners_; }
+    std::size_t rows() const { return term_counts_.size(); } ///< derived points
     /// Of derived points, one after another: `use(points, weights)`; the weights are one number where all are alike.
     template <class Use>
     void for_rows(const Use& use) const {

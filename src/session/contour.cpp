@@ -151,6 +151,7 @@ Result<void> finish(const Snapshot& now, std::span<const double> isovalues, cons
             return ok;
     if (linear) {
         session::map_source_cells(linear->source_cells, result.surfaces);
+        session::map_edge_ends(linear->user_points, linear->derived_numbers, result.surfaces);
         result.refinement = linear->refinement;
         result.cells_left_out += linear->refinement.left_out;
     }

@@ -101,4 +101,20 @@ void map_source_cells(const Array& numbers, std::vector<Extraction>& surfaces) {
     }
 }
 
+void map_edge_ends(std::uint64_t user_points, const Array& numbers, std::vector<Extraction>& surfaces) {
+    if (numbers.empty()) return;
+    const auto number_of = numbers.as<std::uint64_t>();
+    for (Extraction& extraction : surfaces) {
+        Array& ends = extraction.surface.edge_ends;
+        if (ends.empty()) continue;
+        core::Buffer<std::int64_t> mapped(ends.size());
+        const auto before = ends.as<std::int64_t>();
+        core::parallel_each(mapped.size(), 1 << 16, [&](std::size_t i) {
+            const auto point = static_cast<std::uint64_t>(before[i]);
+            mapped[i] = point < user_points ? before[i] : static_cast<std::int64_t>(number_of[point - user_points]);
+        });
+        ends = std::move(mapped).to_array(2);
+    }
+}
+
 } // namespace isotet::session

@@ -75,4 +75,7 @@ Result<ContourInput> on_linear_grid(ContourInput input, const LinearGrid& linear
 /// Writes other numbers, uint64, over those of cells: `numbers` of the grid that the cells are of. Empty: they are the same.
 void map_source_cells(const Array& numbers, std::vector<Extraction>& surfaces);
 
+/// Writes LinearGrid::derived_numbers over the edge ends that are derived points. Empty: they are the same.
+void map_edge_ends(std::uint64_t user_points, const Array& numbers, std::vector<Extraction>& surfaces);
+
 } // namespace isotet::session

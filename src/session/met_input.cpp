@@ -132,7 +132,7 @@ bool MetInput::suits(const ContourInput& input, const ContourOptions& options) {
     const auto plain = [](const Field& field) { return keeps_its_scale(field.values); };
     const ScalarType points = input.grid.points.type();
     return !options.expected_isovalues.empty() && options.surfaces > 0 && method == Method::direct &&
-           options.engine->extracts_directly() && !options.edge_ends && !options.exact_vertices && !options.frame &&
+           options.engine->extracts_directly() && !options.exact_vertices && !options.frame &&
            input.grid.point_numbers.empty() && (points == ScalarType::float32 || points == ScalarType::float64) &&
            input.field.cell_values.empty() && has_cells_to_linearize(input.grid.cells) &&
            !has_curved_cells(input.grid.cells) && keeps_its_scale(input.field.values) &&
@@ -174,6 +174,7 @@ Result<std::optional<ContourInput>> MetInput::make(const ContourInput& input, co
                             {.isovalues = next.isovalues_,
                              .values = input.field.values,
                              .also = std::move(also),
+                             .numbers = options.edge_ends,
                              .around = options.normals == Normals::gradient},
                             run);
     if (!linear) return linear.error();
