@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <random>
@@ -11,7 +12,11 @@
 
 #include <fmt/format.h>
 
+#include <isotet/make.hpp>
+
+#include "jobs/read_here.hpp"
 #include "program.hpp"
+#include "readers/foam_sample.hpp"
 #include "small_grid.hpp"
 #include "support/seeds.hpp"
 
@@ -75,8 +80,44 @@ TEST_F(Program, CtrlCEndsWhatDoesNotStop) {
     EXPECT_EQ(run.err, "isotet: interrupted: no file was left half written\n");
 }
 
+/// Two files as pieces of one grid.
+void write_pieces(const std::string& path, const std::vector<std::string>& pieces) {
+    std::string index = "<VTKFile type=\"PUnstructuredGrid\"><PUnstructuredGrid GhostLevel=\"0\">\n";
+    for (const std::string& piece : pieces) index += "<Piece Source=\"" + piece + "\"/>\n";
+    put_content(path, index + "</PUnstructuredGrid></VTKFile>\n");
+}
+
+/// A case in text, of cubes, in a folder.
+void write_foam(const std::filesystem::path& folder) {
+    const FoamBox box = foam_box(26, [](int x, int y, int) { return x == y; });
+    const auto f = [](const std::array<double, 3>& point) { return point[0] * point[1] - point[2]; };
+    for (const auto& [name, content] : foam_case(box, f, {})) {
+        std::filesystem::create_directories((folder / name).parent_path());
+        put_content((folder / name).string(), content);
+    }
+}
+
+/// Tets with a raw file beside it, which isotet-reader reads.
+void write_xdmf(const std::string& path, const Grid& grid) {
+    const auto raw = [&](const std::string& name, const Array& values) {
+        put_content(path + name, std::string(static_cast<const char*>(values.data()), values.bytes()));
+        const bool whole = !is_floating(values.type());
+        return fmt::format("<DataItem Format=\"Binary\" Endian=\"Little\" NumberType=\"{}\" Precision=\"{}\" "
+                           "Dimensions=\"{} {}\">{}</DataItem>",
+                           whole ? "Int" : "Float", size_of(values.type()), values.tuples(), values.components(),
+                           std::filesystem::path(path + name).filename().string());
+    };
+    const std::uint64_t cells = grid.cells.count();
+    const Array corners(grid.cells.connectivity.type(), grid.cells.connectivity.data(), cells, 4, nullptr);
+    put_content(path, fmt::format("<Xdmf Version=\"3.0\"><Domain><Grid><Topology TopologyType=\"Tetrahedron\" "
+                                  "NumberOfElements=\"{}\">{}</Topology><Geometry GeometryType=\"XYZ\">{}</Geometry>"
+                                  "<Attribute Name=\"gyroid\" Center=\"Node\">{}</Attribute></Grid></Domain></Xdmf>",
+                                  cells, raw(".cells", corners), raw(".points", grid.points),
+                                  raw(".gyroid", grid.point_fields[0].values)));
+}
+
 TEST_F(Program, CtrlCEndsEveryCommandAtAnyMoment) {
-    const std::vector<std::vector<std::string>> commands{
+    std::vector<std::vector<std::string>> commands{
         {"extract", "make:kelvin:14:gyroid", path("OUT.vtp"), "-i", "0.1", "--edge-ends"},
         {"extract", "make:kuhn:40:gyroid", path("OUT_{value}.vtp"), "--levels", "9", "--normals", "gradient"},
         {"extract", "make:tet10:7:gyroid", path("OUT.vtp"), "-i", "0.1"},
@@ -85,7 +126,7 @@ TEST_F(Program, CtrlCEndsEveryCommandAtAnyMoment) {
         {"render", "make:hex:40:gyroid", "-o", path("OUT.png"), "-i", "0.1"},
         {"pack", "make:kuhn:40:gyroid", path("OUT.isotet")},
         {"extract", "make:kuhn:40:gyroid", path("OUT.stl"), "-i", "0.1", "--reduce", "90%"},
-        {"extract", "make:kuhn:40:gyroid", path("OUT.3mf"), "-i", "0.1"},
+        {"extract", "make:kuhn:70:gyroid", path("OUT.3mf"), "-i", "0.1"},
         {"make", "kelvin", "--side", "14", "-o", path("OUT.vtu")},
         {"make", "octree-tets", "--side", "20", "-o", path("OUT.vtu")},
         {"info", path("tets.vtu"), "--survey"},
@@ -96,7 +137,24 @@ TEST_F(Program, CtrlCEndsEveryCommandAtAnyMoment) {
         {"render", path("tets.vtu"), "-o", path("OUT.png"), "--volume"},
         {"slice", path("polyhedra.vtu"), path("OUT.vtp"), "--plane", "z=0.4"},
         {"check", path("s.vtp"), "--grid", path("tets.vtu"), "-f", "gyroid"},
-        {"bench", path("tets.vtu"), "-f", "gyroid"}};
+        {"bench", path("tets.vtu"), "-f", "gyroid"},
+        {"slice", path("tets.vtu"), path("OUT_{value}.vtp"), "--along", "z", "--count", "30"},
+        {"render", path("tets.vtu"), "-o", path("OUT.png"), "-f", "gyroid", "-i", "0.1", "--color-by", "gyroid"},
+        {"export", path("tets.vtu"), path("OUT.html"), "-f", "gyroid", "--as", "grid"},
+        {"export", path("tets.vtu"), path("OUT.html"), "-f", "gyroid", "--as", "surfaces"},
+        {"extract", path("pieces.pvtu"), path("OUT.vtp"), "-f", "gyroid", "-i", "0.1"},
+        {"extract", path("pieces.pvtu"), path("OUT_{value}.vtp"), "-f", "gyroid", "--levels", "40"},
+        {"render", path("pieces.pvtu"), "-o", path("OUT.png"), "-f", "gyroid", "-i", "0.1"},
+        {"info", path("foam"), "--survey"},
+        {"extract", path("foam"), path("OUT.vtp"), "-f", "T", "-i", "0.1"}};
+    if (is_read_here("a.xdmf")) {
+        write_xdmf(path("tets.xdmf"), make_grid({.shape = "shuffled", .side = 60, .fields = {"gyroid"}}).value());
+        commands.push_back({"info", path("tets.xdmf"), "--survey"});
+        commands.push_back({"extract", path("tets.xdmf"), path("OUT.vtp"), "-f", "gyroid", "-i", "0.1"});
+    }
+    write_foam(path("foam"));
+    write_pieces(path("pieces.pvtu"), {"tets.vtu", "hexes.vtu"});
+    ASSERT_EQ(isotet({"make", "hex", "--side", "40", "--fields", "gyroid", "-o", path("hexes.vtu")}).status, 0);
     ASSERT_EQ(isotet({"make", "shuffled", "--side", "50", "--fields", "gyroid", "-o", path("tets.vtu")}).status, 0);
     ASSERT_EQ(isotet({"make", "kelvin", "--side", "14", "--fields", "gyroid", "-o", path("polyhedra.vtu")}).status, 0);
     ASSERT_EQ(isotet({"extract", path("tets.vtu"), path("s.vtp"), "-i", "0.1", "--edge-ends"}).status, 0);
