@@ -109,10 +109,10 @@ Result<FileInfo> inspect_gmsh_file(const std::string& path, const ReadOptions& o
     if (source && source->size() > small_bytes) {
         const auto heads = heads_of_gmsh(*source, !options.kept, progress);
         if (!heads) return heads.error();
-        if (*heads) return in_file<FileInfo>(path, inspect_gmsh(**heads, progress));
+        if (*heads) return in_file<FileInfo>(path, inspect_gmsh(**heads, progress, options.step));
     }
     return with_file<FileInfo>(path, look_into_file(path, options, progress),
-                               [&](std::string_view text) { return inspect_gmsh(text, progress); });
+                               [&](std::string_view text) { return inspect_gmsh(text, progress, options.step); });
 }
 
 /// The files that Gmsh wrote beside this one, each of one partition: name_1.msh, name_2.msh and so on; the first of them.

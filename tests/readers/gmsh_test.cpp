@@ -267,6 +267,19 @@ TEST(ReadGmshSteps, AreNotMadeByViewsThatHaveOne) {
     EXPECT_EQ(result.grid.point_fields.size(), 2U);
 }
 
+TEST(ReadGmshSteps, AreDescribedOneByOne) {
+    const std::string bytes = tets + view_at("T", 3, 1) + view_at("T", 5, 2) + view_at("q", 5, 3) + view_at("q", 6, 4);
+    const auto fields_at = [&](std::optional<std::size_t> step) {
+        std::string names;
+        for (const FieldInfo& field : io::inspect_gmsh(bytes, {}, step).value().fields) names += field.name;
+        return names;
+    };
+    EXPECT_EQ(fields_at(0), "T");
+    EXPECT_EQ(fields_at(1), "Tq");
+    EXPECT_EQ(fields_at(2), "q");
+    EXPECT_EQ(fields_at({}), "Tq");
+}
+
 TEST(ReadGmshSteps, OutOfRangeAreRefusedWithTheirNumber) {
     ReadOptions options;
     options.step = 2;

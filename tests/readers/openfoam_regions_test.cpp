@@ -98,7 +98,8 @@ TEST_F(OpenfoamRegions, HaveNamesThatMeanNoZone) {
     ASSERT_TRUE(result);
     std::vector<std::string> names;
     for (const BlockInfo& block : result->info.blocks) names.push_back(block.name);
-    EXPECT_EQ(names, (std::vector<std::string>{"polyMesh", "left", "right", "polyMesh/left", "left/left", "right/right"}))
+    EXPECT_EQ(names,
+              (std::vector<std::string>{"polyMesh", "left", "right", "polyMesh/left", "left/left", "right/right"}))
         << "zones without cells are not listed";
 }
 

@@ -256,7 +256,10 @@ TEST_F(ReadMed, StepsHaveTheirTimesAndFieldsOfAllTimesHoldAtEach) {
     EXPECT_TRUE(has_note(second, "step 1 has no values of \"late\""));
     EXPECT_EQ(second.grid.cell_fields.at(0).values.type(), ScalarType::int32);
     EXPECT_EQ(text_of(second.grid.cell_fields.at(0).values), "7 8");
+    EXPECT_EQ(inspect(path(), options).value().fields.size(), 2u) << "of the step";
+    EXPECT_EQ(inspect(path()).value().fields.size(), 3u) << "of all";
     options.step = 2;
+    EXPECT_EQ(inspect(path(), options).value().fields.size(), 3u);
     EXPECT_EQ(read(path(), options).value().grid.point_fields.size(), 2u);
 }
 

@@ -196,6 +196,9 @@ std::vector<const DataSection*> sections_at(const Contents& contents, const Fiel
     return steps.size() == 1 ? all : at_step;
 }
 
+/// Whether sections give its values: else it is one of tags.
+bool is_of_data(const FieldInfo& field) { return field.type == ScalarType::float64; }
+
 /// Values at nodes, of each element its own: one of them where they agree, else means, with a note.
 Result<Array> corner_values(const std::vector<const DataSection*>& sections, const FieldInfo& info, const Mesh& mesh,
                             Pace& pace, ReadResult& result) {
@@ -297,10 +300,15 @@ Result<ReadResult> without_left_out(ReadResult result, const Mesh& mesh) {
 
 } // namespace
 
-Result<FileInfo> inspect_gmsh(std::string_view bytes, const Progress&) {
+Result<FileInfo> inspect_gmsh(std::string_view bytes, const Progress&, std::optional<std::size_t> step) {
     auto contents = open_contents(bytes);
     if (!contents) return contents.error();
-    return std::move(contents->info);
+    FileInfo info = contents->info;
+    if (step)
+        std::erase_if(info.fields, [&](const FieldInfo& field) {
+            return is_of_data(field) && sections_at(*contents, field, *step).empty();
+        });
+    return info;
 }
 
 Result<ReadResult> parse_gmsh(std::string_view bytes, const ReadOptions& options, const Progress& progress) {
@@ -334,7 +342,7 @@ Result<ReadResult> parse_gmsh(std::string_view bytes, const ReadOptions& options
     grid.points = Array::own(std::move(mesh->points), 3);
     grid.cells = mesh->cells.finish();
     for (const FieldInfo& field : contents->info.fields) {
-        if (field.type != ScalarType::float64 || !wanted(options, field.association, field.name)) continue;
+        if (!is_of_data(field) || !wanted(options, field.association, field.name)) continue;
         if (auto added = add_data_field(*contents, field, *step, *mesh, pace, result); !added) return added.error();
     }
     const auto add_tags = [&](bool is_wanted, std::string_view name, std::vector<std::int32_t>& tags) {

@@ -21,7 +21,8 @@ namespace isotet::io {
 /// value, the time step numbers take their place. A file whose only time is 0 knows no time.
 ///
 /// `bytes`   the whole file
-Result<FileInfo> inspect_gmsh(std::string_view bytes, const Progress& progress);
+/// `step`    whose fields are told; nothing: those of all steps
+Result<FileInfo> inspect_gmsh(std::string_view bytes, const Progress& progress, std::optional<std::size_t> step = {});
 
 /// An MSH file without the most of its long sections: inspect_gmsh() says of it what it says of the file. Nothing where
 /// the whole file is needed for that.

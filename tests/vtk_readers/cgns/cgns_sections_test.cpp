@@ -290,7 +290,7 @@ TEST(CgnsSolutions, AreThoseOfTheirSteps) {
         CgnsWriter writer(path);
         writer.mixed(1, volume, true);
         writer.solution("S1", CG_Vertex, "p", std::vector<double>(corner_places.size(), 1));
-        writer.solution("S2", CG_Vertex, "p", std::vector<double>(corner_places.size(), 2));
+        writer.solution("S2", CG_Vertex, with_pointers ? "p" : "q", std::vector<double>(corner_places.size(), 2));
         if (with_pointers) writer.solution("S3", CG_Vertex, "rest", std::vector<double>(corner_places.size(), 3));
         cg_biter_write(writer.file, writer.base, "Steps", 2);
         cg_goto(writer.file, writer.base, "BaseIterativeData_t", 1, "end");
@@ -313,6 +313,8 @@ TEST(CgnsSolutions, AreThoseOfTheirSteps) {
             options.step = step;
             const auto result = read(path, options);
             ASSERT_TRUE(result) << result.error().message;
+            EXPECT_EQ(inspect(path, options).value().fields.size(), result->grid.point_fields.size()) << "of the step";
+            EXPECT_EQ(inspect(path).value().fields.size(), 2u) << "of all";
             EXPECT_EQ(result->info.times, (std::vector<double>{0.5, 1.5}));
             ASSERT_EQ(result->grid.point_fields.size(), with_pointers ? 2u : 1u);
             EXPECT_EQ(result->grid.point_fields[0].values.at(3),

@@ -64,7 +64,7 @@ public:
     Result<Loaded> load(const ReadOptions& options, Depth depth);
 
 private:
-    Result<void> describe(Loaded& loaded);
+    Result<void> describe(Loaded& loaded, std::optional<std::size_t> only);
     Result<Piece> read_zone(std::size_t at, const ReadOptions& options, std::size_t step,
                             core::PatchList& patch_numbers, Loaded& loaded) const;
     Result<void> read_patches(const CgnsZone& zone, core::PatchList& numbers, Loaded& loaded, Grid& grid) const;
@@ -93,7 +93,8 @@ private:
     std::vector<CgnsSolutions> solutions_;
 };
 
-Result<void> CgnsFile::describe(Loaded& loaded) {
+/// `only`   the step whose fields are told; nothing: those of all steps
+Result<void> CgnsFile::describe(Loaded& loaded, std::optional<std::size_t> only) {
     auto zones = cgns_zones(tree_, path_);
     if (!zones) return zones.error();
     zones_ = *std::move(zones);
@@ -115,7 +116,8 @@ Result<void> CgnsFile::describe(Loaded& loaded) {
             {static_cast<std::int64_t>(loaded.info.blocks.size() + 1), zone.name, "zone", counts.cells});
         counts_.push_back(counts);
         solutions_.emplace_back(tree_, zone, bases_[zone.base].times.size(), counts);
-        solutions_.back().announce(loaded.info);
+        if (!only) solutions_.back().announce(loaded.info, {});
+        else if (is_there(zone, *only)) solutions_.back().announce(loaded.info, step_of(zone, *only));
     }
     return {};
 }
@@ -182,10 +184,11 @@ LeastCounts CgnsFile::least_of(const ReadOptions& options) const {
 
 Result<Loaded> CgnsFile::load(const ReadOptions& options, Depth depth) {
     Loaded loaded;
-    if (auto done = describe(loaded); !done) return done.error();
+    const bool described = depth == Depth::description;
+    if (auto done = describe(loaded, described ? options.step : std::nullopt); !done) return done.error();
     const auto chosen = chosen_blocks(loaded.info.blocks, options);
     if (!chosen) return chosen.error();
-    if (depth == Depth::description) {
+    if (described) {
         loaded.info.least = least_of(options);
         return loaded;
     }

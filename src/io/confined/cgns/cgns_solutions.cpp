@@ -98,8 +98,8 @@ std::string CgnsSolutions::problem_of(const Solution& solution, const CgnsNode& 
     type = *shape->scalar;
     if (!solution.problem.empty()) return solution.problem;
     const std::uint64_t needed = count_with_rind(tree_, solution.parts, size_for(solution));
-    const bool of_elements = solution.association == Association::cell && !zone_.is_structured &&
-                             shape->count == counts_.elements;
+    const bool of_elements =
+        solution.association == Association::cell && !zone_.is_structured && shape->count == counts_.elements;
     if (shape->count == needed || of_elements) return {};
     return fmt::format("there are {} values, but {} are needed", shape->count, needed);
 }
@@ -121,20 +121,23 @@ std::vector<CgnsSolutions::Named> CgnsSolutions::fields_at(std::size_t step) con
     return fields;
 }
 
-void CgnsSolutions::announce(FileInfo& info) const {
-    for (std::size_t step = 0; step < std::max<std::size_t>(steps_, 1); ++step)
+void CgnsSolutions::announce(FileInfo& info, std::optional<std::size_t> only) const {
+    for (std::size_t step = 0; step < std::max<std::size_t>(steps_, 1); ++step) {
+        if (only && *only != step) continue;
         for (const Named& field : fields_at(step)) {
             if (field.problem.empty())
                 isotet::io::announce(info, {field.name, field.solution->association, field.type, 1});
             else leave_out_field(info, field, field.problem);
         }
+    }
 }
 
 void CgnsSolutions::leave_out_field(FileInfo& info, const Named& field, const std::string& reason) const {
     const char* const what = !field.solution->problem.empty()                    ? "field"
                              : field.solution->association == Association::point ? "point field"
                                                                                  : "cell field";
-    leave_out(info, {what, field.name, fmt::format("{} (solution \"{}\")", reason, escaped(field.solution->node.name))});
+    leave_out(info,
+              {what, field.name, fmt::format("{} (solution \"{}\")", reason, escaped(field.solution->node.name))});
 }
 
 Result<Array> CgnsSolutions::values_of(const Named& field, const CgnsCells& cells) const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,8 +17,8 @@ public:
     ///           solutions of one location are there as steps, each is one step; all others hold always
     CgnsSolutions(const CgnsTree& tree, const CgnsZone& zone, std::size_t steps, const CgnsCounts& counts);
 
-    /// Adds the fields of all steps; those that cannot be read as left out.
-    void announce(FileInfo& info) const;
+    /// Adds the fields of a step, or of all; those that cannot be read as left out.
+    void announce(FileInfo& info, std::optional<std::size_t> only) const;
 
     /// The fields that are wanted. A field of a name that another solution has, too, is called "Solution/Name". Those that
     /// cannot be read are listed in `info`.

@@ -186,7 +186,7 @@ void MedLoader::tell_least(const std::vector<bool>& chosen) {
 
 Result<Loaded> MedLoader::load(Depth depth) {
     choose_times();
-    fields_.announce_all(loaded_.info);
+    fields_.announce_all(loaded_.info, depth == Depth::description ? options_.step : std::nullopt);
     const auto step = choose_step(loaded_.info, options_);
     if (!step) return step.error();
     loaded_.step = *step;

@@ -88,8 +88,9 @@ bool MedFields::belong_to(const std::string& mesh) const {
     return std::ranges::find(fields_, mesh, &MedField::mesh) != fields_.end();
 }
 
-void MedFields::announce_all(FileInfo& info) const {
+void MedFields::announce_all(FileInfo& info, std::optional<std::size_t> only) const {
     for (const MedField& field : fields_) {
+        if (only && !step_of(field, *only)) continue;
         const auto drop = [&](std::string reason) { leave_out(info, {"field", field.name, std::move(reason)}); };
         if (field.components == 0) drop("its type or number of components is not known");
         else if (field.at_nodes || field.at_cell_nodes)

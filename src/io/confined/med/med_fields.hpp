@@ -23,8 +23,8 @@ public:
     /// Whether some field belongs to the mesh.
     bool belong_to(const std::string& mesh) const;
 
-    /// Adds the fields that can be read to the description, and what is left out.
-    void announce_all(FileInfo& info) const;
+    /// Adds the fields that can be read to the description, of one step or of all, and what is left out.
+    void announce_all(FileInfo& info, std::optional<std::size_t> only) const;
 
     /// The step of a mesh that its fields name at this step of the file.
     MedStep step_of_mesh(const std::string& mesh, std::size_t step) const;
