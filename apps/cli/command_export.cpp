@@ -35,7 +35,7 @@ std::string name_without_folder(const std::string& file) {
     return valid_utf8(std::filesystem::path(file).filename().string());
 }
 
-Result<void> check_export(const ExportCommand& command, const GridSource& source) {
+Result<void> check_export(const ExportCommand& command, GridSource& source, Console& console) {
     if (ending_of(command.out) != ".html") return usage_error("OUT is '{}', but a page ends in .html", command.out);
     const bool has_shares = command.range_shares.lower || command.range_shares.upper; // which are known later
     if (!command.range.empty() &&
@@ -43,7 +43,8 @@ Result<void> check_export(const ExportCommand& command, const GridSource& source
         return usage_error("--between takes two isovalues, the smaller one first, as in 0.1,0.5 or 5%v,95%v");
     if (Result<void> paths = check_output_paths(source.info().files, {command.out, command.common.json}); !paths)
         return paths;
-    return check_view_fields(source, command.field, command.color_by);
+    const Steps steps = command.all_steps ? Steps::all : Steps::one;
+    return check_view_fields(source, view_wish(steps, command.field, command.color_by), command.grid, console);
 }
 
 /// The steps that are shown: where all are asked for, those that have the fields.
@@ -146,7 +147,7 @@ Result<ExitCode> run_export(const ExportCommand& command) {
     Result<std::vector<std::size_t>> steps = steps_of(command, *source, console);
     if (!steps) return steps.error();
     if (!steps->empty()) grid.step = steps->front(); // is read first
-    if (Result<void> checked = check_export(command, *source); !checked) return checked.error();
+    if (Result<void> checked = check_export(command, *source, console); !checked) return checked.error();
 
     ExportTimes seconds;
     const Stopwatch reading;

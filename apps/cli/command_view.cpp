@@ -65,10 +65,7 @@ public:
         source_ = *std::move(source);
         if (auto paths = check_output_paths(source_->info().files, {command_.common.json}); !paths)
             return paths.error();
-        if (Result<void> found = check_view_fields(*source_, command_.field, command_.color_by); !found) return found;
-        if (command_.grid.time || command_.grid.step)
-            if (const auto steps = source_->choose_steps(Steps::one, console_); !steps) return steps.error();
-        return {};
+        return check_fields();
     }
 
     std::vector<std::string> files() const {
@@ -78,7 +75,7 @@ public:
     /// As open(), but fields that it does not have are only noted; other errors are those of reading it.
     void open_beside() {
         Result<void> opened = open();
-        if (!opened && source_ && !check_view_fields(*source_, command_.field, command_.color_by)) {
+        if (!opened && source_ && !check_fields()) {
             console_.note(command_.grid.file + ": " + opened.error().message);
             command_.field = {};
             command_.color_by.clear();
@@ -120,6 +117,11 @@ public:
     Console& console() noexcept { return console_; }
 
 private:
+    Result<void> check_fields() {
+        const ChoiceWish wish = view_wish(Steps::one, command_.field, command_.color_by);
+        return check_view_fields(*source_, wish, command_.grid, console_);
+    }
+
     /// As read_view_input() reads them.
     static FieldsToRead all_fields() {
         FieldsToRead all;

@@ -89,12 +89,13 @@ Result<std::vector<double>> isovalues_of(const ExportCommand& command, const Gri
                                          const std::string& field, Console& console) {
     std::vector<double> isovalues = command.isovalues;
     if (command.shares.empty()) return isovalues;
-    const auto source = GridSource::open(grid_options, console);
+    auto source = GridSource::open(grid_options, console);
     if (!source) return source.error();
-    const auto steps = source->choose_steps(Steps::one, console);
-    if (!steps) return steps.error();
+    const FieldChoice choice{field, command.field.cell_field};
+    const auto look = look_at_step_with_fields(*source, grid_options, {Steps::one, choice, {}}, console);
+    if (!look) return look.error();
     Grid grid;
-    const auto values = read_field(*source, steps->front(), {field, command.field.cell_field}, {}, console, grid);
+    const auto values = read_field(*source, look->step, choice, {}, console, grid);
     if (!values) return values.error();
     const auto found = isovalues_at(grid, *values, command.shares, console.run());
     if (!found) return found.error();
@@ -324,7 +325,8 @@ Result<std::optional<ExitCode>> run_export_grid(const ExportCommand& command, Co
     if (!must_be && source->info().cells > max_bytes / least_bytes_a_cell)
         return instead(
             fmt::format("the grid would make the page larger than {} (--max-size)", format_bytes(max_bytes)));
-    if (Result<void> found = check_view_fields(*source, command.field, command.color_by); !found) return found.error();
+    ChoiceWish wish = view_wish(Steps::one, command.field, command.color_by);
+    if (auto found = check_view_fields(*source, wish, command.grid, console); !found) return found.error();
     if (!command.color_by.empty()) {
         const Result<FoundField> color = choose_field(*source, {command.color_by, false});
         if (!color) return color.error();
@@ -334,7 +336,7 @@ Result<std::optional<ExitCode>> run_export_grid(const ExportCommand& command, Co
             return usage_error("{}, but a page with the grid has fields of points only: --as surfaces", why);
         }
     }
-    const ChoiceWish wish{Steps::one, command.field, {}, command.field.name.empty()};
+    wish.needs_view = command.field.name.empty();
     Silent silent(console.run());
     Caller& told = command.all_steps ? static_cast<Caller&>(silent) : console;
     const Result<FirstChoice> choice = choose_first(*source, command.grid, wish, told, console.run());

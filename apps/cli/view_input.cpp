@@ -74,18 +74,25 @@ Result<ReadResult> read_step(FirstCells cells, const GridSource& source, std::si
 
 } // namespace
 
-Result<void> check_view_fields(const GridSource& source, const FieldChoice& field, const std::string& color_by) {
-    if (!field.name.empty())
-        if (const Result<FoundField> found = choose_field(source, field); !found) return found.error();
-    if (!color_by.empty())
-        if (const Result<FoundField> found = choose_field(source, {color_by, false}); !found) return found.error();
+ChoiceWish view_wish(Steps steps, const FieldChoice& field, const std::string& color_by) {
+    return {steps, field, {color_by}, {}, false};
+}
+
+Result<void> check_view_fields(GridSource& source, const ChoiceWish& wish, const GridOptions& grid, Console& console) {
+    const auto look = look_at_step_with_fields(source, grid, wish, console);
+    if (!look) return look.error();
+    if (!wish.field.name.empty())
+        if (const Result<FoundField> found = choose_field(source, wish.field); !found) return found.error();
+    for (const std::string& name : wish.others)
+        if (!name.empty())
+            if (const Result<FoundField> found = choose_field(source, {name, false}); !found) return found.error();
     return {};
 }
 
 Result<view::ViewerInput> read_view_input(const ViewStart& start, GridSource& source, Console& console,
                                           const Run& run) {
-    ChoiceWish wish{Steps::one, start.field, {}, false};
-    const Result<FirstChoice> choice = choose_first(source, start.grid, wish, console, run);
+    const Result<FirstChoice> choice =
+        choose_first(source, start.grid, view_wish(Steps::one, start.field, start.color_by), console, run);
     if (!choice) return choice.error();
     const std::size_t step = choice->steps.front();
     const std::vector<FieldInfo> fields = source.info().fields;
@@ -104,8 +111,8 @@ Result<view::ViewerInput> read_view_input(const ViewStart& start, GridSource& so
     input.state.isovalues = start.isovalues;
     if (!start.isovalues.empty())
         if (const Result<PointField> field = find_field(grid, input.state.field, {}, run); field && !field->averaged)
-            if (Result<void> told = note_outside(start, field->values, input.state.field,
-                                                     source.info().times.size() > 1, console, run);
+            if (Result<void> told =
+                    note_outside(start, field->values, input.state.field, source.info().times.size() > 1, console, run);
                 !told)
                 return told.error();
     if (Result<void> added = add_shares(start, *read, source, console, run, input.state); !added) return added.error();

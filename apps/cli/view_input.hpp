@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <isotet/jobs/field_choice.hpp>
+#include <isotet/jobs/first_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
 #include <isotet/isovalues.hpp>
 #include <isotet/progress.hpp>
@@ -37,8 +38,11 @@ struct ViewStart {
     std::optional<std::uint64_t> memory = {}; ///< of a packed file
 };
 
-/// Names that are no field's, before anything is read. Errors   as choose_field()
-Result<void> check_view_fields(const GridSource& source, const FieldChoice& field, const std::string& color_by);
+/// Names that are no field's, before anything is read: of one step, at which the source is looked at, or of all at which it
+/// was. Errors   as look_at_step_with_fields()
+Result<void> check_view_fields(GridSource& source, const ChoiceWish& wish, const GridOptions& grid, Console& console);
+/// What is shown, and coloured by another field.
+ChoiceWish view_wish(Steps steps, const FieldChoice& field, const std::string& color_by);
 
 /// Reads all fields of the step to begin with, and finds the field. Errors   as choose_first()
 Result<view::ViewerInput> read_view_input(const ViewStart& start, GridSource& source, Console& console, const Run& run);

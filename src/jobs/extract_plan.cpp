@@ -238,15 +238,10 @@ bool streams(const ExtractJob& job, const GridSource& source) {
 } // namespace
 
 Result<void> choose_first_of(ExtractJob& job, GridSource& source, ExtractPlan& plan, Caller& caller) {
-    ChoiceWish wish{job.all_steps ? Steps::all : Steps::one, job.field};
-    if (job.field.shape) { // any step has it
-        auto steps = source.choose_steps(wish.steps, caller);
-        if (!steps) return steps.error();
-        plan.steps = *std::move(steps);
-        return {};
-    }
+    ChoiceWish wish{job.all_steps ? Steps::all : Steps::one, job.field, job.with.value_or(std::vector<std::string>())};
+    wish.needs_view = !job.field.shape;
     const std::vector<FieldInfo>& fields = source.info().fields;
-    if (job.field.name.empty() && fields.size() == 1 &&
+    if (job.field.name.empty() && !job.field.shape && fields.size() == 1 &&
         names_isovalues(job)) { // whatever it is, its values are asked for
         const std::vector<FirstCandidate> candidates = first_candidates(fields);
         job.field.name = candidates.empty() ? fields[0].name : candidates[0].name;
@@ -258,7 +253,7 @@ Result<void> choose_first_of(ExtractJob& job, GridSource& source, ExtractPlan& p
     const Result<FirstChoice> choice = choose_first(source, job.grid, wish, caller, caller.run());
     if (!choice) return choice.error();
     plan.steps = choice->steps;
-    if (!job.field.name.empty() || fields.empty()) return {};
+    if (!job.field.name.empty() || job.field.shape || fields.empty()) return {};
     if (choice->view.field.empty())
         return Error{ErrorCode::invalid_data,
                      fmt::format("no field was named, and {} does not vary, numbers something, or has more than 3 "

@@ -22,7 +22,7 @@ struct ExtractPlan {
     std::vector<std::size_t> steps;
     FoundField field;
     std::optional<CarriedFields> carried; ///< nothing: all point fields, and all cell fields where all are read
-    std::optional<FoundField> color; ///< an expression that colours surfaces, where no field is called so
+    std::optional<FoundField> color;      ///< an expression that colours surfaces, where no field is called so
     FieldsToRead read;
     bool out_holds_fields = true, out_holds_cell_fields = true;
     std::optional<Region> touched;               ///< by the parts that are kept (find_touched())
@@ -54,7 +54,7 @@ Result<void> choose_fields_of_steps(const ExtractJob& job, GridSource& source, E
 Result<void> choose_fields(const ExtractJob& job, const GridSource& source, ExtractPlan& plan);
 
 /// The isovalues to extract: those given and `shares` (snapped if asked to), --levels of the packed field's range, or its
-/// middle.
+/// middle; of the range of the other values where some stand for none.
 /// Errors   invalid_data: levels of a field without a finite value
 Result<std::vector<double>> choose_isovalues(const ExtractJob& job, const std::vector<double>& shares,
                                              const Array& field, const FieldReport& packed, Caller& caller);

@@ -10,10 +10,105 @@
 #include <isotet/jobs/number_text.hpp>
 
 #include "fields/sampled_view.hpp"
+#include "jobs/refuse.hpp"
+#include "jobs/step_choice.hpp"
 
 namespace isotet::jobs {
 
 namespace {
+
+bool may_look_on(const Error& error) {
+    return error.code != ErrorCode::cancelled && error.code != ErrorCode::out_of_memory;
+}
+
+/// The fields besides the one that is contoured.
+Result<std::vector<std::string>> other_names(const GridSource& source, const ChoiceWish& wish) {
+    std::vector<std::string> texts = wish.others;
+    std::erase(texts, std::string());
+    return choose_field_names(source, texts, {});
+}
+
+bool names_a_field(const ChoiceWish& wish) { return !wish.field.shape && !wish.field.name.empty(); }
+
+/// Texts of which the step that was looked at lacks a field.
+std::vector<std::string> missing_in(const GridSource& source, const ChoiceWish& wish) {
+    std::vector<std::string> missing;
+    if (names_a_field(wish) && !choose_field(source, wish.field)) missing.push_back(wish.field.name);
+    for (const std::string& text : wish.others)
+        if (!text.empty() && !choose_field_names(source, {text}, {})) add_names(missing, {text});
+    return missing;
+}
+
+/// Those behind the first that are looked at.
+std::vector<std::size_t> steps_to_look_at(std::size_t first, std::size_t count) {
+    constexpr std::size_t most = 32;
+    std::vector<std::size_t> steps;
+    const std::size_t others = count - 1 - first, some = std::min(others, most);
+    for (std::size_t i = 1; i <= some; ++i) steps.push_back(first + i * others / some);
+    return steps;
+}
+
+/// The first step with all fields: of those that are looked at, and where they begin before it.
+class FieldSearch {
+public:
+    FieldSearch(GridSource& source, const ChoiceWish& wish, Caller& caller)
+        : source_(source), wish_(wish), caller_(caller) {}
+
+    /// Nothing: none has them. The source was looked at for all that were looked at then.
+    Result<std::optional<std::size_t>> behind_the_first() {
+        const std::size_t first = source_.first_step();
+        const std::vector<std::size_t> steps = steps_to_look_at(first, source_.info().times.size());
+        std::size_t lacks = first;
+        for (const std::size_t step : steps) {
+            const Result<bool> found = has_all(step);
+            if (!found) return found.error();
+            if (*found) return first_between(lacks, step);
+            lacks = step;
+        }
+        std::vector<std::size_t> all{first};
+        all.insert(all.end(), steps.begin(), steps.end());
+        if (auto looked = source_.look_at_steps(all, caller_); !looked) return looked.error();
+        return std::optional<std::size_t>();
+    }
+
+private:
+    /// A step that cannot be looked at has nothing.
+    Result<bool> has_all(std::size_t step) {
+        if (auto looked = source_.look_at_steps({step}, caller_); !looked) {
+            if (may_look_on(looked.error())) return false;
+            return looked.error();
+        }
+        return missing_in(source_, wish_).empty();
+    }
+
+    Result<std::optional<std::size_t>> first_between(std::size_t lacks, std::size_t has) {
+        while (has - lacks > 1) {
+            const std::size_t middle = lacks + (has - lacks) / 2;
+            const Result<bool> found = has_all(middle);
+            if (!found) return found.error();
+            (*found ? has : lacks) = middle;
+        }
+        if (const Result<bool> again = has_all(has); !again) return again.error();
+        return std::optional(has);
+    }
+
+    GridSource& source_;
+    const ChoiceWish& wish_;
+    Caller& caller_;
+};
+
+/// Why no step has all fields: the source was looked at for all of them.
+Error no_step_with(const GridSource& source, const ChoiceWish& wish) {
+    std::vector<std::string> all;
+    if (names_a_field(wish)) {
+        if (const auto found = choose_field(source, wish.field); !found) return found.error();
+        all.push_back(wish.field.name);
+    }
+    const auto others = other_names(source, wish);
+    if (!others) return others.error();
+    add_names(all, *others);
+    return refusal("no time step has all of these fields: {}", quoted_list(all));
+}
 
 /// Looks at steps until a field varies.
 class FirstLook {
@@ -22,10 +117,12 @@ public:
         : source_(source), wish_(wish), caller_(caller), run_(run) {}
 
     /// Whether the field, or any field where none is named, varies at a step.
-    Result<bool> varies_at(std::size_t step) {
-        if (source_.info().times.size() > 1 && (step > 0 || has_looked_))
-            if (auto looked = source_.look_at_steps({step}, caller_); !looked) return looked.error();
-        has_looked_ = true;
+    /// `with_others`   and the step has all fields that are asked for
+    Result<bool> varies_at(std::size_t step, bool with_others) {
+        if (auto looked = source_.look_at_steps({step}, caller_); !looked) return looked.error();
+        if (with_others && !missing_in(source_, wish_).empty()) return false;
+        also_ = wish_.also;
+        add_others();
         return wish_.field.name.empty() ? look_for_view(step) : look_at_named(step);
     }
 
@@ -35,6 +132,16 @@ public:
     const std::optional<Error>& missing() const { return missing_; }
 
 private:
+    /// What will be read of the step in any case.
+    void add_others() {
+        const auto names = other_names(source_, wish_);
+        for (const std::string& name : names ? *names : std::vector<std::string>()) {
+            const Result<FoundField> found = choose_field(source_, {name, false});
+            if (found && also_.point) add_names(*also_.point, found->point);
+            if (found && also_.cell) add_names(*also_.cell, found->cell);
+        }
+    }
+
     Result<bool> look_at_named(std::size_t step) {
         const auto is_missing = [&](const Error& error) {
             if (!was_there_ && !missing_) missing_ = error;
@@ -147,7 +254,7 @@ private:
 
     Result<SurveyedGrid> read_with_others(FieldsToRead& read, std::size_t step) {
         if (streams_) return read_it(read, step); // what is not kept need not have the others
-        for (const auto& [names, more] : {std::pair(&read.point, &wish_.also.point), {&read.cell, &wish_.also.cell}}) {
+        for (const auto& [names, more] : {std::pair(&read.point, &also_.point), {&read.cell, &also_.cell}}) {
             if (!*more) names->reset();
             else if (*names) add_names(**names, **more);
         }
@@ -159,14 +266,11 @@ private:
     Caller& caller_;
     const Run& run_;
     FirstView view_;
-    bool has_looked_ = false, was_there_ = false;
+    FieldsToRead also_;
+    bool was_there_ = false;
     bool streams_ = false; ///< cells of the step at hand are not kept
     std::optional<Error> missing_;
 };
-
-bool may_look_on(const Error& error) {
-    return error.code != ErrorCode::cancelled && error.code != ErrorCode::out_of_memory;
-}
 
 /// What needs no reading: the name that was given, or that of the only field, unless it numbers parts.
 std::string known_name(const GridSource& source, const ChoiceWish& wish) {
@@ -178,6 +282,19 @@ std::string known_name(const GridSource& source, const ChoiceWish& wish) {
                             fields[0].type != ScalarType::float64;
     if (candidates.empty() || (may_number && candidates[0].reason == FirstReason::variation)) return {};
     return candidates[0].name;
+}
+
+/// Which step was taken, and why not the first.
+std::string note_of_step(const GridSource& source, const ChoiceWish& wish, const StepLook& start, std::size_t taken) {
+    const std::size_t first = source.first_step();
+    std::string why;
+    if (!start.missing.empty()) why = fmt::format(", and step {} has no {}", first, quoted_list(start.missing));
+    else if (taken == first) why = first == 0 ? "" : ", the chosen blocks are not in those before";
+    else if (wish.field.name.empty()) why = fmt::format(", and no field varies at step {}", first);
+    else why = fmt::format(", and '{}' does not vary at step {}", wish.field.name, first);
+    const std::vector<double>& times = source.info().times;
+    return fmt::format("the file has {} time steps{}: step {}, time {}, was taken; `time` and `step` choose another",
+                       times.size(), why, taken, shortest(times[taken]));
 }
 
 } // namespace
@@ -202,13 +319,40 @@ std::string note_of_field(const FirstView& view) {
                        text_of(view.reason));
 }
 
+Result<StepLook> look_at_step_with_fields(GridSource& source, const GridOptions& options, const ChoiceWish& wish,
+                                          Caller& caller) {
+    const bool is_open = source.info().times.size() > 1 && wish.steps == Steps::one && !options.time && !options.step;
+    const std::size_t first = source.first_step();
+    if (wish.steps == Steps::all) return StepLook{first, {}};
+    if (!is_open) {
+        const auto steps = choose_steps(source.info(), options, wish.steps, caller);
+        if (!steps) return steps.error();
+        return StepLook{steps->front(), {}};
+    }
+    if (auto looked = source.look_at_steps({first}, caller); !looked) return looked.error();
+    ChoiceWish all = wish;
+    all.others.push_back(options.displace);
+    std::vector<std::string> missing = missing_in(source, all);
+    if (missing.empty()) return StepLook{first, {}};
+    const auto found = FieldSearch(source, all, caller).behind_the_first();
+    if (!found) return found.error();
+    if (!*found) return no_step_with(source, all);
+    return StepLook{**found, std::move(missing)};
+}
+
 Result<FirstChoice> choose_first(GridSource& source, const GridOptions& options, const ChoiceWish& wish, Caller& caller,
                                  const Run& run) {
     const std::size_t count = std::max<std::size_t>(source.info().times.size(), 1);
     const bool is_open = count > 1 && wish.steps == Steps::one && !options.time && !options.step;
     FirstChoice choice;
-    if (!is_open) {
-        auto steps = source.choose_steps(wish.steps, caller);
+    StepLook start{source.first_step(), {}};
+    if (is_open) {
+        Result<StepLook> looked = look_at_step_with_fields(source, options, wish, caller);
+        if (!looked) return looked.error();
+        start = *std::move(looked);
+    } else {
+        auto steps = wish.steps == Steps::all ? source.choose_steps(wish.steps, caller)
+                                              : choose_steps(source.info(), options, wish.steps, caller);
         if (!steps) return steps.error();
         choice.steps = *std::move(steps);
     }
@@ -216,37 +360,29 @@ Result<FirstChoice> choose_first(GridSource& source, const GridOptions& options,
     if (!known.empty()) choice.view = {FirstDraw::isosurfaces, known, Association::point, FirstReason::only, false};
     const bool needs_view = known.empty() && wish.needs_view && !source.info().fields.empty();
     if (!needs_view && !is_open) return choice;
-    const std::size_t first = source.first_step();
-    std::vector<std::size_t> steps{first};
+    std::vector<std::size_t> steps{start.step};
     if (!is_open && wish.steps == Steps::one) steps = choice.steps;
-    else
-        for (const std::size_t step : {first + 1, count - 1})
+    else if (!wish.field.shape)
+        for (const std::size_t step : {start.step + 1, count - 1})
             if (step > steps.back() && step < count) steps.push_back(step);
     FirstLook look(source, wish, caller, run);
     std::size_t taken = steps.front();
-    bool varies = false;
+    bool varies = wish.field.shape.has_value();
     for (std::size_t i = 0; i < steps.size() && !varies; ++i) {
-        const Result<bool> found = look.varies_at(steps[i]);
+        const Result<bool> found = look.varies_at(steps[i], is_open);
         if (!found && (i == 0 || !may_look_on(found.error()))) return found.error();
         varies = found && *found;
         if (varies) taken = steps[i];
     }
     if (!varies && steps.size() > 1) { // as the first step is
-        const Result<bool> found = look.varies_at(steps.front());
+        const Result<bool> found = look.varies_at(steps.front(), is_open);
         if (!found) return found.error();
     }
     if (look.missing()) return *look.missing();
     if (needs_view) choice.view = look.view();
     if (!is_open) return choice;
     choice.steps = {taken};
-    const std::string& name = wish.field.name;
-    const std::string why =
-        taken == first ? first == 0 ? std::string() : std::string(", the chosen blocks are not in those before")
-        : name.empty() ? fmt::format(", and no field varies at step {}", first)
-                       : fmt::format(", and '{}' does not vary at step {}", name, first);
-    caller.note(fmt::format("the file has {} time steps{}: step {}, time {}, was taken; `time` and `step` choose "
-                            "another",
-                            count, why, taken, shortest(source.info().times[taken])));
+    caller.note(note_of_step(source, wish, start, taken));
     return choice;
 }
 

@@ -30,6 +30,7 @@
 #include "base/parallel.hpp"
 #include "jobs/refuse.hpp"
 #include "jobs/room_for_grid.hpp"
+#include "jobs/step_choice.hpp"
 
 namespace isotet::jobs {
 
@@ -168,32 +169,6 @@ Result<Grid> closed(Grid grid, HangingChoice choice, KnownClosing* known, Caller
     return std::move(found->grid);
 }
 
-/// "0, 0.1, 0.2 ... 4": the first few and the last.
-std::string list_of(const std::vector<double>& times) {
-    constexpr std::size_t max_shown = 10;
-    std::string list;
-    for (std::size_t i = 0; i < std::min(times.size(), max_shown); ++i) list += (i ? ", " : "") + shortest(times[i]);
-    if (times.size() > max_shown) list += " ... " + shortest(times.back());
-    return list;
-}
-
-/// Of steps of the same time, as restarted runs append them, the last.
-Result<std::size_t> step_at(const std::vector<double>& times, double time) {
-    std::size_t nearest = 0;
-    for (std::size_t i = 0; i < times.size(); ++i) {
-        if (std::abs(times[i] - time) <= std::abs(times[nearest] - time)) nearest = i;
-    }
-    constexpr double tolerance = 1e-12; // relative: a time that went through text and back
-    if (times.empty()) {
-        return refusal("time {} was asked for, but the file knows no time", shortest(time));
-    }
-    if (std::abs(times[nearest] - time) <= tolerance * std::max(std::abs(time), std::abs(times[nearest])))
-        return nearest;
-    if (static_cast<float>(time) == static_cast<float>(times[nearest])) return nearest; // a file of single precision
-    return refusal("time {} was asked for, but the file has {} times: {}; the nearest is {}", shortest(time),
-                   times.size(), list_of(times), shortest(times[nearest]));
-}
-
 ReadOptions read_options_of(const GridOptions& options) {
     ReadOptions read;
     read.format = options.format;
@@ -280,9 +255,10 @@ Result<GridSource> GridSource::open(const GridOptions& options, Caller& caller) 
         if (const Result<FileInfo> all = inspect(options.file, whole, caller.run()); all && all->times.size() > 1)
             if (const Result<std::size_t> step = step_at(all->times, *options.time)) read_options.step = *step;
     }
+    if (!options.heads && !read_options.step) read_options.step = 0; // else some formats tell of all
     Result<FileInfo> info = inspect(options.file, read_options, caller.run());
     if (!info && options.step) { // choose_steps() refuses a step that is not there
-        read_options.step.reset();
+        read_options.step = 0;
         info = inspect(options.file, read_options, caller.run());
     }
     source.described_ = read_options.step.value_or(0);
@@ -291,6 +267,7 @@ Result<GridSource> GridSource::open(const GridOptions& options, Caller& caller) 
         info = source.inspect_first_with_blocks(info.error(), caller);
         source.described_ = source.first_step_;
     }
+    if (info && !options.heads) source.step_fields_[*source.described_] = info->fields;
     if (!info) {
         const FileKinds kinds = kinds_of(options.file);
         if (info.error().code != ErrorCode::file || !kinds.surface || kinds.grid || !options.format.empty() ||
@@ -308,7 +285,9 @@ Result<GridSource> GridSource::open(const GridOptions& options, Caller& caller) 
     if (options.time && source.info_.times.size() > 1)
         if (const Result<std::size_t> step = step_at(source.info_.times, *options.time))
             if (auto looked = source.look_at(*step, caller.run()); !looked) return looked.error();
-    if (!options.displace.empty() && !match_field_name(options.displace, source.names(Association::point))) {
+    const bool any_step = source.info_.times.size() > 1 && !options.time && !options.step; // another may have the field
+    if (!options.displace.empty() && !any_step &&
+        !match_field_name(options.displace, source.names(Association::point))) {
         Error error = source.no_such_field(options.displace);
         error.message = "`displace` takes a point field: " + error.message;
         return error;
@@ -394,6 +373,7 @@ Result<void> GridSource::look_at(std::size_t step, const Run& run) {
 
 Result<void> GridSource::look_at_steps(const std::vector<std::size_t>& steps, Caller& caller) {
     if (made_ || surface_ || info_.times.size() < 2) return {};
+    if (steps.size() == 1 && described_ == steps.front() && step_fields_.contains(steps.front())) return {};
     if (steps.size() > 1) closing_ = std::make_shared<KnownClosing>();
     std::vector<FieldInfo> fields;
     std::vector<LeftOut> left_out;
@@ -843,32 +823,6 @@ std::uint64_t emptied_cells(const Grid& grid, const GridOptions& options, const 
 std::optional<double> time_of(const FileInfo& info, std::size_t step) {
     if (step >= info.times.size()) return std::nullopt;
     return info.times[step];
-}
-
-Result<std::vector<std::size_t>> choose_steps(const FileInfo& info, const GridOptions& options, Steps steps,
-                                              Caller& caller) {
-    const std::size_t count = std::max<std::size_t>(info.times.size(), 1);
-    if (steps == Steps::all) {
-        std::vector<std::size_t> all(count);
-        for (std::size_t i = 0; i < count; ++i) all[i] = i;
-        return all;
-    }
-    if (options.time) {
-        const Result<std::size_t> step = step_at(info.times, *options.time);
-        if (!step) return step.error();
-        return std::vector<std::size_t>{*step};
-    }
-    if (options.step) {
-        if (*options.step < count) return std::vector<std::size_t>{static_cast<std::size_t>(*options.step)};
-        return refusal("step {} was asked for, but the file has {} time step{}, numbered from 0", *options.step, count,
-                       count == 1 ? "" : "s");
-    }
-    if (count > 1) {
-        caller.note(
-            fmt::format("the file has {} time steps: step 0, time {}, was taken; `time` and `step` choose another",
-                        count, shortest(info.times[0])));
-    }
-    return std::vector<std::size_t>{0};
 }
 
 } // namespace isotet::jobs

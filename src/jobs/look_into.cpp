@@ -120,14 +120,14 @@ std::vector<VectorSummary> vectors_of(const std::vector<FieldInfo>& fields) {
     return vectors;
 }
 
-Result<GridSummary> look_at_heads(const GridSource& source, const GridOptions& options, Caller& caller) {
+Result<GridSummary> look_at_heads(GridSource& source, const GridOptions& options, Caller& caller) {
     GridSummary summary;
     summary.file = source.info();
     summary.step = source.first_step();
     if (options.step || options.time) {
-        const auto steps = source.choose_steps(Steps::one, caller);
-        if (!steps) return steps.error();
-        summary.step = steps->front();
+        const Result<StepLook> look = look_at_step_with_fields(source, options, {}, caller);
+        if (!look) return look.error();
+        summary.step = look->step;
     }
     summary.vectors = vectors_of(summary.file.fields);
     return summary;
@@ -226,10 +226,10 @@ Result<GridSummary> look_all(const InfoJob& job, Caller& caller) {
     if (!source) return source.error();
     if (auto paths = check_output_paths(source->info().files, job.other_outputs); !paths) return paths.error();
     if (job.heads) return look_at_heads(*source, options, caller);
-    ChoiceWish wish;
+    ChoiceWish wish{Steps::one, job.field, {}};
     wish.also = {};
     wish.needs_view = false;
-    wish.surveys = !job.survey && !job.chart && options.cells.empty();
+    wish.surveys = !job.survey && !job.chart && options.cells.empty() && job.field.name.empty();
     const Result<FirstChoice> choice = choose_first(*source, options, wish, caller, caller.run());
     if (!choice) return choice.error();
     GridSummary summary;

@@ -42,6 +42,7 @@ private:
     Result<void> check_scratch(std::uint64_t cells) const;
     Result<void> open();
     Result<void> look_at_file();
+    Result<void> choose_step_or_all();
     Result<void> choose_names();
     Result<void> keep_steps_with_fields();
     std::optional<std::size_t> step_without(const std::string& field) const;
@@ -122,15 +123,29 @@ Result<void> PackRun::open() {
     if (auto enough = check_memory(source_->info().cells, 0); !enough) return enough;
     if (auto enough = check_scratch(source_->info().cells); !enough) return enough;
     if (auto paths = check_output_paths(source_->info().files, outputs); !paths) return paths;
-    const Steps which = job_.all_steps ? Steps::all : Steps::one;
-    auto steps = source_->choose_steps(which, caller_);
-    if (!steps) return steps.error();
-    steps_ = *std::move(steps);
     numbers_.grid = job_.grid.file;
     numbers_.format = source_->info().format;
     if (job_.append)
         if (auto looked = look_at_file(); !looked) return looked;
+    if (auto chosen = choose_step_or_all(); !chosen) return chosen;
     return choose_names();
+}
+
+/// One step as all commands choose it, or all.
+Result<void> PackRun::choose_step_or_all() {
+    ChoiceWish wish{job_.all_steps ? Steps::all : Steps::one, {}, job_.cell_fields};
+    const bool names_one = job_.fields.size() == 1 && job_.fields.front().find(',') == std::string::npos;
+    if (names_one) wish.field = choice(job_.fields.front());
+    else wish.others.insert(wish.others.end(), job_.fields.begin(), job_.fields.end());
+    wish.needs_view = false;
+    const auto chosen = choose_first(*source_, job_.grid, wish, caller_, caller_.run());
+    if (!chosen) return chosen.error();
+    steps_ = chosen->steps;
+    if (!job_.all_steps) {
+        job_.grid.time.reset();
+        job_.grid.step = steps_.front();
+    }
+    return {};
 }
 
 /// Of the file to which steps are added.
@@ -185,7 +200,8 @@ Result<void> PackRun::take_all_fields() {
             others.push_back(field);
     }
     if (names_.empty()) {
-        const auto first = choose_first(*source_, job_.grid, {Steps::one, {}, {}, true, true}, caller_, caller_.run());
+        const auto first =
+            choose_first(*source_, job_.grid, {Steps::one, {}, {}, {}, true, true}, caller_, caller_.run());
         if (!first) return first.error();
         if (first->view.field.empty() && !job_.coordinates_do)
             return refusal("the grid has no field to pack with; `fields` x packs a coordinate");

@@ -9,6 +9,7 @@
 
 #include <isotet/fields.hpp>
 #include <isotet/jobs/draw_files.hpp>
+#include <isotet/jobs/first_choice.hpp>
 #include <isotet/jobs/output_names.hpp>
 #include <isotet/isovalues.hpp>
 #include <isotet/make.hpp>
@@ -106,13 +107,15 @@ Result<void> BenchRun::choose_isovalues(const Grid& grid, const PointField& fiel
 Result<void> BenchRun::run_file() {
     GridOptions options = job_.grid;
     options.hanging_points = HangingChoice::not_sought; // polyhedra are not measured
-    const Result<GridSource> source = GridSource::open(options, caller_);
+    Result<GridSource> source = GridSource::open(options, caller_);
     if (!source) return source.error();
     if (auto paths = check_output_paths(source->info().files, job_.other_outputs); !paths) return paths;
-    const auto steps = source->choose_steps(Steps::one, caller_);
-    if (!steps) return steps.error();
+    ChoiceWish wish{Steps::one, job_.field, {}};
+    wish.needs_view = false;
+    const Result<FirstChoice> choice = choose_first(*source, job_.grid, wish, caller_, caller_.run());
+    if (!choice) return choice.error();
     Grid grid;
-    const Result<PointField> field = read_field(*source, steps->front(), job_.field, {}, caller_, grid);
+    const Result<PointField> field = read_field(*source, choice->steps.front(), job_.field, {}, caller_, grid);
     if (!field) return field.error();
     numbers_.field = field->name;
     if (auto chosen = choose_isovalues(grid, *field); !chosen) return chosen;

@@ -99,6 +99,11 @@ TEST_F(Program, ExportSkipsStepsWithoutTheFieldAndTakesARangeByShares) {
         return more;
     };
     EXPECT_EQ(json_of(with({"-f", "gyroid"}))["steps"], 1);
+    for (const char* field : {"gyroid", "sphere"}) {
+        const RunResult one = isotet({"export", path("run.pvd"), path("b.html"), "-f", field, "--color-by", "gyroid"});
+        EXPECT_EQ(one.status, 0) << one.err;
+        EXPECT_NE(one.err.find("step 0 has no 'gyroid': step 1, time 1, was taken"), std::string::npos) << one.err;
+    }
     EXPECT_EQ(json_of(with({"-f", "sphere"}))["steps"], 2);
     EXPECT_EQ(json_of(with({"-f", "sphere", "--color-by", "gyroid"}))["steps"], 1);
     EXPECT_EQ(json_of(with({"-f", "sphere", "--between", "0%v,100%v"}))["isovalues"],

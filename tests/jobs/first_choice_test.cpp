@@ -241,7 +241,7 @@ protected:
         GridOptions options;
         options.file = path;
         GridSource source = GridSource::open(options, listener).value();
-        return choose_first(source, options, {Steps::one, {field}}, listener, listener.run()).value();
+        return choose_first(source, options, {Steps::one, {field}, {}}, listener, listener.run()).value();
     }
     test::TemporaryFolder folder;
     Listener listener;
@@ -319,7 +319,7 @@ TEST_F(FirstStep, IsFoundWhileCellsStayInTheirFiles) {
             std::vector<FirstChoice> choices;
             for (const bool streams : {true, false}) {
                 GridSource source = GridSource::open(options, listener).value();
-                ChoiceWish wish{Steps::one, {field}};
+                ChoiceWish wish{Steps::one, {field}, {}};
                 wish.streams = streams;
                 choices.push_back(choose_first(source, options, wish, listener, listener.run()).value());
                 const auto read = source.read_active({}, choices.back().steps[0], active, listener);

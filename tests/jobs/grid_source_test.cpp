@@ -7,6 +7,7 @@
 #include <isotet/write.hpp>
 
 #include "jobs/listener.hpp"
+#include "jobs/step_choice.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace isotet::jobs {
@@ -184,8 +185,7 @@ TEST(ReadField, TakesTheFieldThatIsShownFirst) {
     Grid grid;
     const PointField field = read_field(source, 0, {}, {}, listener, grid).value();
     ASSERT_EQ(listener.noted.size(), 1u);
-    EXPECT_EQ(listener.noted[0],
-              "no field was named: '" + field.name + "' was taken; `field` names another");
+    EXPECT_EQ(listener.noted[0], "no field was named: '" + field.name + "' was taken; `field` names another");
 }
 
 } // namespace

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -14,7 +16,9 @@
 #include <isotet/jobs/grid_source.hpp>
 #include <isotet/jobs/look_into.hpp>
 #include <isotet/jobs/pack_file.hpp>
+#include <isotet/jobs/slice_files.hpp>
 #include <isotet/packed_file.hpp>
+#include <isotet/paper/measure_methods.hpp>
 
 #include "jobs/listener.hpp"
 #include "support/temporary_folder.hpp"
@@ -86,23 +90,133 @@ TEST_F(SeriesFields, AreThoseOfTheStepThatIsAskedFor) {
     }
 }
 
-/// A file that names the fields of all its steps at once; q is in the second step alone.
-TEST_F(SeriesFields, OfOneFileMayBeginLater) {
-    const auto data = [](const char* kind, const std::string& section, int step) {
-        return fmt::format("${0}\n1\n\"{1}\"\n1\n{2}\n3\n{2}\n1\n4\n1 0\n2 1\n3 2\n4 3\n$End{0}\n", kind, section,
-                           step);
+/// A file that names the fields of all its steps at once: T in all three, which does not vary at first, q from the second on.
+std::string msh_of_steps() {
+    const auto data = [](const char* section, int step, const char* values) {
+        return fmt::format("$NodeData\n1\n\"{0}\"\n1\n{1}\n3\n{1}\n1\n4\n{2}\n$EndNodeData\n", section, step, values);
     };
-    const std::string file = folder.write(
-        "a.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n"
-                 "$Elements\n1\n1 4 0 1 2 3 4\n$EndElements\n" +
-                     data("NodeData", "T", 0) + data("NodeData", "T", 1) + data("NodeData", "T", 2) +
-                     data("NodeData", "q", 1) + data("NodeData", "q", 2));
+    const char* const varying = "1 0\n2 1\n3 2\n4 3";
+    return "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n"
+           "$Elements\n1\n1 4 0 1 2 3 4\n$EndElements\n" +
+           data("T", 0, "1 7\n2 7\n3 7\n4 7") + data("T", 1, varying) + data("T", 2, varying) + data("q", 1, varying) +
+           data("q", 2, varying);
+}
+
+TEST_F(SeriesFields, OfOneFileMayBeginLater) {
+    const std::string file = folder.write("a.msh", msh_of_steps());
     const auto numbers = extract_files(job_of(file, "q"), listener);
     ASSERT_TRUE(numbers) << numbers.error().message;
     EXPECT_EQ(numbers->surfaces.at(0).triangles, 2u);
     ExtractJob job = job_of(file, "q");
     job.grid.step = 0;
-    EXPECT_EQ(extract_files(job, listener).error().message, "point field 'q' has no values at step 0");
+    EXPECT_EQ(extract_files(job, listener).error().message, "there is no field 'q': the grid has 'T'");
+    job.grid.step.reset();
+    job.all_steps = true;
+    job.out = folder.file("o_{step}.vtp");
+    const auto all = extract_files(job, listener);
+    ASSERT_TRUE(all) << all.error().message;
+    EXPECT_EQ(all->surfaces.size(), 2u);
+}
+
+TEST_F(SeriesFields, AreLookedForByAllJobsInTheFirstStepThatHasThem) {
+    const std::string note =
+        "the file has 3 time steps, and step 0 has no '{}': step {}, time {}, was taken; `time` and "
+        "`step` choose another";
+    for (const auto& [file, field, step, time] : {std::tuple{pvd, "r", 2u, "1"},
+                                                  {series, "r", 2u, "1"},
+                                                  {pvd, "q", 1u, "0.5"},
+                                                  {folder.write("a.msh", msh_of_steps()), "q", 1u, "1"}}) {
+        SCOPED_TRACE(file + " " + field);
+        Listener told;
+        const std::string expected = fmt::format(fmt::runtime(note), field, step, time);
+        const auto is_told = [&] { return std::ranges::count(std::exchange(told.noted, {}), expected); };
+        InfoJob info;
+        info.grid.file = file;
+        info.field.name = field;
+        info.chart = 2;
+        const auto found = look_into(info, told);
+        ASSERT_TRUE(found) << found.error().message;
+        EXPECT_EQ(found->step, step);
+        EXPECT_EQ(found->chart->field, field);
+        EXPECT_EQ(is_told(), 1);
+        ExtractJob extract = job_of(file, "T");
+        extract.with = Names{field};
+        const auto extracted = extract_files(extract, told);
+        ASSERT_TRUE(extracted) << extracted.error().message;
+        EXPECT_EQ(is_told(), 1);
+        SliceJob slice;
+        slice.grid.file = file;
+        slice.shape = Plane{{1, 0, 0}, 0.3};
+        slice.with = Names{"T," + std::string(field)};
+        const auto sliced = slice_files(slice, told);
+        ASSERT_TRUE(sliced) << sliced.error().message;
+        EXPECT_EQ(fmt::format("{}", sliced->surfaces.at(0).time.value()), time);
+        DrawJob draw;
+        draw.grid.file = file;
+        draw.color_by = field;
+        draw.out = folder.file("p.png");
+        draw.picture.width = draw.picture.height = 16;
+        told.noted.clear();
+        const auto drawn = draw_files(draw, told);
+        ASSERT_TRUE(drawn) << drawn.error().message;
+        EXPECT_EQ(drawn->input.step, step);
+        EXPECT_EQ(is_told(), 1);
+        PackJob pack;
+        pack.grid.file = file;
+        pack.fields = {field};
+        pack.out = folder.file("p.isotet");
+        const auto packed = pack_file(pack, told);
+        ASSERT_TRUE(packed) << packed.error().message;
+        EXPECT_EQ(is_told(), 1);
+        BenchJob measure;
+        measure.grid.file = file;
+        measure.field.name = field;
+        measure.rounds = 1;
+        measure.device.name = "none";
+        const auto measured = measure_methods(measure, told);
+        ASSERT_TRUE(measured) << measured.error().message;
+        EXPECT_EQ(is_told(), 1);
+    }
+}
+
+TEST_F(SeriesFields, OfALongSeriesAreFoundWhereTheyBegin) {
+    std::string list;
+    folder.write("without.vtu", vtu({"T"}, 1));
+    folder.write("with.vtu", vtu({"T", "q"}, 1));
+    constexpr int steps = 200, first = 137;
+    for (int step = 0; step < steps; ++step)
+        list += fmt::format("<DataSet timestep='{}' file='{}.vtu'/>", step, step < first ? "without" : "with");
+    const std::string file =
+        folder.write("long.pvd", "<VTKFile type='Collection'><Collection>" + list + "</Collection></VTKFile>");
+    const auto numbers = extract_files(job_of(file, "q"), listener);
+    ASSERT_TRUE(numbers) << numbers.error().message;
+    EXPECT_EQ(numbers->surfaces.at(0).time, first);
+    EXPECT_EQ(extract_files(job_of(file, "p"), listener).error().message,
+              "there is no field 'p': the grid has 'T', 'q'");
+}
+
+TEST_F(SeriesFields, ThatNoStepHasTogetherAreAnError) {
+    folder.write("c.vtu", vtu({"r"}, 1));
+    ExtractJob job = job_of(pvd, "q");
+    job.with = Names{"r"};
+    EXPECT_EQ(extract_files(job, listener).error().message, "no time step has all of these fields: 'q', 'r'");
+}
+
+/// As info, extract and render: the first step where something varies, and what that has.
+TEST_F(SeriesFields, ArePackedAsTheStepThatIsTakenHasThem) {
+    PackJob job;
+    job.grid.file = folder.write("a.msh", msh_of_steps());
+    job.out = folder.file("p.isotet");
+    const auto packed = pack_file(job, listener);
+    ASSERT_TRUE(packed) << packed.error().message;
+    ASSERT_EQ(packed->fields.size(), 2u);
+    EXPECT_EQ(packed->fields[0].upper, 3);
+    EXPECT_EQ(std::ranges::count(listener.noted,
+                                 "the file has 3 time steps, and no field varies at step 0: step 1, time 1, was taken; "
+                                 "`time` and `step` choose another"),
+              1);
+    job.grid.step = 0;
+    EXPECT_EQ(pack_file(job, listener).value().fields.size(), 1u) << "q is not there";
 }
 
 TEST_F(SeriesFields, StepsWithoutTheFieldAreSkippedWithOneNote) {

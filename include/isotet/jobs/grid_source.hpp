@@ -72,12 +72,14 @@ struct BesideGrid {
     std::uint64_t bytes_a_point = 0;
 };
 
+/// How many time steps; which they are says choose_first().
 enum class Steps { one, all };
 
 class GridSource {
 public:
     /// Finds out what the file holds, or what the grid to make will hold: of several steps the one that the options ask
-    /// for, else the first that has the chosen blocks.
+    /// for, else the first that has the chosen blocks; of the head of a file that will not be read all of them, where it
+    /// tells.
     static Result<GridSource> open(const GridOptions& options, Caller& caller);
 
     const FileInfo& info() const noexcept { return info_; }
@@ -95,7 +97,7 @@ public:
     /// The first step that has the chosen blocks.
     std::size_t first_step() const noexcept { return first_step_; }
 
-    /// jobs::choose_steps(), of all steps without those that do not have the chosen blocks, which are noted.
+    /// Those that the options ask for, as choose_first() begins with; of all steps without those that do not have the chosen blocks, which are noted.
     Result<std::vector<std::size_t>> choose_steps(Steps steps, Caller& caller) const;
 
     /// Names of the point or the cell fields.
@@ -205,11 +207,6 @@ private:
     std::shared_ptr<std::atomic<bool>> has_room_ = std::make_shared<std::atomic<bool>>(); ///< nothing is asked any more
     std::shared_ptr<KnownClosing> closing_; ///< of the last of several steps; shared by copies
 };
-
-/// The steps that --time, --step or --all-steps ask for; the first, with a note, when none does and there are several.
-/// Errors   invalid_argument: a step or time that the file does not have, with those that it has
-Result<std::vector<std::size_t>> choose_steps(const FileInfo& info, const GridOptions& options, Steps steps,
-                                              Caller& caller);
 
 /// Source cells of a surface or a grid by the numbers that the file has.
 /// `cells`     int64; -1: of none

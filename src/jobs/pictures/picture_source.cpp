@@ -19,6 +19,7 @@
 #include <isotet/isovalues.hpp>
 
 #include "base/stopwatch.hpp"
+#include "jobs/extract_notes.hpp"
 #include "jobs/pictures/packed_picture.hpp"
 #include "jobs/refuse.hpp"
 #include "jobs/vertex_colors.hpp"
@@ -146,16 +147,10 @@ std::string PictureSource::needed_field() const {
 
 Result<void> PictureSource::choose_steps_and_view(Caller& caller) {
     ChoiceWish wish{job_.all_steps ? Steps::all : Steps::one,
-                    {needed_field(), wants_surfaces() && job_.field.cell_field}};
+                    {needed_field(), wants_surfaces() && job_.field.cell_field},
+                    {job_.color_by, job_.boundary_color_by}};
     const std::size_t steps = job_.all_steps ? std::max<std::size_t>(source_->info().times.size(), 1) : 1;
     wish.streams = wants_surfaces() && options_with_active_cells(steps).has_value();
-    for (const std::string& name : {job_.color_by, job_.boundary_color_by}) {
-        if (name.empty()) continue;
-        const Result<FoundField> found = choose_field(*source_, {name, false});
-        if (!found) continue; // told later, or in another step
-        add_names(*wish.also.point, found->point);
-        add_names(*wish.also.cell, found->cell);
-    }
     Result<FirstChoice> choice = choose_first(*source_, job_.grid, wish, caller, caller.run());
     if (!choice) return choice.error();
     steps_ = std::move(choice->steps);
