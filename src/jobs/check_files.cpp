@@ -5,12 +5,17 @@
 #include <iterator>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include <isotet/linear_cells.hpp>
+#include <isotet/jobs/first_choice.hpp>
+#include <isotet/jobs/number_text.hpp>
 #include <isotet/jobs/output_names.hpp>
 #include <isotet/read.hpp>
 
-#include "jobs/refinement_record.hpp"
+#include "jobs/surface_record.hpp"
 #include "jobs/refuse.hpp"
+#include "jobs/step_choice.hpp"
 
 namespace isotet::jobs {
 
@@ -22,12 +27,56 @@ struct Origin {
     std::optional<PointField> field;
 };
 
-Result<Origin> read_origin(const CheckJob& job, Caller& caller) {
-    const Result<GridSource> source = GridSource::open(job.grid, caller);
+/// The field of which the tets with values count; no name: all count.
+FieldChoice field_of(const CheckJob& job, const FileInfo& grid) {
+    FieldChoice field = job.field;
+    if (field.name.empty() && grid.fields.size() == 1) field.name = grid.fields.front().name;
+    return field;
+}
+
+/// The step of the time of a surface: its own number where that has it, else one that is printed as it is.
+Result<std::size_t> step_of(const SurfaceTime& surface, const std::vector<double>& times, const CheckJob& job) {
+    if (surface.step < times.size() && times[surface.step] == surface.time) return surface.step;
+    if (const auto step = step_at(times, surface.time)) return step;
+    const auto printed = [](double time) { return fmt::format("{:.6g}", time); };
+    for (std::size_t step = 0; step < times.size(); ++step)
+        if (printed(times[step]) == printed(surface.time)) return step;
+    return refusal("{} is of time {}, but {} has {} times: {}; `time` and `step` choose one of them", job.surface,
+                   shortest(surface.time), job.grid.file, times.size(), list_of(times));
+}
+
+/// Looks at the step that is asked for, else that of which the surface is, where its file tells, else the one that extract
+/// takes.
+Result<std::size_t> choose_step_of(const CheckJob& job, const SurfaceFile& file, GridSource& source, Caller& caller) {
+    const std::vector<double> times = source.info().times;
+    const auto time = find_time_record(file.field_data);
+    if (time && times.size() > 1 && !job.grid.time && !job.grid.step) {
+        const Result<std::size_t> step = step_of(*time, times, job);
+        if (!step) return step;
+        if (auto looked = source.look_at_steps({*step}, caller); !looked) return looked.error();
+        caller.note(
+            fmt::format("the file has {} time steps: step {}, time {}, was taken, of which the surface is; `time` "
+                        "and `step` choose another",
+                        times.size(), *step, shortest(times[*step])));
+        return step;
+    }
+    ChoiceWish wish{Steps::one, field_of(job, source.info()), {}};
+    if (wish.field.name.empty()) {
+        const auto steps = source.choose_steps(wish.steps, caller);
+        return steps ? Result<std::size_t>(steps->front()) : steps.error();
+    }
+    wish.needs_view = false;
+    const auto choice = choose_first(source, job.grid, wish, caller, caller.run());
+    if (!choice) return choice.error();
+    return choice->steps.front();
+}
+
+Result<Origin> read_origin(const CheckJob& job, const SurfaceFile& file, Caller& caller) {
+    Result<GridSource> source = GridSource::open(job.grid, caller);
     if (!source) return source.error();
     if (auto paths = check_output_paths(source->info().files, job.other_outputs); !paths) return paths.error();
-    const auto steps = source->choose_steps(Steps::one, caller);
-    if (!steps) return steps.error();
+    const Result<std::size_t> step = choose_step_of(job, file, *source, caller);
+    if (!step) return step.error();
     FieldsToRead fields{std::vector<std::string>{}, std::vector<std::string>{}};
     std::optional<FoundField> found;
     if (!job.field.name.empty() || source->info().fields.size() == 1) {
@@ -39,7 +88,7 @@ Result<Origin> read_origin(const CheckJob& job, Caller& caller) {
         caller.note(
             "no field was named with `grid`: every tet counts, also where the field has no data; `field` names one");
     }
-    Result<Grid> grid = source->read(fields, steps->front(), caller);
+    Result<Grid> grid = source->read(fields, *step, caller);
     if (!grid) return grid.error();
     Origin origin{*std::move(grid), std::nullopt};
     if (!found) return origin;
@@ -169,7 +218,7 @@ Result<CheckedFiles> check_files(const CheckJob& job, Caller& caller) {
             return refusal("{} has no point array edge_ends, but `grid` needs it: isotet extract `edge_ends` writes it "
                            "into .vtp and .vtk",
                            job.surface);
-        Result<Origin> read = read_origin(job, caller);
+        Result<Origin> read = read_origin(job, *file, caller);
         if (!read) return read.error();
         curved = has_curved_cells(read->grid.cells);
         const Result<bool> found = has_hanging_points_on_curved_cells(read->grid, caller.run());

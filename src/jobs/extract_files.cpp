@@ -22,7 +22,7 @@
 #include "jobs/extract_plan.hpp"
 #include "jobs/pictures/packed_picture.hpp"
 #include "jobs/part_table.hpp"
-#include "jobs/refinement_record.hpp"
+#include "jobs/surface_record.hpp"
 #include "jobs/refuse.hpp"
 #include "jobs/vertex_colors.hpp"
 #include "jobs/way_out.hpp"
@@ -67,7 +67,8 @@ private:
     Result<void> measure_volumes(std::size_t first);
     Result<void> choose_values(std::size_t step);
     Result<void> extract_step(std::size_t step);
-    std::vector<Field> field_data_of(const Surface& surface) const;
+    std::vector<Field> field_data_of(const Surface& surface, std::size_t step) const;
+    void add_refinement_record(std::vector<Field>& field_data) const;
     Result<void> check_that_some_meet(const ContourResult& result) const;
     Result<std::vector<Surface>> extract_pass(std::span<const double> isovalues, std::size_t step);
     Result<std::vector<Surface>> extract_solid(double isovalue, std::size_t step);
@@ -75,7 +76,7 @@ private:
     Method method() const { return solids_ ? solids_->method() : contour_->method(); }
     Result<void> find_parts_of(Surface& surface, SurfaceNumbers& numbers);
     Result<void> reduce_triangles(Surface& surface, SurfaceNumbers& numbers);
-    Result<void> write(Surface surface, SurfaceNumbers& numbers);
+    Result<void> write(Surface surface, SurfaceNumbers& numbers, std::size_t step);
     OutputKey key(double isovalue, std::size_t step) const;
     std::optional<double> time_at(std::size_t step) const;
     double fraction() const {
@@ -724,13 +725,22 @@ Result<void> ExtractRun::find_parts_of(Surface& surface, SurfaceNumbers& numbers
 }
 
 /// Edge ends that are points of refined cells mean something only with what these were refined by.
-std::vector<Field> ExtractRun::field_data_of(const Surface& surface) const {
-    if (surface.edge_ends.empty() || !plan_.contour.refine || !numbers_.refinement.refined ||
-        numbers_.refinement.isovalues.empty() || !plan_.contour.refine->carried.empty())
-        return {};
+void ExtractRun::add_refinement_record(std::vector<Field>& field_data) const {
+    if (!plan_.contour.refine || !numbers_.refinement.refined || numbers_.refinement.isovalues.empty() ||
+        !plan_.contour.refine->carried.empty())
+        return;
     RefineOptions options = *plan_.contour.refine;
     options.isovalues = numbers_.refinement.isovalues;
-    return {refinement_record(options)};
+    field_data.push_back(refinement_record(options));
+}
+
+/// What the edge ends refer to.
+std::vector<Field> ExtractRun::field_data_of(const Surface& surface, std::size_t step) const {
+    std::vector<Field> field_data;
+    if (surface.edge_ends.empty()) return field_data;
+    add_refinement_record(field_data);
+    if (source_->info().times.size() > 1) field_data.push_back(time_record({*time_at(step), step}));
+    return field_data;
 }
 
 /// Leaves out triangles where the job asks for it.
@@ -759,7 +769,7 @@ Result<void> ExtractRun::reduce_triangles(Surface& surface, SurfaceNumbers& numb
     return {};
 }
 
-Result<void> ExtractRun::write(Surface surface, SurfaceNumbers& numbers) {
+Result<void> ExtractRun::write(Surface surface, SurfaceNumbers& numbers, std::size_t step) {
     if (!job_.colors.by.empty()) {
         if (auto colored = add_vertex_colors(surface, job_.colors, caller_); !colored) return colored;
     }
@@ -767,8 +777,9 @@ Result<void> ExtractRun::write(Surface surface, SurfaceNumbers& numbers) {
     caller_.detail("writing " + numbers.file);
     std::error_code ignored;
     const bool replaces = surface.triangle_count() == 0 && std::filesystem::exists(numbers.file, ignored);
-    const Result<WriteReport> written = write_surface(
-        surface, numbers.file, {.compression = job_.compression, .field_data = field_data_of(surface)}, caller_.run());
+    const Result<WriteReport> written =
+        write_surface(surface, numbers.file,
+                      {.compression = job_.compression, .field_data = field_data_of(surface, step)}, caller_.run());
     if (!written) return written.error();
     caller_.notes(written->notes);
     if (replaces) caller_.note(fmt::format("'{}' was replaced by an empty surface", numbers.file));
@@ -805,7 +816,7 @@ Result<void> ExtractRun::extract_step(std::size_t step) {
             SurfaceNumbers& numbers = numbers_.surfaces[first + i];
             numbers.file = plan_.names.name(key(pass[i], step));
             if (one_file) joined.push_back(std::move((*surfaces)[i]));
-            else if (Result<void> written = write((*surfaces)[i], numbers); !written) return written;
+            else if (Result<void> written = write((*surfaces)[i], numbers, step); !written) return written;
         }
     }
     note_what_the_step_holds(numbers_, grid_, coarse_tets_, caller_);
@@ -813,7 +824,7 @@ Result<void> ExtractRun::extract_step(std::size_t step) {
     if (!one_file) return {};
     Surface surface = joined.size() == 1 ? joined.front() : join(joined, isovalues_);
     if (plan_.steps.size() == 1 || !is_animated(plan_.names))
-        return write(std::move(surface), numbers_.surfaces.back());
+        return write(std::move(surface), numbers_.surfaces.back(), step);
     const double time = time_at(step).value_or(static_cast<double>(step) + fraction());
     surface.cell_fields.push_back(
         {std::string(animation_field), Array::own(std::vector<double>(surface.triangle_count(), time))});
@@ -857,7 +868,8 @@ Result<void> ExtractRun::run() {
                                              : numbers_.broken_steps.front().error;
     note_what_steps_miss();
     if (!animated_.empty())
-        if (auto written = write(join(animated_, {}), numbers_.surfaces.back()); !written) return written;
+        if (auto written = write(join(animated_, {}), numbers_.surfaces.back(), plan_.steps.back()); !written)
+            return written;
     if (packed_) numbers_.packed_file = packed_->residency();
     if (const auto peak = peak_resident_memory()) {
         if (resident_before_) numbers_.peak_bytes = *peak - std::min(*peak, *resident_before_);

@@ -131,9 +131,10 @@ points all lie in one boundary face of the tets that have a value at each point;
 repeated triangle on a face with two tets on one side.
 
 Where quadratic cells were refined for the surface, their points are derived again, as the file's field data
-isotet:refinement say, or -i (all isovalues of that isotet extract) and the tolerances. Give the same --hanging-points
-as then: edges at hanging points fail, where the face of a larger cell meets smaller ones (of curved cells with hanging
-points, which are not closed there, all open edges). With --hanging-points leave they are counted and excused.
+isotet:refinement say, or -i (all isovalues of that isotet extract) and the tolerances. Of several time steps that of
+the field data isotet:time counts, else the one that isotet extract takes. Give the same --hanging-points as then: edges
+at hanging points fail, where the face of a larger cell meets smaller ones (of curved cells, which are not closed there,
+all open edges). With --hanging-points leave they are excused.
 
 With --strict it also fails for: triangles of zero area, edges with more than two triangles, double sheets (two
 triangles on the same corners in opposite directions), touching vertices (triangles that are not one fan), coincident
