@@ -8,6 +8,7 @@
 
 #include "base/carry_out.hpp"
 #include "base/parallel.hpp"
+#include "fields/fill_values.hpp"
 #include "fields/sampled_values.hpp"
 
 namespace isotet {
@@ -63,6 +64,8 @@ ValueRange typical_range(const Array& array) {
     std::vector<double> values = core::sample_values(array).values;
     if (values.empty()) return {};
     std::sort(values.begin(), values.end());
+    if (array.components() == 1)
+        for (const core::FillValue& fill : core::fill_values_of(values).values) std::erase(values, fill.value);
     const ValueRange range{values[values.size() / rare], values[values.size() - 1 - values.size() / rare]};
     return range.lower < range.upper ? range : ValueRange{values.front(), values.back()};
 }

@@ -4,14 +4,15 @@
 #include <fmt/format.h>
 
 #include "base/errors.hpp"
+#include "fields/fill_values.hpp"
 
 namespace isotet {
 
 Result<std::vector<double>> RangeLevels::operator()(const PointField& field) const {
     if (!whole_range) return within(typical_range(field.values), field);
-    const auto statistics = statistics_of(field.values);
-    if (!statistics) return statistics.error();
-    return within({(*statistics)[0].lower, (*statistics)[0].upper}, field);
+    const auto found = core::find_fill_values(field.values);
+    if (!found) return found.error();
+    return within(found->others, field);
 }
 
 Result<std::vector<double>> RangeLevels::within(const ValueRange& range, const PointField& field) const {

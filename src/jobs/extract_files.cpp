@@ -65,6 +65,7 @@ private:
     std::size_t isovalues_together(std::size_t isovalues) const;
     Result<void> find_shares();
     Result<void> measure_volumes(std::size_t first);
+    Result<void> find_fill();
     Result<void> choose_values(std::size_t step);
     Result<void> extract_step(std::size_t step);
     std::vector<Field> field_data_of(const Surface& surface, std::size_t step) const;
@@ -100,6 +101,7 @@ private:
     Array cell_numbers_;                           ///< in the file, where they are others
     Array active_numbers_;                         ///< in the whole grid, of active cells, if source cells are wanted
     PointField field_;                             ///< that is contoured there
+    core::FillValues fill_;                        ///< of the whole field, where isovalues follow from its range
     std::vector<double> share_isovalues_;          ///< of ExtractJob::shares
     SolidChoice solid_;                            ///< of ExtractJob::solid, with the shares of its range
     std::vector<double> isovalues_;                ///< of the step at hand: levels follow its range
@@ -318,6 +320,7 @@ Result<bool> ExtractRun::load(std::size_t step) {
     }
     field_ = *field;
     if (auto shares = find_shares(); !shares) return shares.error();
+    if (auto filled = find_fill(); !filled) return filled.error();
     coarse_tets_ = 0;
     ContourInput input{grid_, *std::move(field), std::move(fields->point), std::move(fields->cell)};
     if (job_.field.shape && plan_.contour.refine) plan_.contour.refine->carried = input.point_fields;
@@ -552,12 +555,24 @@ Result<void> ExtractRun::measure_volumes(std::size_t first) {
     return {};
 }
 
+/// Numbers that stand for no value do not count where isovalues are chosen.
+Result<void> ExtractRun::find_fill() {
+    const bool has_range = job_.solid && job_.solid->kind == SolidChoice::Kind::between;
+    if (!job_.isovalues.empty() || !job_.shares.empty() || job_.field.shape || has_range) return {};
+    const bool is_told = !fill_.values.empty();
+    Result<core::FillValues> found = core::find_fill_values(field_.values, caller_.run());
+    if (!found) return found.error();
+    fill_ = *std::move(found);
+    if (!is_told) caller_.note(fill_note(field_.name, fill_, field_.values.tuples(), "point"));
+    return {};
+}
+
 Result<void> ExtractRun::choose_values(std::size_t step) {
     if (job_.solid && job_.solid->kind == SolidChoice::Kind::between) {
         isovalues_ = {solid_.range.lower};
     } else {
         Result<std::vector<double>> isovalues =
-            choose_isovalues(job_, share_isovalues_, field_.values, numbers_.field, caller_);
+            choose_isovalues(job_, share_isovalues_, field_.values, numbers_.field, fill_, caller_);
         if (!isovalues) return isovalues.error();
         isovalues_ = *std::move(isovalues);
     }

@@ -337,7 +337,8 @@ Result<ExtractPlan> plan_extract(ExtractJob& job, GridSource& source, Caller& ca
 }
 
 Result<std::vector<double>> choose_isovalues(const ExtractJob& job, const std::vector<double>& shares,
-                                             const Array& field, const FieldReport& packed, Caller& caller) {
+                                             const Array& field, const FieldReport& packed,
+                                             const core::FillValues& fill, Caller& caller) {
     std::vector<double> isovalues = job.isovalues;
     isovalues.insert(isovalues.end(), shares.begin(), shares.end());
     if (isovalues.empty()) {
@@ -348,10 +349,11 @@ Result<std::vector<double>> choose_isovalues(const ExtractJob& job, const std::v
                             "is nothing to choose one from",
                             packed.name)};
         }
-        isovalues = evenly_spaced_levels(packed.lower, packed.upper, std::max<std::uint64_t>(job.levels, 1));
+        const ValueRange range = fill.values.empty() ? ValueRange{packed.lower, packed.upper} : fill.others;
+        isovalues = evenly_spaced_levels(range.lower, range.upper, std::max<std::uint64_t>(job.levels, 1));
         if (job.levels == 0) {
             caller.note(fmt::format("no isovalue was given: {}, the middle of the range {}, was taken",
-                                    shortest(isovalues.front()), rounded_range(packed.lower, packed.upper)));
+                                    shortest(isovalues.front()), rounded_range(range.lower, range.upper)));
         }
     }
     std::vector<double> distinct;

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include <isotet/grid.hpp>
 #include <isotet/jobs/first_choice.hpp>
 #include <isotet/jobs/output_names.hpp>
@@ -17,6 +19,8 @@
 
 #include "fields/sampled_view.hpp"
 #include "grid/patches.hpp"
+#include "jobs/extract_notes.hpp"
+#include "jobs/refuse.hpp"
 #include "jobs/way_out.hpp"
 
 namespace isotet::jobs {
@@ -96,7 +100,13 @@ Result<void> add_other_steps(GridSource& source, GridSummary& summary, Caller& c
 }
 
 Result<void> add_blocks(const GridSource& source, GridSummary& summary, Caller& caller) {
-    if (summary.file.blocks.empty()) return Error{ErrorCode::invalid_argument, "`each_block`: the file has no blocks"};
+    if (summary.file.blocks.empty()) {
+        const std::vector<RegionName>& regions = summary.file.regions;
+        return refusal("`each_block`: the file has no blocks{}",
+                       regions.empty() ? ""
+                                       : fmt::format(", only numbers of '{}', which `block` chooses, as '{}'",
+                                                     regions.front().field, regions.front().name));
+    }
     for (const BlockInfo& block : summary.file.blocks) {
         if (caller.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
         const Result<Grid> grid = source.read_block(block, summary.step, caller);
@@ -171,6 +181,27 @@ Result<CurvedSummary> look_at_curved_cells(const std::optional<LinearGrid>& line
     return found;
 }
 
+/// Over the range of the field, without numbers that stand for no value.
+Result<ContourSpectrum> spectrum_of(const Grid& cells, const PointField& field, std::uint64_t steps, Caller& caller) {
+    const Result<core::FillValues> fill = core::find_fill_values(field.values, caller.run());
+    if (!fill) return fill.error();
+    if (fill->values.empty()) return contour_spectrum_over_range(cells, field, steps, caller.run());
+    const auto [lower, upper] = fill->others;
+    std::vector<double> isovalues = evenly_spaced_levels(lower, upper, steps - 1);
+    isovalues.insert(isovalues.begin(), lower);
+    isovalues.push_back(upper);
+    return contour_spectrum(cells, field, isovalues, caller.run());
+}
+
+void note_fill_values(const std::vector<Field>& fields, const char* of, const FieldSummary* summaries, Caller& caller) {
+    for (const Field& field : fields) {
+        const std::vector<ComponentStatistics>& components = (summaries++)->components;
+        if (components.size() != 1) continue;
+        const auto fill = core::fill_values_of(field.values, {components[0].lower, components[0].upper});
+        caller.note(fill_note(field.name, fill, field.values.tuples(), of));
+    }
+}
+
 Result<std::optional<FieldChart>> make_chart(const InfoJob& job, const Grid& grid, const FirstView& first,
                                              Caller& caller) {
     if (!job.chart) return std::optional<FieldChart>();
@@ -195,7 +226,7 @@ Result<std::optional<FieldChart>> make_chart(const InfoJob& job, const Grid& gri
         }
         cells = closed->grid;
     }
-    Result<ContourSpectrum> spectrum = contour_spectrum_over_range(cells, *field, *job.chart, caller.run());
+    Result<ContourSpectrum> spectrum = spectrum_of(cells, *field, *job.chart, caller);
     if (!spectrum) return spectrum.error();
     return std::optional(FieldChart{name, *std::move(spectrum)});
 }
@@ -259,6 +290,8 @@ Result<GridSummary> look_all(const InfoJob& job, Caller& caller) {
     Result<std::vector<FieldSummary>> fields = summarize(*grid, caller.run());
     if (!fields) return fields.error();
     summary.fields = *std::move(fields);
+    note_fill_values(grid->point_fields, "point", summary.fields.data(), caller);
+    note_fill_values(grid->cell_fields, "cell", summary.fields.data() + grid->point_fields.size(), caller);
     summary.vectors = vectors_of(describe_fields(*grid));
     summary.first = core::first_view_of_sample(*grid, source->info().fields, read->sampled);
     Result<CurvedSummary> curved = look_at_curved_cells(*linear, *grid, summary.fields, caller.run());

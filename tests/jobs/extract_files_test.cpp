@@ -1,9 +1,16 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <isotet/jobs/extract_files.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <isotet/make.hpp>
@@ -40,6 +47,52 @@ TEST(ExtractFiles, WritesASurfaceAndTellsItsNumbers) {
     EXPECT_EQ(read.surface.triangle_count(), numbers.surfaces[0].triangles);
     EXPECT_GT(numbers.surfaces[0].triangles, 0u);
     EXPECT_EQ(numbers.surfaces[0].file, folder.file("out.vtp"));
+}
+
+/// The first nine of 729 points have a number in place of no value, the others 0 to 1.73205.
+std::string with_fill_values(const test::TemporaryFolder& folder, float fill, const char* name = "grid.vtu") {
+    Grid grid = make_grid({.shape = "kuhn", .side = 8, .fields = {"sphere"}}).value();
+    const auto values = grid.point_fields[0].values.as<float>();
+    std::vector<float> filled(values.begin(), values.end());
+    std::fill_n(filled.begin(), 9, fill);
+    grid.point_fields[0].values = Array::own(std::move(filled));
+    EXPECT_TRUE(write_grid(grid, folder.file(name)));
+    return folder.file(name);
+}
+
+TEST(ExtractFiles, ChoosesIsovaluesWithoutNumbersThatStandForNone) {
+    const test::TemporaryFolder folder;
+    for (const auto& [fill, text, expression] : {std::tuple{1e20F, "1e+20", "if(sphere < 5e+19, sphere, 0/0)"},
+                                                 {-9999.0F, "-9999", "if(sphere > -5e+03, sphere, 0/0)"}})
+        for (const auto method : {Method::direct, Method::clusters}) {
+            SCOPED_TRACE(fmt::format("{} {}", text, method == Method::direct));
+            Listener listener;
+            ExtractJob job = job_of(with_fill_values(folder, fill), folder.file("out.vtp"));
+            job.method = method;
+            const ExtractNumbers numbers = extract_files(job, listener).value();
+            ASSERT_EQ(numbers.surfaces.size(), 1u);
+            EXPECT_NEAR(numbers.surfaces[0].isovalue, std::sqrt(3) / 2, 1e-6);
+            ASSERT_EQ(listener.noted.size(), 2u);
+            EXPECT_EQ(
+                listener.noted[0],
+                fmt::format("of the 729 points of 'sphere' 9 have {}, far from all others (0 to 1.73205), as "
+                            "where there is no value: isovalues are chosen without it; `field` '{}' leaves out the "
+                            "cells there, too",
+                            text, expression));
+            EXPECT_NE(listener.noted[1].find("the middle of the range 0 to 1.73205"), std::string::npos);
+            job.field.name = expression;
+            job.levels = 3;
+            for (const SurfaceNumbers& surface : extract_files(job, listener).value().surfaces)
+                EXPECT_LT(surface.isovalue, 2);
+            job.field.name.clear();
+            job.levels = 0;
+            job.isovalues = {fill / 2.0};
+            const ExtractNumbers asked = extract_files(job, listener).value();
+            EXPECT_EQ(asked.surfaces.at(0).isovalue, fill / 2.0) << "what is given counts";
+            EXPECT_GT(asked.surfaces.at(0).triangles, 0u);
+            const auto is_fill_note = [](const std::string& note) { return note.starts_with("of the 729 points"); };
+            EXPECT_EQ(std::ranges::count_if(listener.noted, is_fill_note), 1) << "there is none in the expression";
+        }
 }
 
 TEST(ExtractFiles, WritesAFileForEachIsovalue) {
@@ -90,7 +143,8 @@ TEST(ExtractFiles, ContoursAndCarriesExpressions) {
     job.field.name = "sphere + q";
     const auto unknown = extract_files(job, listener);
     ASSERT_FALSE(unknown);
-    EXPECT_NE(unknown.error().message.find("there is no field 'q': there is '"), std::string::npos) << unknown.error().message;
+    EXPECT_NE(unknown.error().message.find("there is no field 'q': there is '"), std::string::npos)
+        << unknown.error().message;
 }
 
 /// Of a field T of cells alone; f is one of points.

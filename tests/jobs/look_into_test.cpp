@@ -195,5 +195,48 @@ TEST(LookInto, ChartsAreaAndVolume) {
     EXPECT_FALSE(look_into(job, listener));
 }
 
+TEST(LookInto, TellsOfNumbersThatStandForNoValueAndChartsTheOthers) {
+    const test::TemporaryFolder folder;
+    Grid grid = make_grid({.shape = "kuhn", .side = 4, .fields = {"sphere", "plane"}}).value();
+    const auto values = grid.point_fields[0].values.as<float>();
+    std::vector<float> filled(values.begin(), values.end());
+    filled.back() = 9.96921e36F;
+    grid.point_fields[0].values = Array::own(std::move(filled));
+    std::vector<double> cells(grid.cells.count(), 3);
+    cells[0] = 4;
+    cells[5] = cells[6] = -9999;
+    grid.cell_fields.push_back({"k", Array::own(std::move(cells))});
+    ASSERT_TRUE(write_grid(grid, folder.file("g.vtu")));
+    test::Listener listener;
+    InfoJob job;
+    job.grid.file = folder.file("g.vtu");
+    job.field.name = "sphere";
+    job.chart = 4;
+    const GridSummary found = look_into(job, listener).value();
+    ASSERT_EQ(listener.noted.size(), 2u) << testing::PrintToString(listener.noted);
+    EXPECT_EQ(listener.noted[0].find("of the 125 points of 'sphere' 1 has 9.96921e+36, far"), 0u) << listener.noted[0];
+    EXPECT_EQ(listener.noted[1].find("of the 384 cells of 'k' 2 have -9999, far from all others (3 to 4)"), 0u)
+        << listener.noted[1];
+    ASSERT_EQ(found.chart->spectrum.isovalues.size(), 5u);
+    EXPECT_EQ(found.chart->spectrum.isovalues.front(), 0);
+    EXPECT_LT(found.chart->spectrum.isovalues.back(), 1.8);
+    EXPECT_GT(found.fields.at(0).components.at(0).upper, 1e36) << "the range is that of the file";
+}
+
+TEST(LookInto, TellsOfGroupsWhereAFileHasNoBlocks) {
+    const test::TemporaryFolder folder;
+    test::Listener listener;
+    InfoJob job;
+    job.each_block = true;
+    job.grid.file = folder.write(
+        "a.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 7 \"rock\"\n$EndPhysicalNames\n"
+                 "$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n"
+                 "$Elements\n1\n1 4 2 7 1 1 2 3 4\n$EndElements\n");
+    EXPECT_EQ(look_into(job, listener).error().message, "`each_block`: the file has no blocks, only numbers of "
+                                                        "'gmsh:physical', which `block` chooses, as 'rock'");
+    job.grid.file = "make:kuhn:2";
+    EXPECT_EQ(look_into(job, listener).error().message, "`each_block`: the file has no blocks");
+}
+
 } // namespace
 } // namespace isotet::jobs

@@ -610,6 +610,10 @@ Result<void> PictureSource::find_sweep(const Contents& contents, Caller& caller)
 
 Result<void> PictureSource::choose_isovalues(const Contents& contents, DrawInput& input, Caller& caller) {
     if (job_.isovalues.empty() && job_.shares.empty()) {
+        const Array& values = contents.field->values;
+        const Result<core::FillValues> fill = core::find_fill_values(values, caller.run());
+        if (!fill) return fill.error();
+        caller.note(fill_note(contents.field->name, *fill, values.tuples(), "point"));
         const Result<ValueRange> range = typical_range_of_steps(*contents.field, caller);
         if (!range) return range.error();
         Result<std::vector<double>> levels = levels_of(job_).within(*range, *contents.field);
