@@ -19,6 +19,7 @@
 #include "output/json_output.hpp"
 #include "output/packed_report.hpp"
 #include "output/report.hpp"
+#include "output/text.hpp"
 
 namespace isotet::cli {
 
@@ -207,7 +208,7 @@ std::string heads_table(const GridSummary& found, const std::string& path) {
     if (found.file.cells > 0) table.row({"cells", grouped(found.file.cells)});
     if (!found.file.times.empty()) table.row({"time steps", times_text(found.file.times)});
     for (const LeftOut& item : found.file.left_out)
-        table.row({"left out", fmt::format("{} '{}': {}", item.what, item.name, item.reason)});
+        table.row({"left out", fmt::format("{} '{}': {}", item.what, item.name, with_options(item.reason))});
     return table.text();
 }
 

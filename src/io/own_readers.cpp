@@ -78,8 +78,8 @@ Result<void> check_companion(const std::string& path, const std::string& compani
     if (error) return {}; // opening it tells
     if (std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first == folder.end()) return {};
     return Error{ErrorCode::invalid_data,
-                 fmt::format("{} is a link to {}: only files below the folder of {} are read, unless --allow-outside "
-                             "(ReadOptions::allow_outside) is given",
+                 fmt::format("{} is a link to {}: only files below the folder of {} are read, unless "
+                             "`allow_outside` is given",
                              escaped(companion), escaped(file.string()), escaped(path))};
 }
 

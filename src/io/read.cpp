@@ -101,9 +101,10 @@ Result<void> check_names(const std::vector<std::string>& asked, Association asso
         }
         if (in_file && !options.blocks.empty()) continue; // it is that of another block
         if (in_file) {
+            const bool has_steps = result.info.times.size() > 1;
             return Error{ErrorCode::invalid_argument,
-                         fmt::format("{} field {} has no values at step {}", adjective(association), in_quotes(name),
-                                     result.step)};
+                         fmt::format("{} field {} has no values{}", adjective(association), in_quotes(name),
+                                     has_steps ? fmt::format(" at step {}", result.step) : "")};
         }
         for (std::string& other : names = nearest_first(name, std::move(names))) other = in_quotes(other);
         return Error{ErrorCode::invalid_argument,

@@ -432,8 +432,8 @@ TEST(ReadGmshGroups, OfVersion2MayShareElementsThatAreThereForEach) {
     EXPECT_EQ(result.grid.cells.count(), 3u) << "an element that is there twice in one group is the file's own mistake";
     expect_values(result.grid.cell_fields, "gmsh:physical", {7, 9, 9});
     ASSERT_EQ(result.notes.size(), 1u);
-    EXPECT_EQ(result.notes[0], "2 elements are there again for another physical group: the first was taken; --block "
-                               "(ReadOptions::blocks) takes all of a group");
+    EXPECT_EQ(result.notes[0], "2 elements are there again for another physical group: the first was taken; `block` "
+                               "takes all of a group");
     ReadOptions chosen;
     chosen.blocks = {"9"};
     EXPECT_EQ(io::parse_gmsh(bytes, chosen, {}).value().grid.cells.count(), 5u) << "the choice comes later";

@@ -214,7 +214,7 @@ TEST(ReadCompanions, ThroughLinksOutOfTheFolderNeedAllowOutside) {
     for (const std::string& path : {mesh, nodes}) {
         const auto refused = read(path);
         ASSERT_FALSE(refused) << path;
-        EXPECT_NE(refused.error().message.find("--allow-outside"), std::string::npos) << refused.error().message;
+        EXPECT_NE(refused.error().message.find("`allow_outside`"), std::string::npos) << refused.error().message;
         EXPECT_FALSE(inspect(path)) << path;
         EXPECT_TRUE(read(path, outside)) << path;
     }

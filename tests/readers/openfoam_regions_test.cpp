@@ -146,11 +146,11 @@ TEST(OpenfoamFields, ThatCannotBeReadAreToldWithTheReason) {
     EXPECT_EQ(result->info.left_out[0].name, "k");
     EXPECT_NE(result->info.left_out[0].reason.find("does not begin with FoamFile"), std::string::npos);
     EXPECT_EQ(result->info.left_out[1].name, "p");
-    EXPECT_NE(result->info.left_out[1].reason.find("--allow-outside"), std::string::npos);
+    EXPECT_NE(result->info.left_out[1].reason.find("`allow_outside`"), std::string::npos);
     options.point_fields = {"p"};
     const auto refused = read(folder.file(""), options);
     ASSERT_FALSE(refused);
-    EXPECT_NE(refused.error().message.find("--allow-outside"), std::string::npos) << refused.error().message;
+    EXPECT_NE(refused.error().message.find("`allow_outside`"), std::string::npos) << refused.error().message;
     options.allow_outside = true;
     EXPECT_TRUE(read(folder.file(""), options));
 }

@@ -637,13 +637,13 @@ TEST_F(BrokenOpenfoam, NothingIsRunAndNothingOutsideIsRead) {
     const auto field = [&](const std::string& body) {
         return message_of("0.5/T", foam_file("volScalarField", "T", {}, body));
     };
-    EXPECT_NE(field("#include \"" + secret + "\"" + rest).find("--allow-outside"), std::string::npos);
-    EXPECT_NE(field("#include \"../../secret\"" + rest).find("--allow-outside"), std::string::npos);
+    EXPECT_NE(field("#include \"" + secret + "\"" + rest).find("`allow_outside`"), std::string::npos);
+    EXPECT_NE(field("#include \"../../secret\"" + rest).find("`allow_outside`"), std::string::npos);
     for (const std::string word : {"#includeEtc \"", "#sincludeEtc \"", "#include \"<etc>/"})
         EXPECT_NE(
             field(word + "caseDicts/values\"" + rest).find("outside of boundaryField, where it may define values"),
             std::string::npos);
-    EXPECT_NE(field("#includeIfPresent \"../../secret\"" + rest).find("--allow-outside"), std::string::npos);
+    EXPECT_NE(field("#includeIfPresent \"../../secret\"" + rest).find("`allow_outside`"), std::string::npos);
     EXPECT_NE(field("internalField uniform #calc \"1+1\";").find("nothing in a file is run"), std::string::npos);
     EXPECT_NE(field("#codeStream { code #{ x #}; }" + rest).find("nothing in a file is run"), std::string::npos);
     EXPECT_NE(field("#include \"T\"" + rest).find("in one another"), std::string::npos);
@@ -660,7 +660,7 @@ TEST_F(BrokenOpenfoam, NothingIsRunAndNothingOutsideIsRead) {
     std::filesystem::create_symlink(owner, folder_.file("constant/polyMesh/owner"));
     const auto linked = read(folder_.file(""), last_step());
     ASSERT_FALSE(linked);
-    EXPECT_NE(linked.error().message.find("--allow-outside"), std::string::npos) << linked.error().message;
+    EXPECT_NE(linked.error().message.find("`allow_outside`"), std::string::npos) << linked.error().message;
     EXPECT_TRUE(read(folder_.file(""), outside));
 }
 

@@ -396,7 +396,7 @@ TEST_F(ReadMed, OfSeveralMeshesOneIsReadUnlessOthersAreChosen) {
     const auto one = read(path());
     ASSERT_TRUE(one) << one.error().message;
     EXPECT_EQ(one->grid.points.at(0, 0), 10) << "the one with a field";
-    EXPECT_TRUE(has_note(*one, "one of 2 meshes is read, 'b': --block NAME (ReadOptions::blocks) reads 'a'"));
+    EXPECT_TRUE(has_note(*one, "one of 2 meshes is read, 'b': `block` NAME reads 'a'"));
     ASSERT_EQ(one->info.left_out.size(), 1u);
     EXPECT_EQ(one->info.left_out[0].name, "skin");
     ReadOptions options;

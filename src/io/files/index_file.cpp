@@ -14,8 +14,8 @@ namespace fs = std::filesystem;
 
 Error refused(const std::string& index, std::string_view name, std::string_view why) {
     return {ErrorCode::invalid_data,
-            fmt::format("{} names \"{}\", {}: only files below its own folder are read, unless --allow-outside "
-                        "(ReadOptions::allow_outside) is given",
+            fmt::format("{} names \"{}\", {}: only files below its own folder are read, unless "
+                        "`allow_outside` is given",
                         escaped(index), escaped(name), why)};
 }
 

@@ -91,11 +91,10 @@ Result<CaseText> DiskCase::open(const std::string& name, std::size_t most) const
     const fs::path file = fs::canonical(path, error);
     if (error) return Error{ErrorCode::file, fmt::format("{} is not there, or cannot be read", escaped(path))};
     if (!allow_outside_ && !is_below(fs::canonical(folder_, error), file))
-        return Error{
-            ErrorCode::invalid_data,
-            fmt::format("{} is a link to {}: only files below the case's folder are read, unless --allow-outside "
-                        "(ReadOptions::allow_outside) is given",
-                        escaped(path), escaped(file.string()))};
+        return Error{ErrorCode::invalid_data,
+                     fmt::format("{} is a link to {}: only files below the case's folder are read, unless "
+                                 "`allow_outside` is given",
+                                 escaped(path), escaped(file.string()))};
     auto whole = WholeFile::read(path, progress_, most);
     if (whole && most != all && is_gzip(whole->text())) whole = WholeFile::read(path, progress_);
     if (!whole) return whole.error();

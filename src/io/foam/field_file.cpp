@@ -190,8 +190,7 @@ private:
         if (level == Level::top && !allow_outside_)
             return scanner.fail(
                 fmt::format("includes {} of an OpenFOAM installation outside of boundaryField, where it "
-                            "may define values: it is not read, and skipped only with --allow-outside "
-                            "(ReadOptions::allow_outside)",
+                            "may define values: it is not read, and skipped only with `allow_outside`",
                             in_quotes(name)));
         field_.has_constraint_types |= level == Level::boundary && name.ends_with("setConstraintTypes");
         if (field_.unread.size() < max_includes) field_.unread.insert(name);
@@ -206,7 +205,7 @@ private:
         const std::string name = (fs::path(scanner.file().name).parent_path() / named).lexically_normal().string();
         if (named.empty() || (!allow_outside_ && (fs::path(named).is_absolute() || name.starts_with(".."))))
             return scanner.fail(fmt::format("includes {}: only files below the case's folder are read, unless "
-                                            "--allow-outside (ReadOptions::allow_outside) is given",
+                                            "`allow_outside` is given",
                                             in_quotes(named)));
         if (if_present && !files_.has(name)) return {};
         if (++includes_ > max_includes || nesting_ == max_nesting)

@@ -291,8 +291,8 @@ Result<ReadResult> without_left_out(ReadResult result, const Mesh& mesh) {
     piece.left_out = std::move(left_out);
     auto rest = join(std::move(loaded), {});
     if (!rest || mesh.repeats == 0) return rest;
-    notes.push_back(fmt::format("{} elements are there again for another physical group: the first was taken; --block "
-                                "(ReadOptions::blocks) takes all of a group",
+    notes.push_back(fmt::format("{} elements are there again for another physical group: the first was taken; `block` "
+                                "takes all of a group",
                                 mesh.repeats));
     rest->notes = std::move(notes); // those of join() speak of ghost cells
     return rest;

@@ -200,10 +200,9 @@ Result<Loaded> CgnsFile::load(const ReadOptions& options, Depth depth) {
         std::vector<std::string> others;
         for (std::size_t i = 0; i < bases_.size(); ++i)
             if (i != base) others.push_back("'" + escaped(bases_[i].name) + "'");
-        loaded.notes.push_back(
-            fmt::format("only {} of {} bases is read, '{}': --block NAME (ReadOptions::blocks) reads {}",
-                        base == 0 ? "the first" : "the first with volumes", bases_.size(), escaped(bases_[base].name),
-                        fmt::join(others, ", ")));
+        loaded.notes.push_back(fmt::format("only {} of {} bases is read, '{}': `block` NAME reads {}",
+                                           base == 0 ? "the first" : "the first with volumes", bases_.size(),
+                                           escaped(bases_[base].name), fmt::join(others, ", ")));
     }
     core::PatchList patch_numbers;
     for (std::size_t i = 0; i < zones_.size(); ++i) {

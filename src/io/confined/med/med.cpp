@@ -127,8 +127,8 @@ Result<std::vector<bool>> MedLoader::chosen() {
     std::vector<std::string> others;
     for (std::size_t i = 0; i < meshes_.size(); ++i)
         if (i != first) others.push_back("'" + escaped(meshes_[i].mesh.name()) + "'");
-    loaded_.notes.push_back(fmt::format("one of {} meshes is read, '{}': --block NAME (ReadOptions::blocks) reads {}",
-                                        meshes_.size(), escaped(meshes_[first].mesh.name()), fmt::join(others, ", ")));
+    loaded_.notes.push_back(fmt::format("one of {} meshes is read, '{}': `block` NAME reads {}", meshes_.size(),
+                                        escaped(meshes_[first].mesh.name()), fmt::join(others, ", ")));
     std::vector<bool> only(chosen->size(), false);
     only[first] = true;
     return only;
