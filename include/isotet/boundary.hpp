@@ -71,6 +71,10 @@ struct StreamedBoundary {
     bool is_there = false; ///< set by reading; false: all cells were read
     Surface surface = {};
     std::array<std::uint64_t, 2> print = {}; ///< fingerprint of those cells and points, with `of_steps`
+    bool wants_cells = false;                ///< set before reading
+    Grid cells =
+        {}; ///< then all cells that have a face of it, and others around them, in their order, with their fields
+    std::vector<std::uint64_t> numbers = {}; ///< of these cells in the whole grid
 };
 
 /// Finds boundaries, and gives the last one again for a grid with the same cells and points, as time steps mostly have.

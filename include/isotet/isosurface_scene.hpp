@@ -158,7 +158,8 @@ struct IsosurfaceOptions {
     bool split_cells = false;                 ///< as PackOptions::split_cells
     std::optional<RefineOptions> refine = {}; ///< as ContourOptions::refine; a device takes cells split at their nodes
     /// Set where the grid has only the cells that an ActiveCellFilter kept for the first isovalues that are shown:
-    /// gives it with all. Then no slices are drawn, of boundaries only `boundary`, and all is as large as it or the bounds.
+    /// gives it with all, and the values of all cells where these colour. Then no slices are drawn, of boundaries only
+    /// `boundary`, with its colours, and all is as large as it or the bounds.
     std::function<Result<Grid>(const Run& run)> all_cells = {};
     std::vector<double> expected_isovalues = {}; ///< these
     bool has_cells_around = false;               ///< then, as ContourInput::has_cells_around

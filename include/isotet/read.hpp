@@ -97,7 +97,7 @@ struct CellCondition {
 
 /// Only the cells that direct extraction of some isovalues needs (active_cells.hpp).
 struct ReadActiveCells {
-    std::string field; ///< as find_field() takes it
+    std::string field; ///< as find_field() takes it; empty, without a shape: none is extracted, and one cell is kept
     std::vector<double> isovalues;
     DirectOptions options;                ///< of the extraction; the point fields that are read count as carried ones
     std::optional<SliceShape> shape = {}; ///< slice_field() in place of `field`
@@ -111,6 +111,8 @@ struct ReadActiveCells {
     /// integers they keep it. All cells are read where some have no volume, or a range has no value; not with `bounds`,
     /// `boundary` and `choose`.
     std::vector<CellCondition> conditions = {};
+    bool averages = false; ///< `field` is one of cells: ReadResult::field; only of a file that is one piece
+    bool digests = false;  ///< ReadResult::digests are wanted; all cells are read where some have no volume
 };
 
 /// Where inspect() leaves a file that it had to read whole, so that read() need not read it again. Nothing of it is left
@@ -162,6 +164,9 @@ struct ReadResult {
             ///< their options ask for source cells. Empty: they are the same
     std::optional<std::uint64_t> chosen_cells =
         {}; ///< of active cells: for how many of all the conditions hold; nothing: they were not looked at
+    std::optional<PointField> field = {}; ///< of active cells, with `averages`: as find_field() has it for all cells
+    std::vector<Field> digests = {}; ///< of active cells, where they are wanted: a few values of each cell field of one
+        ///< component, as float64, by which colours are those of all (ColorOptions::all_values)
 };
 
 /// Tells what a file holds without reading more of it than the format makes necessary.

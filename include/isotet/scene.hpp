@@ -238,15 +238,15 @@ struct SurfaceColors {
 /// Something with triangles that is drawn. Exactly one of `triangles`, `mesh`, `surface` and `tets` is set; all are
 /// borrowed. The CPU draws `triangles` only, a device all of them.
 struct DrawnSurface {
-    const Surface* triangles = nullptr;      ///< in memory; a device uploads it for each picture
-    const SurfaceColors* values = nullptr;   ///< of `triangles`; null: `color` everywhere
-    const DeviceMesh* mesh = nullptr;        ///< uploaded (render.hpp)
-    const DeviceSurface* surface = nullptr;  ///< where the Vulkan engine left it (device.hpp)
-    const DeviceColors* colors = nullptr;    ///< of `mesh` and `surface`; null: `color` everywhere. Tets have none
-    Color color{0.70F, 0.75F, 0.80F, 1};     ///< its opacity does not count
-    double opacity = 1;                      ///< of the sheet seen at a right angle; at a slant it is denser. 0: not
-                                             ///< drawn
-    const TetSurface* tets = nullptr;        ///< that give their triangles while they are drawn (draw_tets.hpp)
+    const Surface* triangles = nullptr;     ///< in memory; a device uploads it for each picture
+    const SurfaceColors* values = nullptr;  ///< of `triangles`; null: `color` everywhere
+    const DeviceMesh* mesh = nullptr;       ///< uploaded (render.hpp)
+    const DeviceSurface* surface = nullptr; ///< where the Vulkan engine left it (device.hpp)
+    const DeviceColors* colors = nullptr;   ///< of `mesh` and `surface`; null: `color` everywhere. Tets have none
+    Color color{0.70F, 0.75F, 0.80F, 1};    ///< its opacity does not count
+    double opacity = 1;                     ///< of the sheet seen at a right angle; at a slant it is denser. 0: not
+                                            ///< drawn
+    const TetSurface* tets = nullptr;       ///< that give their triangles while they are drawn (draw_tets.hpp)
 };
 
 /// Straight lines of one colour, drawn as opaque.
@@ -320,6 +320,7 @@ struct ColorOptions {
     ColorScale scale;                         ///< without its ends and classes
     std::optional<ValueRange> range = {};     ///< its ends; nothing: those of the values
     std::map<double, std::string> names = {}; ///< of whole numbers that are classes; without one it is the number
+    Array all_values = {}; ///< of a cell field of a grid that has some of its cells: of all, or ReadResult::digests
 };
 
 /// A field that colours, and what a reader of the picture should know of it.

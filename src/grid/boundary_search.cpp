@@ -105,7 +105,7 @@ bool BoundarySearch::is_kept(const CellReader& cells, std::size_t cell, std::spa
 
 template <class Index, class Number>
 void BoundarySearch::keep_cells(const CellReader& cells, const Index* corners, std::size_t begin, std::size_t end,
-                                std::vector<Number>& kept, std::vector<std::uint8_t>& types) {
+                                std::vector<Number>& kept, Run& run) {
     const auto corners_of_cell = [&](std::size_t cell) {
         return std::span(corners + cells.first(cell), cells.corners(cell));
     };
@@ -120,17 +120,18 @@ void BoundarySearch::keep_cells(const CellReader& cells, const Index* corners, s
     kept.reserve(count);
     for (const std::size_t cell : found)
         for (const Index corner : corners_of_cell(cell)) kept.push_back(static_cast<Number>(widened(corner)));
+    for (std::size_t i = 0; numbered_ && i < found.size(); ++i) run.numbers.push_back(run.first + (found[i] - begin));
     if (cells.bare_tets()) return;
-    types.reserve(found.size());
-    for (const std::size_t cell : found) types.push_back(cells.type(cell));
+    run.types.reserve(found.size());
+    for (const std::size_t cell : found) run.types.push_back(cells.type(cell));
 }
 
 void BoundarySearch::keep(std::uint64_t first, const CellReader& cells, std::size_t begin, std::size_t end) {
     if (!has_kept_all()) return;
     Run run{first, {}, {}, {}};
     cells.connectivity().visit([&](const auto* corners) {
-        if (wide_) keep_cells(cells, corners, begin, end, run.wide, run.types);
-        else keep_cells(cells, corners, begin, end, run.narrow, run.types);
+        if (wide_) keep_cells(cells, corners, begin, end, run.wide, run);
+        else keep_cells(cells, corners, begin, end, run.narrow, run);
     });
     if (run.corners() == 0) return;
     const std::lock_guard lock(mutex_);
@@ -139,15 +140,17 @@ void BoundarySearch::keep(std::uint64_t first, const CellReader& cells, std::siz
     else runs_ = {};
 }
 
-/// Types are ordered ones, too, so that cells of several have one each.
-Cells BoundarySearch::join_runs() {
+/// The cells. Types are ordered ones, too, so that cells of several have one each.
+FoundBoundary BoundarySearch::join_runs() {
     std::ranges::sort(runs_, {}, &Run::first);
     std::vector<std::size_t> corners{0}, cells{0};
     for (const Run& run : runs_) {
         corners.push_back(corners.back() + run.corners());
         cells.push_back(cells.back() + run.cells());
     }
-    Cells joined;
+    FoundBoundary found;
+    Cells& joined = found.cells;
+    for (const Run& run : runs_) found.numbers.insert(found.numbers.end(), run.numbers.begin(), run.numbers.end());
     const bool typed = std::ranges::any_of(runs_, [](const Run& run) { return !run.types.empty(); });
     const auto join = [&]<class Index>(Buffer<Index> connectivity) {
         Buffer<std::uint8_t> types(typed ? cells.back() : 0);
@@ -179,7 +182,7 @@ Cells BoundarySearch::join_runs() {
     if (block_.points.tuples() <= std::uint64_t{1} << 31) join(Buffer<std::int32_t>(corners.back()));
     else join(Buffer<std::int64_t>(corners.back()));
     runs_ = {};
-    return joined;
+    return found;
 }
 
 Result<Surface> BoundarySearch::find(const Grid& grid, const CellReader& cells, const Progress& progress) {
@@ -196,8 +199,7 @@ Result<Surface> BoundarySearch::find(const Grid& grid, const CellReader& cells, 
 
 Result<FoundBoundary> BoundarySearch::finish(const Progress& progress) && {
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "finding the boundary was cancelled"};
-    FoundBoundary found;
-    found.cells = join_runs();
+    FoundBoundary found = join_runs();
     if (found.cells.connectivity.empty()) {
         found.surface = surface_of(block_.points, {});
         return found;

@@ -22,7 +22,8 @@ namespace isotet::core {
 
 struct FoundBoundary {
     Surface surface;
-    Cells cells; ///< those that have its faces, and others around them
+    Cells cells;                             ///< those that have its faces, and others around them
+    std::vector<std::uint64_t> numbers = {}; ///< theirs in the whole grid, with keep_numbers()
 };
 
 /// Finds the boundary of linear cells that go by twice, in blocks of any order: first sums say at which points there may be
@@ -55,6 +56,7 @@ public:
     /// have points that were not there at first, as where a file is written to meanwhile.
     bool has_kept_all() const { return !broken_ && kept_bytes_ <= most_kept_; }
     void limit_kept(std::uint64_t bytes) { most_kept_ = bytes; } ///< else a quarter of the free memory
+    void keep_numbers() { numbered_ = true; }                    ///< before the first keep()
 
     /// Then, if it has.
     ///
@@ -74,11 +76,13 @@ private:
         std::vector<std::uint32_t> narrow; ///< corners, where point numbers have 32 bits
         std::vector<std::uint64_t> wide;   ///< else
         std::vector<std::uint8_t> types;   ///< empty: tetrahedra
+        std::vector<std::uint64_t> numbers = {};
 
         std::size_t corners() const { return narrow.size() + wide.size(); }
         std::size_t cells() const { return types.empty() ? corners() / 4 : types.size(); }
         std::size_t bytes() const {
-            return sizeof narrow[0] * narrow.size() + sizeof wide[0] * wide.size() + types.size();
+            return sizeof narrow[0] * narrow.size() + sizeof wide[0] * wide.size() + types.size() +
+                   sizeof numbers[0] * numbers.size();
         }
     };
 
@@ -86,13 +90,14 @@ private:
     bool is_kept(const CellReader& cells, std::size_t cell, std::span<const Index> corners);
     template <class Index, class Number>
     void keep_cells(const CellReader& cells, const Index* corners, std::size_t begin, std::size_t end,
-                    std::vector<Number>& kept, std::vector<std::uint8_t>& types);
-    Cells join_runs();
+                    std::vector<Number>& kept, Run& run);
+    FoundBoundary join_runs();
     Result<Surface> find(const Grid& grid, const CellReader& cells, const Progress& progress);
 
     Grid block_; ///< points alone
     bool points_are_sound_ = false;
     bool wide_; ///< point numbers
+    bool numbered_ = false;
     std::atomic<bool> broken_{false};
     CellSums sums_;
     Buffer<std::uint8_t> doubted_; ///< by point

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <isotet/boundary.hpp>
 #include <isotet/fields.hpp>
 
 #include "base/fresh_memory.hpp"
@@ -130,6 +131,13 @@ Result<void> check_grid(const Grid& grid, const Progress& progress) {
     if (auto sound = core::check_cells(grid, *cells, progress); !sound) return sound;
     if (auto sound = core::check_patches(grid); !sound) return sound;
     return core::check_faces(grid, *cells, progress);
+}
+
+/// The cells at a boundary that was asked for with them.
+Result<void> check_cells_at_boundary(const ReadOptions& options, const Progress& progress) {
+    if (!options.active_cells || !options.active_cells->boundary) return {};
+    const StreamedBoundary& boundary = *options.active_cells->boundary;
+    return boundary.is_there && boundary.wants_cells ? check_grid(boundary.cells, progress) : Result<void>();
 }
 
 /// Cell fields of all cells do not fit some of them.
@@ -320,6 +328,7 @@ Result<ReadResult> read_checked(const std::string& path, const ReadOptions& opti
     };
     if (auto checked = check_grid(without_values_of_others(*result), progress); !checked)
         return in_file(checked.error());
+    if (auto checked = check_cells_at_boundary(options, progress); !checked) return in_file(checked.error());
     if (auto checked = check_bezier(*result); !checked) return in_file(checked.error());
     if (core::has_linear_names(result->grid.cells)) {
         result->grid.cells = core::with_linear_names(std::move(result->grid.cells));

@@ -102,6 +102,7 @@ private:
     Array active_numbers_;                         ///< in the whole grid, of active cells, if source cells are wanted
     PointField field_;                             ///< that is contoured there
     core::FillValues fill_;                        ///< of the whole field, where isovalues follow from its range
+    std::optional<PointField> averaged_;           ///< ReadResult::field
     std::vector<double> share_isovalues_;          ///< of ExtractJob::shares
     SolidChoice solid_;                            ///< of ExtractJob::solid, with the shares of its range
     std::vector<double> isovalues_;                ///< of the step at hand: levels follow its range
@@ -230,6 +231,7 @@ Result<std::optional<std::uint64_t>> ExtractRun::read_grid(std::size_t step) {
         Result<ReadResult> read = source_->read_active(plan_.read, step, *plan_.active_cells, caller_);
         if (!read) return read.error();
         grid_ = std::move(read->grid);
+        averaged_ = std::move(read->field);
         active_numbers_ = read->cells_in_file ? read->cell_numbers : Array();
         cell_numbers_ = read->cells_in_file ? Array() : read->cell_numbers;
         return read->cells_in_file;
@@ -295,12 +297,13 @@ Result<bool> ExtractRun::load(std::size_t step) {
     const core::Stopwatch reading;
     caller_.detail(fmt::format("reading step {}", step));
     grid_ = {};
+    averaged_.reset();
     if (plan_.contour.refine) plan_.contour.refine->carried = {};
     bool found = false;
     Result<std::optional<std::uint64_t>> cells_in_file = read_field_of(step, found);
     if (!cells_in_file) return cells_in_file.error();
     if (!found) return false;
-    Result<PointField> field = find_chosen(grid_, plan_.field.name, job_.field, caller_);
+    Result<PointField> field = averaged_ ? *averaged_ : find_chosen(grid_, plan_.field.name, job_.field, caller_);
     if (!field) return field.error();
     Result<StepFields> fields = carried_fields(plan_, grid_, caller_.run());
     if (!fields) return fields.error();

@@ -13,6 +13,7 @@
 #include <isotet/fields.hpp>
 #include <isotet/jobs/first_choice.hpp>
 #include <isotet/jobs/number_text.hpp>
+#include <isotet/jobs/range_shares.hpp>
 #include <isotet/isovalues.hpp>
 #include <isotet/linear_cells.hpp>
 #include <isotet/write.hpp>
@@ -88,8 +89,6 @@ FieldsToRead fields_to_read(const ExtractPlan& plan) {
 /// Whether values at points follow from cells around them.
 bool looks_around(const FoundField& field) { return !field.cell.empty() || field.neighbours; }
 
-bool is_of_volume(const IsovalueShare& share) { return share.of == IsovalueShare::Of::volume; }
-
 std::optional<ReadActiveCells> plan_active_cells(const ExtractJob& job, const ExtractPlan& plan) {
     const bool looks_around_others = (plan.color && looks_around(*plan.color)) ||
                                      (plan.carried && std::ranges::any_of(plan.carried->components, looks_around));
@@ -98,25 +97,22 @@ std::optional<ReadActiveCells> plan_active_cells(const ExtractJob& job, const Ex
     const std::size_t count = named > 0 ? named : std::max<std::uint64_t>(job.levels, 1);
     ContourOptions options = plan.contour;
     if (chosen) options.expected_isovalues.resize(count);
-    const bool needs_all = looks_around(plan.field) || job.snap || std::ranges::any_of(job.shares, is_of_volume) ||
+    const bool averages = is_averaged_while_read(plan.field, job.field);
+    const bool needs_all = (looks_around(plan.field) && !averages) || job.snap || !are_of_points(job.shares) ||
                            (chosen && (plan.steps.size() > 1 || !job.grid.cells.empty())) || job.piece || job.solid ||
                            job.volumes || job.grid.merge_points;
     if (needs_all || looks_around_others || options.expected_isovalues.size() > ActiveCellFilter::max_isovalues ||
         !Contour::can_do_with_active_cells(options))
         return std::nullopt;
     ReadActiveCells active{plan.field.name, {}, {}, job.field.shape};
+    active.averages = averages;
     active.options.precision = plan.contour.precision;
     active.options.extract.ties = plan.contour.ties;
     active.options.extract.source_cells = plan.contour.source_cells;
     active.options.extract.normals = plan.contour.normals;
     if (!chosen) active.isovalues = job.isovalues;
     else if (job.shares.empty()) active.choose = RangeLevels{.count = count, .whole_range = true};
-    else
-        active.choose = [others = job.isovalues, shares = job.shares](const PointField& field) {
-            Result<std::vector<double>> all = isovalues_at({}, field, shares);
-            if (all) all->insert(all->end(), others.begin(), others.end());
-            return all;
-        };
+    else active.choose = isovalues_by_values(job.isovalues, job.shares);
     return active;
 }
 

@@ -163,6 +163,11 @@ Result<CarriedFields> choose_carried(const GridSource& source, const std::vector
     return carried;
 }
 
+bool is_averaged_while_read(const FoundField& field, const FieldChoice& choice) {
+    return field.point.empty() && field.cell.size() == 1 && !field.is_expression && !field.neighbours &&
+           !choice.own_centres;
+}
+
 Result<PointField> find_chosen(const Grid& grid, const std::string& name, const FieldChoice& choice, Caller& caller) {
     if (choice.shape) return slice_field(grid.points, *choice.shape, caller.run());
     const auto prefer = choice.cell_field || choice.own_centres ? Association::cell : Association::point;

@@ -172,11 +172,7 @@ private:
         return shows_a_field();
     }
 
-    /// Formats whose cells are counted tell how many corners there are.
-    bool may_stream() const {
-        const LeastCounts& least = source_.info().least;
-        return wish_.streams && least.corners > 0 && !least.all_cells;
-    }
+    bool may_stream() const { return wish_.streams && source_.may_stream(); }
 
     bool shows_a_field() const {
         return !view_.walls && (view_.draw == FirstDraw::isosurfaces || view_.draw == FirstDraw::field_on_boundary);

@@ -27,9 +27,8 @@ std::uint64_t picture_bytes(const PictureOptions& picture, std::uint64_t tets) {
 Result<void> IsosurfaceScene::Data::start(IsosurfaceOptions wanted, const Run& run) {
     ContourOptions options;
     const bool by_gradient = look.shade_by == ShadeBy::gradient && !look.solid;
-    options.normals = by_gradient || wanted.draw || wanted.where == ExtractOn::device
-                          ? Normals::gradient
-                          : Normals::none;
+    options.normals =
+        by_gradient || wanted.draw || wanted.where == ExtractOn::device ? Normals::gradient : Normals::none;
     options.method = wanted.draw || look.volume ? Method::clusters : wanted.method;
     options.surfaces = wanted.surfaces;
     const bool by_cells = look.colors && look.colors->association == Association::cell;
@@ -42,6 +41,7 @@ Result<void> IsosurfaceScene::Data::start(IsosurfaceOptions wanted, const Run& r
             Result<Grid> grid = read(reading);
             if (!grid) return grid.error();
             ContourInput input = all;
+            if (!input.cell_fields.empty()) input.cell_fields = std::exchange(grid->cell_fields, {});
             input.grid = *std::move(grid);
             return input;
         };

@@ -4,10 +4,14 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include <gtest/gtest.h>
 
 #include <isotet/make.hpp>
+
+#include "grid/values/value_digest.hpp"
+#include "support/seeds.hpp"
 
 namespace isotet {
 namespace {
@@ -74,6 +78,44 @@ TEST(ColorScale, HasTheSameEndsForAnyNumberOfThreads) {
         const ValueRange many = *colored_range(array, false, {threads, {}});
         EXPECT_EQ(many.lower, one.lower);
         EXPECT_EQ(many.upper, one.upper);
+    }
+}
+
+TEST(FindColors, GivesSomeCellsTheColoursOfAll) {
+    const std::vector<std::vector<double>> kinds{{3, 1, 2},   {-0.0, 0, 1},
+                                                 {nan, 4, 5}, {1, 2.5},
+                                                 {-3, -1},    {infinity, -infinity, 2},
+                                                 {nan},       {0, 0.5, -2, nan, infinity},
+                                                 {}};
+    for (const std::uint32_t seed : test::Seeds(1, 60)) {
+        std::mt19937 random(seed);
+        std::vector<double> kind = kinds[seed % kinds.size()];
+        for (int i = 0; kind.empty() && i < 20; ++i) kind.push_back(i);
+        Grid all, some;
+        std::vector<double> values(200);
+        for (double& value : values) value = kind[random() % kind.size()];
+        all.cell_fields = {{"c", doubles(values)}};
+        some.cell_fields = {{"c", doubles({values[7], values[100]})}};
+        core::ValueDigest digest;
+        digest.add(doubles({values.begin(), values.begin() + 90}), {});
+        digest.add(doubles({values.begin() + 90, values.end()}), {});
+        EXPECT_LT(digest.values().tuples(), 21u);
+        for (const bool logarithmic : {false, true}) {
+            SCOPED_TRACE(testing::Message() << "seed " << seed << (logarithmic ? ", logarithmic" : ""));
+            ColorOptions options;
+            options.scale.logarithmic = logarithmic;
+            const FoundColors expected = find_colors(all, "c", options).value();
+            options.all_values = digest.values();
+            const FoundColors found = find_colors(some, "c", options).value();
+            EXPECT_EQ(found.notes, expected.notes);
+            EXPECT_EQ(found.field.classes, expected.field.classes);
+            EXPECT_EQ(found.field.has_no_data, expected.field.has_no_data);
+            EXPECT_EQ(found.field.scale.lower, expected.field.scale.lower);
+            EXPECT_EQ(found.field.scale.upper, expected.field.scale.upper);
+            EXPECT_EQ(found.field.scale.classes.size(), expected.field.scale.classes.size());
+            const double value = found.field.values.at(1), same = expected.field.values.at(100);
+            EXPECT_TRUE(value == same || (std::isnan(value) && std::isnan(same)));
+        }
     }
 }
 

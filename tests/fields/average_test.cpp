@@ -10,6 +10,10 @@
 #include <isotet/grid.hpp>
 #include <isotet/make.hpp>
 
+#include "base/parallel.hpp"
+#include "grid/cells.hpp"
+#include "grid/values/cell_means.hpp"
+
 namespace {
 
 using namespace isotet;
@@ -23,9 +27,26 @@ Grid two_tets(Array values) {
     return grid;
 }
 
+/// Cells that go by in their order give the same.
+void expect_same_of_cells_that_go_by(const Grid& grid, core::Scalar scalar, const Array& expected) {
+    const core::CellReader cells = core::CellReader::open(grid).value();
+    for (const int threads : {1, 3})
+        core::with_threads(threads, [&] {
+            core::CellMeans means(grid.points);
+            means.add(cells, grid.cell_fields[0].values, scalar, 0);
+            const Array found = std::move(means).finish(grid.cell_fields[0].values.type());
+            EXPECT_EQ(found.type(), expected.type());
+            ASSERT_EQ(found.bytes(), expected.bytes());
+            EXPECT_EQ(std::memcmp(found.data(), expected.data(), found.bytes()), 0);
+        });
+}
+
 Array averaged(const Grid& grid, std::string_view name = "c") {
     const PointField found = find_field(grid, name).value();
     EXPECT_TRUE(found.averaged);
+    const std::size_t colon = name.find(':');
+    const auto scalar = colon == name.npos ? core::Scalar() : *core::CellMeans::scalar_called(name.substr(colon + 1));
+    expect_same_of_cells_that_go_by(grid, scalar, found.values);
     return found.values;
 }
 
@@ -112,6 +133,7 @@ TEST(AverageToPoints, IsTheSameBytesForAnyNumberOfThreads) {
         values[cell] = static_cast<float>(cell * 2654435761u % 1000) / 7;
     grid.cell_fields = {{"c", Array::own(std::move(values))}};
     const Array one = find_field(grid, "c", {}, {.threads = 1}).value().values;
+    expect_same_of_cells_that_go_by(grid, {}, one);
     for (const int threads : {2, 7, 64}) {
         const Array many = find_field(grid, "c", {}, {.threads = threads}).value().values;
         ASSERT_EQ(one.bytes(), many.bytes());

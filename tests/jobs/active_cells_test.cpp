@@ -3,6 +3,7 @@
 #include <isotet/jobs/extract_files.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <numeric>
@@ -138,6 +139,44 @@ TEST(ActiveCellsOfFiles, MayBeThoseOfARegion) {
                 EXPECT_EQ(listener.noted, other.noted);
                 EXPECT_EQ(some.cells, all.cells);
                 EXPECT_EQ(some.cells_left_out, all.cells_left_out);
+                EXPECT_EQ(some.field.lower, all.field.lower);
+                EXPECT_EQ(some.field.upper, all.field.upper);
+            }
+}
+
+TEST(ActiveCellsOfFiles, AreOfCellFieldsThatAreAveraged) {
+    const test::TemporaryFolder folder;
+    for (const char* shape : some_of<const char*>({"mixed", "kuhn", "shuffled", "hex", "octree"}))
+        for (const char* ending : {".vtu", ".vtk"})
+            for (const char* field : {"part", "region", "vector:y", "vector:mag"}) {
+                SCOPED_TRACE(testing::Message() << shape << ending << " " << field);
+                const std::string file = folder.file("grid") + ending;
+                Grid grid = made(shape, 12);
+                const std::size_t cells = grid.cells.count();
+                grid.cell_fields = cell_fields_of(cells);
+                std::vector<double> vectors(3 * cells);
+                for (std::size_t i = 0; i < vectors.size(); ++i)
+                    vectors[i] = i % 31 == 0 ? NAN : static_cast<double>(i * i % 1000) / 500;
+                grid.cell_fields.push_back({"vector", Array::own(std::move(vectors), 3)});
+                ASSERT_TRUE(write_grid(grid, file));
+                ExtractJob job = active_job(file, folder.file("active.vtp"));
+                job.field.name = field;
+                job.isovalues = {0.5, 0.9};
+                if (std::string(ending) == ".vtk") job.normals = Normals::gradient;
+                if (std::string(field) == "part") job.isovalues.clear(); // by the values
+                Listener listener, other;
+                const ExtractNumbers some = extract_files(job, listener).value();
+                EXPECT_TRUE(some.averaged);
+                const bool streams =
+                    std::string(shape) != "octree" && (shape != std::string("mixed") || ending != std::string(".vtk"));
+                EXPECT_EQ(tells_of_kept_cells(listener), streams);
+                EXPECT_FALSE(was_read_twice(listener));
+                const std::string written = test::content_of(job.out);
+                job.engine = EngineChoice::reference;
+                const ExtractNumbers all = extract_files(job, other).value();
+                EXPECT_TRUE(written == test::content_of(job.out));
+                EXPECT_EQ(listener.noted, other.noted);
+                EXPECT_EQ(some.cells, all.cells);
                 EXPECT_EQ(some.field.lower, all.field.lower);
                 EXPECT_EQ(some.field.upper, all.field.upper);
             }

@@ -432,23 +432,40 @@ TEST(ActiveCellsOfPieces, AreEnoughForPicturesWithTheBoundary) {
             SCOPED_TRACE(testing::Message() << shape << " " << more << (marked ? ", marked" : ""));
             DrawJob job;
             job.grid.file =
-                write_pieces(folder, {.shape = shape, .more = static_cast<std::uint64_t>(more), .marked = marked});
+                write_pieces(folder, {.shape = shape, .more = static_cast<std::uint64_t>(more), .marked = marked},
+                             [](std::size_t piece, Grid& grid) { // numbers of pieces, and in one a part
+                                 std::vector<std::int32_t> number(grid.cells.count(), static_cast<int>(piece));
+                                 std::vector<float> part(grid.cells.count());
+                                 for (std::size_t i = 0; i < part.size(); ++i) part[i] = static_cast<float>(i % 9);
+                                 grid.cell_fields.push_back({"number", Array::own(std::move(number))});
+                                 if (piece == 1) grid.cell_fields.push_back({"part", Array::own(std::move(part))});
+                             });
             job.out = folder.file("a.png");
             job.picture.width = 120;
             job.picture.height = 90;
             job.plain = true;
-            job.field.name = "gyroid";
-            job.isovalues = {0.1};
-            Listener listener, other;
-            ASSERT_TRUE(draw_files(job, listener));
-            const std::string drawn = test::content_of(job.out);
-            job.stretch = {1, 1, 1}; // needs all cells
-            ASSERT_TRUE(draw_files(job, other));
-            EXPECT_TRUE(drawn == test::content_of(job.out));
-            EXPECT_EQ(listener.noted, other.noted);
-            EXPECT_TRUE(std::ranges::any_of(listener.details, [](const std::string& detail) {
-                return detail.find("cells were kept") != std::string::npos;
-            }));
+            for (const char* color : {"", "number", "part", "boundary"}) {
+                SCOPED_TRACE(color);
+                const bool of_boundary = color == std::string("boundary");
+                job.field.name = of_boundary ? "" : "gyroid";
+                job.isovalues = of_boundary ? std::vector<double>{} : std::vector{0.1};
+                job.color_by = of_boundary ? "" : color;
+                job.boundary_color_by = of_boundary ? "part" : "";
+                job.stretch.clear();
+                Listener listener, other;
+                ASSERT_TRUE(draw_files(job, listener));
+                const std::string drawn = test::content_of(job.out);
+                job.stretch = {1, 1, 1}; // needs all cells
+                ASSERT_TRUE(draw_files(job, other));
+                EXPECT_TRUE(drawn == test::content_of(job.out));
+                EXPECT_EQ(listener.noted, other.noted);
+                const bool repeats = more > 0 && !marked; // cells whose colours are those of other pieces
+                EXPECT_EQ(std::ranges::any_of(listener.details,
+                                              [](const std::string& detail) {
+                                                  return detail.find("cells were kept") != std::string::npos;
+                                              }),
+                          !repeats || color == std::string());
+            }
         }
 }
 

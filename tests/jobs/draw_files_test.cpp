@@ -167,6 +167,120 @@ TEST(DrawFiles, KnowsTheBoundaryOfTheStepBefore) {
     }
 }
 
+/// Regions in layers, of which the last is no number in one of two, and a part that changes from cell to cell.
+std::vector<Field> fields_of_cells(std::size_t cells) {
+    std::vector<std::int32_t> region(cells);
+    std::vector<float> part(cells);
+    for (std::size_t cell = 0; cell < cells; ++cell) {
+        region[cell] = static_cast<std::int32_t>(cell * cell % cells * 4 / cells) - 1;
+        part[cell] = cell % 50 == 3 ? NAN : static_cast<float>(cell * 7919 % 100) / 40 - 1;
+    }
+    return {{"region", Array::own(std::move(region))}, {"part", Array::own(std::move(part))}};
+}
+
+/// Pictures that are coloured by a cell field, or show the boundary alone.
+std::vector<DrawJob> jobs_without_all_cells(const std::string& file, const std::string& out) {
+    const DrawJob plain = small_picture(file, out);
+    std::vector<DrawJob> jobs(8, plain);
+    for (DrawJob* job : {&jobs[0], &jobs[1], &jobs[2], &jobs[3]}) {
+        job->field.name = "gyroid";
+        job->isovalues = {0.1};
+    }
+    jobs[0].color_by = "region";
+    jobs[1].color_by = jobs[4].boundary_color_by = "part";
+    jobs[1].scale.logarithmic = true;
+    jobs[2].boundary_color_by = jobs[5].boundary_color_by = "region";
+    jobs[3].isovalues.clear();
+    jobs[3].shares = {{IsovalueShare::Of::points, 40}};
+    jobs[5].clips = {{{1, 0, 0}, 0.1}};
+    jobs[6].boundary_color_by = "plane";
+    jobs[7].field.name = "part"; // averaged to the points
+    return jobs;
+}
+
+TEST(DrawFiles, ColoursByValuesOfCellsThatAreNotRead) {
+    const test::TemporaryFolder folder;
+    for (const char* shape : test::some_of<const char*>({"mixed", "shuffled", "octree"}))
+        for (const char* ending : {".vtu", ".vtk"}) {
+            const std::string file = folder.file("grid") + ending;
+            Grid grid = make_grid({.shape = shape, .side = 9, .fields = {"gyroid", "plane"}}).value();
+            grid.cell_fields = fields_of_cells(grid.cells.count());
+            ASSERT_TRUE(write_grid(grid, file));
+            const bool hangs = std::string_view(shape).starts_with("octree");
+            const bool several_types = std::string_view(shape) == "mixed" && std::string_view(ending) == ".vtk";
+            const auto jobs = jobs_without_all_cells(file, folder.file("a.png"));
+            for (std::size_t i = 0; i < jobs.size(); ++i) {
+                SCOPED_TRACE(testing::Message() << shape << ending << " " << i);
+                Listener active, all;
+                const DrawReport report = draw_files(jobs[i], active).value();
+                const DrawReport expected = draw_files(job_of_all_cells(jobs[i], folder.file("b.png")), all).value();
+                EXPECT_EQ(some_cells_were_kept(active), !hangs && !several_types);
+                EXPECT_FALSE(some_cells_were_kept(all));
+                EXPECT_EQ(report.input.cells, expected.input.cells);
+                EXPECT_EQ(report.pictures.camera, expected.pictures.camera);
+                EXPECT_EQ(active.noted, all.noted);
+                EXPECT_TRUE(test::content_of(folder.file("a.png")) == test::content_of(folder.file("b.png")));
+            }
+        }
+}
+
+TEST(DrawFiles, DrawsRegionsOfCellsThatAreNotRead) {
+    const test::TemporaryFolder folder;
+    std::string entries;
+    for (const int step : {0, 1, 2}) {
+        Grid grid = make_grid({.shape = step == 2 ? "hex" : "shuffled", .side = 9, .fields = {}}).value();
+        grid.cell_fields = fields_of_cells(grid.cells.count());
+        grid.cell_fields.resize(1);
+        const std::string name = "step" + std::to_string(step) + ".vtu";
+        ASSERT_TRUE(write_grid(grid, folder.file(name)));
+        entries += "<DataSet timestep=\"" + std::to_string(step) + "\" file=\"" + name + "\"/>";
+    }
+    const std::string series =
+        folder.write("series.pvd", "<VTKFile type=\"Collection\"><Collection>" + entries + "</Collection></VTKFile>");
+    for (const bool all_steps : {false, true}) {
+        DrawJob job = small_picture(all_steps ? series : folder.file("step0.vtu"), folder.file("a{frame}.png"));
+        if (!all_steps) job.out = folder.file("a1.png");
+        job.all_steps = all_steps;
+        Listener active, all;
+        ASSERT_TRUE(draw_files(job, active));
+        const std::string out = folder.file(all_steps ? "b{frame}.png" : "b1.png");
+        ASSERT_TRUE(draw_files(job_of_all_cells(job, out), all));
+        EXPECT_TRUE(some_cells_were_kept(active));
+        EXPECT_FALSE(some_cells_were_kept(all));
+        EXPECT_EQ(active.noted.size(), all.noted.size()) << "a film's command names the pictures";
+        for (const char* number : {"1.png", "2.png", "3.png"})
+            if (all_steps || number[0] == '1') {
+                EXPECT_TRUE(test::content_of(folder.file("a") + number) == test::content_of(folder.file("b") + number));
+            }
+    }
+}
+
+/// Points that no cell has decide how coordinates are rounded, so extraction needs all cells, and their colours.
+TEST(DrawFiles, ColoursByCellsThatAreReadAfterAll) {
+    const test::TemporaryFolder folder;
+    Grid grid = make_grid({.shape = "shuffled", .side = 9, .fields = {"gyroid"}}).value();
+    std::vector<double> points;
+    for (std::size_t i = 0; i < grid.points.size(); ++i) points.push_back(grid.points.at(i / 3, i % 3) + 5e5);
+    points.insert(points.end(), {1e6, 1e6, 1e6});
+    std::vector<float> values(grid.point_fields[0].values.as<float>().begin(),
+                              grid.point_fields[0].values.as<float>().end());
+    values.push_back(0);
+    grid.points = Array::own(std::move(points), 3);
+    grid.point_fields = {{"gyroid", Array::own(std::move(values))}};
+    grid.cell_fields = fields_of_cells(grid.cells.count());
+    ASSERT_TRUE(write_grid(grid, folder.file("grid.vtu")));
+    for (const char* color : {"region", "part"}) {
+        DrawJob job = small_picture(folder.file("grid.vtu"), folder.file("a.png"));
+        job.field.name = "gyroid";
+        job.isovalues = {0.1};
+        job.color_by = color;
+        Listener active, all;
+        ASSERT_TRUE(draw_files(job, active));
+        ASSERT_TRUE(draw_files(job_of_all_cells(job, folder.file("b.png")), all));
+        EXPECT_TRUE(test::content_of(folder.file("a.png")) == test::content_of(folder.file("b.png")));
+    }
+}
+
 std::string packed_file(const test::TemporaryFolder& folder) {
     PackJob pack;
     pack.grid.file = "make:mixed:6:gyroid,plane";
@@ -402,6 +516,11 @@ TEST(DrawFiles, ChoosesIsovaluesByTheValuesOfAllSteps) {
     job.levels = 3;
     const auto report = draw_files(job, listener);
     ASSERT_TRUE(report) << report.error().message;
+    EXPECT_TRUE(some_cells_were_kept(listener));
+    Listener other;
+    ASSERT_TRUE(draw_files(job_of_all_cells(job, folder.file("u{frame}.png")), other));
+    for (const char* number : {"1.png", "2.png"})
+        EXPECT_TRUE(test::content_of(folder.file("t") + number) == test::content_of(folder.file("u") + number));
     EXPECT_EQ(report->pictures.pictures, 2u);
     EXPECT_EQ(isovalue_texts(*report->input.scene).size(), 3u);
     for (const ShownSurface& surface : report->input.scene->surfaces()) EXPECT_GT(surface.triangles, 0u);

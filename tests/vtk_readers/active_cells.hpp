@@ -2,7 +2,10 @@
 // Files of which active cells only are read.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,11 +17,56 @@
 #include <isotet/extract.hpp>
 #include <isotet/read.hpp>
 
+#include "grid/cells.hpp"
+
 namespace isotet::test {
 
 inline bool are_same(const Array& a, const Array& b) {
     return a.type() == b.type() && a.bytes() == b.bytes() &&
            (a.bytes() == 0 || std::memcmp(a.data(), b.data(), a.bytes()) == 0);
+}
+
+/// Cells at the boundary have their values, and digests the least and the greatest of all.
+inline void expect_cells_at_boundary(const std::string& file, const ReadResult& all, ReadOptions options) {
+    options.active_cells->boundary->wants_cells = options.active_cells->digests = true;
+    const auto some = read(file, options);
+    ASSERT_TRUE(some) << some.error().message;
+    if (!some->cells_in_file) return; // pieces repeat cells
+    const Grid& found = options.active_cells->boundary->cells;
+    std::multimap<std::vector<std::uint64_t>, std::size_t> cells;
+    const core::CellReader whole = core::CellReader::open(all.grid).value(),
+                           around = core::CellReader::open(found).value();
+    const auto corners_of = [](const core::CellReader& reader, std::size_t cell) {
+        std::vector<std::uint64_t> corners(reader.corners(cell));
+        for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = reader.corner(reader.first(cell) + i);
+        return corners;
+    };
+    for (std::size_t cell = 0; cell < whole.count(); ++cell) cells.emplace(corners_of(whole, cell), cell);
+    ASSERT_EQ(found.cell_fields.size(), all.grid.cell_fields.size());
+    EXPECT_GT(found.cells.count(), 0u);
+    for (std::size_t cell = 0; cell < found.cells.count(); ++cell) {
+        const auto known = cells.find(corners_of(around, cell));
+        ASSERT_NE(known, cells.end());
+        if (cells.count(known->first) > 1) continue;
+        for (std::size_t f = 0; f < found.cell_fields.size(); ++f) {
+            const double value = found.cell_fields[f].values.at(cell);
+            const double expected = all.grid.cell_fields[f].values.at(known->second);
+            EXPECT_TRUE(value == expected || (std::isnan(value) && std::isnan(expected)));
+        }
+    }
+    for (const Field& field : all.grid.cell_fields) {
+        if (field.values.components() != 1) continue;
+        const auto digest = std::ranges::find(some->digests, field.name, &Field::name);
+        ASSERT_NE(digest, some->digests.end());
+        const auto ends = [](const Array& values) {
+            std::pair range(INFINITY, -INFINITY);
+            for (std::size_t i = 0; i < values.tuples(); ++i)
+                if (std::isfinite(values.at(i)))
+                    range = {std::min<double>(range.first, values.at(i)), std::max<double>(range.second, values.at(i))};
+            return range;
+        };
+        EXPECT_EQ(ends(digest->values), ends(field.values));
+    }
 }
 
 /// Points, their bounds, the boundary, fields, notes and surfaces with cell fields of the file with active cells are those with all.
@@ -57,6 +105,7 @@ inline void expect_same_of_active_cells(const std::string& file, const std::stri
         EXPECT_TRUE(are_same(boundary->surface.triangles, walls.triangles));
         EXPECT_TRUE(are_same(boundary->surface.edge_ends, walls.edge_ends));
     }
+    expect_cells_at_boundary(file, *all, options);
     options.active_cells->boundary.reset();
     options.active_cells->options.extract.normals = Normals::gradient;
     const auto around = read(file, options);

@@ -37,6 +37,9 @@ GridReply made_reply() {
     reply.boundary.surface.positions = Array::own(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}, 3);
     reply.boundary.surface.triangles = Array::own(std::vector<std::uint32_t>{0, 1, 2}, 3);
     reply.boundary.surface.edge_ends = Array::own(std::vector<std::int64_t>{0, 0, 1, 1, 2, 2}, 2);
+    reply.boundary.cells.cells.connectivity = Array::own(std::vector<std::int32_t>{3, 2, 1, 0});
+    reply.boundary.cells.cell_fields = {{"r", Array::own(std::vector<double>{8})}};
+    reply.read.digests = {{"r", Array::own(std::vector<double>{8, 9})}};
     return reply;
 }
 
@@ -83,9 +86,10 @@ std::size_t touch(const Reply& reply) {
         for (const Array* array : {&result->grid.points, &result->grid.cells.connectivity, &result->grid.cells.offsets,
                                    &result->grid.cells.types})
             add(*array);
-        for (const auto* fields : {&result->grid.point_fields, &result->grid.cell_fields})
+        for (const auto* fields : {&result->grid.point_fields, &result->grid.cell_fields, &result->digests})
             for (const Field& field : *fields) add(field.values);
     }
+    if (grid) add(grid->boundary.cells.cells.connectivity);
     for (std::size_t i = 0; grid && i < grid->boundary.surface.triangles.tuples(); ++i) // of vertices that are there
         sum +=
             static_cast<std::size_t>(std::abs(grid->boundary.surface.positions.at(
@@ -104,6 +108,9 @@ TEST(Reply, ComesBackAsItWasWritten) {
     EXPECT_EQ(grid->boundary.print[1], 6u);
     EXPECT_EQ(grid->boundary.surface.triangles.at(0, 2), 2);
     EXPECT_EQ(grid->boundary.surface.positions.at(2, 1), 1);
+    EXPECT_EQ(grid->boundary.cells.cells.connectivity.at(0), 3);
+    EXPECT_EQ(grid->boundary.cells.cell_fields.at(0).values.at(0), 8);
+    EXPECT_EQ(grid->read.digests.at(0).values.at(1), 9);
     const ReadResult* const result = &grid->read;
     EXPECT_EQ(result->info.fields.at(0).name, "p");
     EXPECT_EQ(result->info.times, (std::vector<double>{0.5, 1.5}));

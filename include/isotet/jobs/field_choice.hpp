@@ -18,7 +18,7 @@ namespace isotet::jobs {
 struct FieldChoice {
     std::string name; ///< empty: the only one there is
     bool cell_field = false;
-    bool own_centres = false; ///< of a cell field: points inside polyhedra have the values of their cells
+    bool own_centres = false;             ///< of a cell field: points inside polyhedra have the values of their cells
     std::optional<SliceShape> shape = {}; ///< slice_field() in place of a field of the grid
 };
 
@@ -33,6 +33,10 @@ struct FoundField {
 /// The field to contour. An empty name means the only one there is.
 /// Errors   invalid_argument: no such field (what there is, nearest first), or no name and not just one field
 Result<FoundField> choose_field(const GridSource& source, const FieldChoice& choice);
+
+/// Whether it is a field of cells, or a component of one, which can be averaged while they go by
+/// (ReadActiveCells::averages).
+bool is_averaged_while_read(const FoundField& field, const FieldChoice& choice);
 
 /// Names of fields by texts as --fields takes them: each a field as choose_field() finds it, else a list of these
 /// separated by commas.

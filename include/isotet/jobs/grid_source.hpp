@@ -87,6 +87,10 @@ public:
     /// All of it is one packed file, GridOptions::file.
     bool is_packed_file() const { return info_.format == "isotet" && options_.more_files.empty(); }
 
+    /// Whether cells of the format can go by without being kept: where they are counted, the head tells how many corners
+    /// there are.
+    bool may_stream() const { return info_.least.corners > 0 && !info_.least.all_cells; }
+
     /// From now on info() has the fields of all these steps. Reading one of them passes over those that it does not have, and
     /// looks for hanging points only where cells or points are not those of the step that was read before.
     Result<void> look_at_steps(const std::vector<std::size_t>& steps, Caller& caller);

@@ -8,22 +8,32 @@
 
 namespace isotet::io {
 
-Result<PointField> active_field(const Grid& grid, const ReadActiveCells& active) {
+namespace {
+
+bool extracts_none(const ReadActiveCells& active) { return active.field.empty() && !active.shape; }
+
+} // namespace
+
+Result<PointField> active_field(const Grid& grid, const ReadActiveCells& active,
+                                const std::optional<PointField>& known) {
+    if (known) return *known;
+    if (extracts_none(active))
+        return PointField{{}, Array::own(std::vector<std::uint8_t>(grid.points.tuples())), false, {}};
     return active.shape ? slice_field(grid.points, *active.shape) : find_field(grid, active.field);
 }
 
-std::optional<ActiveCellFilter> active_filter(const Grid& grid, std::optional<CellType> type,
-                                              const ReadOptions& options, bool numbers,
+std::optional<ActiveCellFilter> active_filter(const Grid& grid, const std::optional<PointField>& known,
+                                              std::optional<CellType> type, const ReadOptions& options, bool numbers,
                                               std::vector<double>& isovalues) {
     if (!options.active_cells || !options.displace.empty()) return std::nullopt;
     if (may_have_coincident_points(grid.points)) return std::nullopt;
     const ReadActiveCells& active = *options.active_cells;
-    const auto field = active_field(grid, active);
+    const auto field = active_field(grid, active, known);
     if (!field) return std::nullopt;
     DirectOptions direct = active.options;
     direct.extract.point_fields = grid.point_fields;
     direct.extract.source_cells = numbers;
-    isovalues = active.isovalues;
+    isovalues = extracts_none(active) ? std::vector<double>{1} : active.isovalues; // which its zeros do not meet
     if (isovalues.empty() && active.choose) {
         auto chosen = active.choose(*field);
         if (!chosen) return std::nullopt;

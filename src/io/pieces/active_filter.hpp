@@ -11,16 +11,20 @@
 namespace isotet::io {
 
 /// The field of which cells are active.
-Result<PointField> active_field(const Grid& grid, const ReadActiveCells& active);
+/// `known`   ReadResult::field
+Result<PointField> active_field(const Grid& grid, const ReadActiveCells& active,
+                                const std::optional<PointField>& known);
 
 /// The filter for ReadOptions::active_cells; nothing where all cells must be read: the field is one of cells, or not
 /// there, or points coincide, of which more can only be said with all cells.
 ///
 /// `grid`   points and fields, without cells
+/// `known`   ReadResult::field
 /// `type`   of all cells; nothing where they have types of their own
 /// `numbers`   of the cells that are kept are wanted
 /// `isovalues`   get those for which cells are kept
-std::optional<ActiveCellFilter> active_filter(const Grid& grid, std::optional<CellType> type,
-                                              const ReadOptions& options, bool numbers, std::vector<double>& isovalues);
+std::optional<ActiveCellFilter> active_filter(const Grid& grid, const std::optional<PointField>& known,
+                                              std::optional<CellType> type, const ReadOptions& options, bool numbers,
+                                              std::vector<double>& isovalues);
 
 } // namespace isotet::io

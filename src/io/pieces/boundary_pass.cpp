@@ -13,14 +13,18 @@ namespace isotet::io {
 Result<bool> take_boundary(core::BoundarySearch&& search, const Array& points, StreamedBoundary& boundary,
                            const Progress& progress) {
     if (!search.has_kept_all()) return false;
+    boundary.cells = {};
     auto found = std::move(search).finish(progress);
     if (!found) return found.error();
     if (found->cells.count() > 0) {
         const Run run{.progress = {nullptr, progress.cancel}};
-        const Result<bool> hang = has_hanging_points({points, std::move(found->cells), {}, {}}, found->surface, run);
+        Grid around{points, std::move(found->cells), {}, {}};
+        const Result<bool> hang = has_hanging_points(around, found->surface, run);
         if (!hang) return hang.error();
         if (*hang) return false;
+        if (boundary.wants_cells) boundary.cells = std::move(around);
     }
+    boundary.numbers = std::move(found->numbers);
     boundary.surface = std::move(found->surface);
     boundary.is_there = true;
     return true;
@@ -39,7 +43,12 @@ BoundaryPass::BoundaryPass(StreamedBoundary& boundary, const Array& points, cons
               .take(first, cells_.places().types(first, count), corners);
       }) {
     if (boundary.of_steps) print_.emplace();
-    if (!boundary.is_there) search_.emplace(points);
+    if (!boundary.is_there) begin_search();
+}
+
+void BoundaryPass::begin_search() {
+    search_.emplace(points_);
+    if (boundary_.wants_cells) search_->keep_numbers();
 }
 
 std::optional<CellType> BoundaryPass::type() const {
@@ -82,7 +91,7 @@ Result<bool> BoundaryPass::finish(const Progress& progress) {
     }
     boundary_.is_there = false;
     if (!search_) {
-        search_.emplace(points_);
+        begin_search();
         if (auto done = each_cells(BoundaryTaker::Round::add, progress); !done) return done.error();
     }
     return search(progress);

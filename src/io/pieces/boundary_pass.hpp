@@ -64,6 +64,7 @@ public:
     Result<bool> finish(const Progress& progress);
 
 private:
+    void begin_search();
     /// Hands all cells to a round of the search.
     Result<void> each_cells(BoundaryTaker::Round round, const Progress& progress);
     Result<bool> search(const Progress& progress);

@@ -12,6 +12,7 @@
 #include "base/buffer.hpp"
 #include "base/parallel.hpp"
 #include "grid/fixed_corners.hpp"
+#include "grid/patches.hpp"
 #include "io/pieces/uniform_cells.hpp"
 
 namespace isotet::io {
@@ -56,6 +57,10 @@ CellPlaces::CellPlaces(CellType type, std::uint64_t cells)
     : cells_(cells),
       type_(static_cast<std::uint8_t>(type)),
       uniform_corners_(core::fixed_corners_of(static_cast<std::uint8_t>(type))) {}
+
+bool CellPlaces::all_have_volumes() const {
+    return are_uniform() ? core::has_a_volume(type_) : std::ranges::all_of(types_, core::has_a_volume);
+}
 
 std::uint64_t CellPlaces::begin(std::uint64_t cell) const {
     if (are_uniform()) return cell * uniform_corners_;

@@ -29,6 +29,7 @@ public:
     std::uint64_t begin(std::uint64_t cell) const;
     std::uint64_t cell_at(std::uint64_t corner) const; ///< the cell that has it
     bool are_uniform() const { return types_.empty(); }
+    bool all_have_volumes() const;
     std::uint8_t type(std::uint64_t cell) const { return are_uniform() ? type_ : types_[cell]; }
     std::span<const std::uint8_t> types(std::uint64_t first, std::uint64_t count) const {
         return are_uniform() ? types_ : types_.subspan(first, count);

@@ -73,6 +73,7 @@ Result<ReadResult> read_grid(std::string format, const std::string& path, const 
         StreamedBoundary& found = reply->boundary;
         if (reply->is_same) found.surface = std::move(boundary.surface);
         found.of_steps = boundary.of_steps;
+        found.wants_cells = boundary.wants_cells;
         boundary = std::move(found);
     }
     return std::move(reply->read);

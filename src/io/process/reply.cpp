@@ -24,7 +24,7 @@
 namespace isotet::io::confined {
 namespace {
 
-constexpr std::uint64_t magic = 0x3830795f74657469; // "itet_y08", and the byte order with it
+constexpr std::uint64_t magic = 0x3930795f74657469; // "itet_y09", and the byte order with it
 constexpr std::uint64_t alignment = 64;
 
 struct Header {
@@ -135,11 +135,9 @@ public:
         out_.number<std::uint8_t>(all_cells);
     }
     void describe(ReadResult& result) {
-        [[maybe_unused]] const auto& [whole, info, step, cells_in_file, bounds, notes, cell_numbers, chosen_cells] =
-            result;
+        [[maybe_unused]] const auto& [whole, info, step, cells_in_file, bounds, notes, cell_numbers, chosen_cells,
+                                      field, digests] = result;
         [[maybe_unused]] const auto& [points, cells, point_fields, cell_fields, point_numbers, patches] = result.grid;
-        [[maybe_unused]] const auto& [connectivity, offsets, types, uniform_type, faces, face_offsets] =
-            result.grid.cells;
         describe(result.info);
         out_.number<std::uint64_t>(result.step);
         out_.number<std::uint8_t>(result.cells_in_file.has_value());
@@ -151,12 +149,7 @@ public:
         out_.list(result.notes, [&](const std::string& note) { out_.text(note); });
         Grid& grid = result.grid;
         array(grid.points);
-        array(grid.cells.connectivity);
-        array(grid.cells.offsets);
-        array(grid.cells.types);
-        out_.number(grid.cells.uniform_type);
-        array(grid.cells.faces);
-        array(grid.cells.face_offsets);
+        describe(grid.cells);
         fields(grid.point_fields);
         fields(grid.cell_fields);
         array(grid.point_numbers);
@@ -168,6 +161,21 @@ public:
             out_.text(patch.name);
         });
         array(result.cell_numbers);
+        out_.number<std::uint8_t>(result.field.has_value());
+        if (result.field) { // the rest is known
+            out_.text(result.field->name);
+            array(result.field->values);
+        }
+        fields(result.digests);
+    }
+    void describe(Cells& cells) {
+        [[maybe_unused]] const auto& [connectivity, offsets, types, uniform_type, faces, face_offsets] = cells;
+        array(cells.connectivity);
+        array(cells.offsets);
+        array(cells.types);
+        out_.number(cells.uniform_type);
+        array(cells.faces);
+        array(cells.face_offsets);
     }
     void describe(GridReply& reply) {
         describe(reply.read);
@@ -178,6 +186,8 @@ public:
         array(boundary.surface.positions); // a boundary has nothing else
         array(boundary.surface.triangles);
         array(boundary.surface.edge_ends);
+        describe(boundary.cells.cells);
+        fields(boundary.cells.cell_fields);
     }
     void describe(const GridReport& report) {
         [[maybe_unused]] const auto& [points, cells, by_type, left_out, tets, collapsed, negative, inverted, flat,
@@ -292,12 +302,7 @@ public:
         in_.list([&] { result.notes.push_back(in_.text()); });
         Grid& grid = result.grid;
         grid.points = array();
-        grid.cells.connectivity = array();
-        grid.cells.offsets = array();
-        grid.cells.types = array();
-        grid.cells.uniform_type = in_.number<CellType>();
-        grid.cells.faces = array();
-        grid.cells.face_offsets = array();
+        grid.cells = cells();
         grid.point_fields = fields();
         grid.cell_fields = fields();
         grid.point_numbers = array();
@@ -310,7 +315,24 @@ public:
             patch.name = in_.text();
         });
         result.cell_numbers = array();
+        if (in_.number<std::uint8_t>() != 0) {
+            std::string name = in_.text();
+            result.field = PointField{std::move(name), array(), true, {}};
+            if (result.field->values.tuples() != grid.points.tuples() || result.field->values.components() != 1)
+                in_.fail();
+        }
+        result.digests = fields();
         return result;
+    }
+    Cells cells() {
+        Cells cells;
+        cells.connectivity = array();
+        cells.offsets = array();
+        cells.types = array();
+        cells.uniform_type = in_.number<CellType>();
+        cells.faces = array();
+        cells.face_offsets = array();
+        return cells;
     }
     GridReply grid_reply() {
         GridReply reply;
@@ -322,6 +344,9 @@ public:
         boundary.surface.positions = array();
         boundary.surface.triangles = array();
         boundary.surface.edge_ends = array();
+        boundary.cells.cells = cells();
+        boundary.cells.cell_fields = fields();
+        boundary.cells.points = reply.read.grid.points;
         if (!is_sound(boundary.surface, reply.read.grid.points.tuples())) in_.fail();
         return reply;
     }

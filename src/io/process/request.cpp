@@ -14,7 +14,7 @@
 namespace isotet::io::confined {
 namespace {
 
-constexpr std::uint32_t request_version = 0x6973000c;
+constexpr std::uint32_t request_version = 0x6973000d;
 
 using Names = std::optional<std::vector<std::string>>;
 
@@ -72,7 +72,8 @@ void encode_boundary(Encoder& out, const std::shared_ptr<StreamedBoundary>& boun
     out.number<std::uint8_t>(boundary != nullptr);
     if (!boundary) return;
     out.number<std::uint8_t>(boundary->of_steps);
-    out.number<std::uint8_t>(boundary->is_there);
+    out.number<std::uint8_t>(boundary->is_there && !boundary->wants_cells); // the process does not know which they are
+    out.number<std::uint8_t>(boundary->wants_cells);
     for (const std::uint64_t print : boundary->print) out.number(print);
 }
 
@@ -81,6 +82,7 @@ std::shared_ptr<StreamedBoundary> decode_boundary(Decoder& in) {
     auto boundary = std::make_shared<StreamedBoundary>();
     boundary->of_steps = in.number<std::uint8_t>() != 0;
     boundary->is_there = in.number<std::uint8_t>() != 0;
+    boundary->wants_cells = in.number<std::uint8_t>() != 0;
     for (std::uint64_t& print : boundary->print) print = in.number<std::uint64_t>();
     return boundary;
 }
@@ -114,6 +116,8 @@ void encode_active(Encoder& out, const std::optional<ReadActiveCells>& active) {
     out.number<std::uint8_t>(active->options.precision == Precision::float64);
     out.number<std::uint8_t>(active->options.extract.normals == Normals::gradient);
     out.number<std::uint8_t>(active->bounds);
+    out.number<std::uint8_t>(active->averages);
+    out.number<std::uint8_t>(active->digests);
     encode_shape(out, active->shape);
     encode_boundary(out, active->boundary);
     encode_choice(out, levels);
@@ -136,6 +140,8 @@ std::optional<ReadActiveCells> decode_active(Decoder& in) {
     if (in.number<std::uint8_t>() != 0) active.options.precision = Precision::float64;
     if (in.number<std::uint8_t>() != 0) active.options.extract.normals = Normals::gradient;
     active.bounds = in.number<std::uint8_t>() != 0;
+    active.averages = in.number<std::uint8_t>() != 0;
+    active.digests = in.number<std::uint8_t>() != 0;
     active.shape = decode_shape(in);
     active.boundary = decode_boundary(in);
     decode_choice(in, active);

@@ -16,6 +16,7 @@
 #include <isotet/jobs/first_choice.hpp>
 #include <isotet/jobs/number_text.hpp>
 #include <isotet/jobs/output_names.hpp>
+#include <isotet/jobs/range_shares.hpp>
 #include <isotet/isovalues.hpp>
 
 #include "base/stopwatch.hpp"
@@ -42,19 +43,35 @@ RangeLevels levels_of(const DrawJob& job) {
     return {job.solid ? 1 : default_levels, LevelRounding::short_decimals};
 }
 
+/// `all_values`   as ColorOptions has them
+Result<ColorOptions> options_of_colors(const std::string& name, const std::vector<RegionName>& regions,
+                                       const DrawJob& job, const Array& all_values) {
+    Result<ColorOptions> options = color_options(job.scale, job.range);
+    if (!options) return options;
+    for (const RegionName& region : regions)
+        if (region.field == name) options->names[static_cast<double>(region.number)] = region.name;
+    options->all_values = all_values;
+    return options;
+}
+
 /// A field of `from`, a grid or a surface, that colours.
 template <class From>
 Result<ColorField> colors_of(const From& from, const std::string& name, const std::vector<RegionName>& regions,
-                             const DrawJob& job, Caller& caller) {
-    Result<ColorOptions> options = color_options(job.scale, job.range);
+                             const DrawJob& job, Caller& caller, const Array& all_values = {}) {
+    const Result<ColorOptions> options = options_of_colors(name, regions, job, all_values);
     if (!options) return options.error();
-    for (const RegionName& region : regions)
-        if (region.field == name) options->names[static_cast<double>(region.number)] = region.name;
     Result<FoundColors> found = find_colors(from, name, *options, caller.run());
     if (!found) return found.error();
     caller.notes(found->notes);
     return std::move(found->field);
 }
+
+/// Whether a field is one of cells, which colours them as they are (cell_colors()).
+bool colors_cells(const FoundField& field) {
+    return field.point.empty() && !field.neighbours && !field.is_expression && field.cell == std::vector{field.name};
+}
+
+bool needs_no_cells(const FoundField& field) { return field.cell.empty() && !field.neighbours; }
 
 /// Factors of x, y and z, which the command line gives.
 std::span<const double, 3> factors_of(const std::vector<double>& stretch) { return std::span(stretch).first<3>(); }
@@ -72,6 +89,7 @@ struct PictureSource::Contents {
     Box bounds = {};         ///< where `all_cells` is set: the grid has only the active cells; or of `packed`
     std::function<Result<Grid>(const Run& run)> all_cells = {};
     std::optional<Surface> boundary = {};   ///< then, where it is drawn
+    std::vector<Field> digests = {};        ///< ReadResult::digests
     std::optional<PackedScene> packed = {}; ///< in place of the grid; `field` has values where they were needed
 };
 
@@ -149,8 +167,7 @@ Result<void> PictureSource::choose_steps_and_view(Caller& caller) {
     ChoiceWish wish{job_.all_steps ? Steps::all : Steps::one,
                     {needed_field(), wants_surfaces() && job_.field.cell_field},
                     {job_.color_by, job_.boundary_color_by}};
-    const std::size_t steps = job_.all_steps ? std::max<std::size_t>(source_->info().times.size(), 1) : 1;
-    wish.streams = wants_surfaces() && options_with_active_cells(steps).has_value();
+    wish.streams = wants_surfaces() ? options_with_active_cells().has_value() : draws_boundary_alone();
     Result<FirstChoice> choice = choose_first(*source_, job_.grid, wish, caller, caller.run());
     if (!choice) return choice.error();
     steps_ = std::move(choice->steps);
@@ -227,13 +244,19 @@ Result<DrawInput> PictureSource::take_surface(const std::optional<Device>& devic
     return input;
 }
 
-/// A grid with what a field needs: of a packed file with some of the cells, where its points do.
+/// A grid with what a field needs: with a sample of the cells where its points do, without cells where it has a value for
+/// each.
 Result<Grid> PictureSource::read_for(const FoundField& field, std::size_t step, Caller& caller) {
     const FieldsToRead read{field.point, field.cell};
-    if (!packed_ || field.neighbours || !field.cell.empty()) return source_->read(read, step, caller);
-    Result<ReadResult> some = source_->read_some(read, step, caller, caller.run());
+    const bool of_cells = colors_cells(field) && !packed_;
+    if (!needs_no_cells(field) && !of_cells) return source_->read(read, step, caller);
+    Result<SurveyedGrid> some = source_->read_sample(read, step, caller, caller.run());
     if (!some) return some.error();
-    return std::move(some->grid);
+    Grid grid = std::move(some->read.grid);
+    if (!of_cells || !some->report) return grid;
+    if (some->report->cells_left_out > 0) return source_->read(read, step, caller); // which have values, but no colour
+    grid.cells = {};
+    return grid;
 }
 
 /// The values of the field that is contoured, of all points.
@@ -335,28 +358,51 @@ Result<void> PictureSource::take_first_view(bool& contours, std::string& field, 
     return {};
 }
 
-/// The cells that do where nothing but a few isosurfaces is drawn; nothing where all are needed.
-std::optional<ReadActiveCells> PictureSource::active_cells(const Contents& contents, const FoundField& field,
-                                                           const FieldsToRead& read) const {
-    if (needs_all_cells_ || contents.model || field.neighbours || !read.cell->empty()) return std::nullopt;
-    const auto options = options_with_active_cells(steps_.size());
-    if (!options) return std::nullopt;
-    ReadActiveCells active{field.name, job_.isovalues, {}};
-    active.options.extract.normals = options->normals;
-    active.bounds = job_.boundary == 0.0;
-    if (!active.bounds) active.boundary = streamed_boundary_;
-    if (job_.isovalues.empty()) active.choose = levels_of(job_);
+/// Whether the boundary is all that is drawn, as far as options say.
+bool PictureSource::draws_boundary_alone() const {
+    return job_.slices.empty() && !draws_volume(job_) && !job_.solid && !job_.method.draw && job_.stretch.empty() &&
+           !may_stretch() && job_.boundary.value_or(1) > 0;
+}
+
+/// The cells that do where nothing but the boundary and a few isosurfaces is drawn; nothing where all are needed.
+std::optional<ReadActiveCells> PictureSource::active_cells(const Contents& contents, const FoundField& contoured,
+                                                           const FoundField& colored) const {
+    const bool of_cells = colors_cells(colored), contours = !contoured.name.empty();
+    const bool averages = contours && is_averaged_while_read(contoured, job_.field);
+    if (needs_all_cells_ || !(averages || needs_no_cells(contoured)) || !(of_cells || needs_no_cells(colored)))
+        return std::nullopt;
+    ReadActiveCells active{contoured.name, job_.isovalues, {}};
+    active.averages = averages;
+    active.digests = of_cells;
+    if (contours) {
+        if (steps_.size() > 1 && job_.isovalues.empty() && job_.shares.empty()) return std::nullopt; // by all steps
+        const auto options = options_with_active_cells();
+        if (!options) return std::nullopt;
+        active.options.extract.normals = options->normals;
+        active.bounds = job_.boundary == 0.0;
+        if (!job_.shares.empty()) active.choose = isovalues_by_values(job_.isovalues, job_.shares);
+        else if (job_.isovalues.empty()) active.choose = levels_of(job_);
+        if (active.choose) active.isovalues.clear();
+    } else if (draws_boundary_alone()) {
+        active.isovalues = {0}; // without one cells would be counted
+    } else {
+        return std::nullopt;
+    }
+    if (active.bounds) return active;
+    streamed_boundary_->wants_cells = contents.model && of_cells;
+    active.boundary = streamed_boundary_;
     return active;
 }
 
 /// Where nothing but a few isosurfaces is drawn, as far as options say.
-std::optional<ContourOptions> PictureSource::options_with_active_cells(std::size_t steps) const {
+std::optional<ContourOptions> PictureSource::options_with_active_cells() const {
     const bool draws_more = !job_.slices.empty() || draws_volume(job_) || job_.solid || job_.method.draw;
-    const bool chosen = job_.isovalues.empty(); // by the values
-    const bool decided_later = !job_.shares.empty() || !job_.sweep.empty() || (chosen && steps > 1);
+    const bool chosen = job_.isovalues.empty() && job_.shares.empty(); // by the values
+    const bool decided_later = !are_of_points(job_.shares) || !job_.sweep.empty();
     ContourOptions options;
     options.method = job_.method.extract;
     options.expected_isovalues = job_.isovalues;
+    options.expected_isovalues.resize(job_.isovalues.size() + job_.shares.size());
     if (chosen) options.expected_isovalues.resize(job_.levels > 0 ? job_.levels : default_levels);
     options.surfaces = options.expected_isovalues.size();
     options.normals = job_.shade_by == ShadeBy::gradient ? Normals::gradient : Normals::none;
@@ -375,6 +421,8 @@ Result<void> PictureSource::read_cells(const FieldsToRead& fields, std::size_t s
         Result<ReadResult> some = source_->read_active(fields, step, *active, caller);
         if (!some) return some.error();
         contents.grid = std::move(some->grid);
+        contents.field = std::move(some->field);
+        contents.digests = std::move(some->digests);
         contents.cells = some->cells_in_file.value_or(contents.grid.cells.count());
         needs_all_cells_ = !some->cells_in_file; // of the next steps, too, most likely
         if (needs_all_cells_) return {};
@@ -392,13 +440,16 @@ Result<void> PictureSource::read_cells(const FieldsToRead& fields, std::size_t s
                 contents.bounds = {{x, y, z}, {far_x, far_y, far_z}};
             }
             contents.all_cells = all;
-            caller.detail(fmt::format("{} of {} cells were kept: the isovalues meet no others",
-                                      contents.grid.cells.count(), contents.cells));
+            caller.detail(active->field.empty()
+                              ? fmt::format("none of {} cells were kept: only the boundary is drawn", contents.cells)
+                              : fmt::format("{} of {} cells were kept: the isovalues meet no others",
+                                            contents.grid.cells.count(), contents.cells));
             return {};
         }
         Result<Grid> whole = all(caller.run());
         if (!whole) return whole.error();
         contents.grid = *std::move(whole);
+        contents.digests.clear();
         return {};
     }
     Result<Grid> grid = steps.take(step, caller.run());
@@ -522,23 +573,72 @@ Result<PictureSource::Contents> PictureSource::read_contents(std::size_t step, b
                        job_.interpolate);
     if (!streamed_boundary_) streamed_boundary_ = std::make_shared<StreamedBoundary>();
     streamed_boundary_->of_steps = steps_.size() > 1;
-    const bool some_may_do = contours && on_cpu && !colored.neighbours; // else colours follow from all cells around
-    const auto active = some_may_do ? active_cells(contents, contoured, read) : std::nullopt;
+    if (on_cpu)
+        if (auto chosen = choose_isovalues_of_steps(step, contoured, caller); !chosen) return chosen.error();
+    const auto active = on_cpu ? active_cells(contents, contoured, colored) : std::nullopt;
     if (auto done = read_cells(read, step, active, contents, caller); !done) return done.error();
-    if (contours) {
+    if (contours && !contents.field) {
         Result<PointField> found = find_chosen(contents.grid, field, job_.field, caller);
         if (!found) return found.error();
         contents.field = *std::move(found);
     }
-    if (!color.empty()) {
-        if (auto widened = widen_range(color, caller); !widened) return widened.error();
-        Result<ColorField> colors = colors_of(contents.grid, color, source_->region_names(), job_, caller);
-        if (!colors) return colors.error();
-        contents.colors = *std::move(colors);
-    }
+    if (!color.empty())
+        if (auto taken = take_colors(color, contents, caller); !taken) return taken.error();
     if (draws_volume(job_))
         if (auto taken = take_volume(step, contents, caller); !taken) return taken.error();
     return contents;
+}
+
+/// Isovalues that follow from the values of all steps, before the cells that they meet are read of any.
+Result<void> PictureSource::choose_isovalues_of_steps(std::size_t step, const FoundField& contoured, Caller& caller) {
+    const bool chooses = job_.isovalues.empty() && job_.shares.empty() && !contoured.name.empty();
+    if (!chooses || steps_.size() < 2 || !source_->may_stream() || !needs_no_cells(contoured) ||
+        !options_with_active_cells())
+        return {};
+    const Result<PointField> field = field_at(step, contoured.name, caller);
+    if (!field) return field.error();
+    const Result<ValueRange> range = typical_range_of_steps(*field, caller);
+    if (!range) return range.error();
+    Result<std::vector<double>> levels = levels_of(job_).within(*range, *field);
+    if (!levels) return levels.error();
+    job_.isovalues = *std::move(levels);
+    return {};
+}
+
+/// What a field colours: where not all cells were read, with the boundary among it.
+Result<void> PictureSource::take_colors(const std::string& color, Contents& contents, Caller& caller) {
+    if (auto widened = widen_range(color, caller); !widened) return widened;
+    const std::vector<RegionName> regions = source_->region_names();
+    const auto digest = std::ranges::find(contents.digests, color, &Field::name);
+    const Array all_values = digest == contents.digests.end() ? Array() : digest->values;
+    Result<ColorField> colors = colors_of(contents.grid, color, regions, job_, caller, all_values);
+    if (!colors) return colors.error();
+    contents.colors = *std::move(colors);
+    if (!contents.all_cells) return {};
+    const bool of_cells = contents.colors->association == Association::cell;
+    const Result<ColorOptions> options = options_of_colors(color, regions, job_, all_values);
+    if (!options) return options.error();
+    const auto colors_in = [color, options = *options](const Grid& grid, const Run& run) -> Result<ColorField> {
+        Result<FoundColors> found = find_colors(grid, color, options, run);
+        if (!found) return found.error();
+        return std::move(found->field);
+    };
+    if (contents.boundary && contents.model) {
+        const Grid& around = of_cells ? streamed_boundary_->cells : contents.grid;
+        const Result<ColorField> walls = of_cells ? colors_in(around, caller.run()) : *contents.colors;
+        if (!walls) return walls.error();
+        if (auto done = color_boundary(*contents.boundary, around, *walls, caller.run()); !done) return done;
+    }
+    if (!of_cells) return {};
+    contents.all_cells = [read = contents.all_cells, color, colors_in](const Run& run) -> Result<Grid> {
+        Result<Grid> grid = read(run);
+        if (!grid) return grid;
+        const Result<ColorField> found = colors_in(*grid, run);
+        if (!found) return found.error();
+        grid->cell_fields = {{color, found->values}};
+        return grid;
+    };
+    return {};
 }
 
 /// Whether the opacity follows from values of the field.

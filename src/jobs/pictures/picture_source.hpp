@@ -53,9 +53,12 @@ private:
                                  Caller& caller) const;
     Result<void> keep_steps_with_fields(Caller& caller);
     Result<Contents> read_contents(std::size_t step, bool on_cpu, Caller& caller);
-    std::optional<ReadActiveCells> active_cells(const Contents& contents, const FoundField& field,
-                                                const FieldsToRead& read) const;
-    std::optional<ContourOptions> options_with_active_cells(std::size_t steps) const;
+    bool draws_boundary_alone() const;
+    std::optional<ReadActiveCells> active_cells(const Contents& contents, const FoundField& contoured,
+                                                const FoundField& colored) const;
+    Result<void> choose_isovalues_of_steps(std::size_t step, const FoundField& contoured, Caller& caller);
+    Result<void> take_colors(const std::string& color, Contents& contents, Caller& caller);
+    std::optional<ContourOptions> options_with_active_cells() const;
     Result<void> read_cells(const FieldsToRead& fields, std::size_t step, const std::optional<ReadActiveCells>& active,
                             Contents& contents, Caller& caller);
     bool has_cell_field(const FoundField& colored, std::size_t step) const;

@@ -120,12 +120,16 @@ std::set<double> few_whole_numbers(const Array& values, const Cells& cells) {
 }
 
 /// Numbers of classes instead of the whole numbers themselves.
-ColorField classified(ColorField field, const std::set<double>& numbers, const ColorOptions& options) {
+ColorField classified(ColorField field, const Array& all, const std::set<double>& numbers,
+                      const ColorOptions& options) {
     std::vector<float> classes(field.values.size());
+    all.visit([&](auto scalars) {
+        field.has_no_data =
+            std::ranges::any_of(scalars, [](auto scalar) { return std::isnan(static_cast<double>(scalar)); });
+    });
     field.values.visit([&](auto scalars) {
         for (std::size_t i = 0; i < scalars.size(); ++i) {
             const auto value = static_cast<double>(scalars[i]);
-            field.has_no_data |= std::isnan(value);
             const auto place = std::distance(numbers.begin(), numbers.lower_bound(value));
             classes[i] = std::isnan(value) ? NAN : static_cast<float>(place);
         }
@@ -143,12 +147,13 @@ ColorField classified(ColorField field, const std::set<double>& numbers, const C
     return field;
 }
 
-Result<FoundColors> with_scale(ColorField field, const ColorOptions& options, const Run& run) {
+/// `all`   values that the scale is of
+Result<FoundColors> with_scale(ColorField field, const Array& all, const ColorOptions& options, const Run& run) {
     if (field.values.components() != 1)
         return invalid_argument(fmt::format("the field to colour by, '{}', has {} components: name one, such as {}:mag",
                                             field.name, field.values.components(), field.name));
     const bool logarithmic = options.scale.logarithmic;
-    const auto values = look_at(field.values, logarithmic, run);
+    const auto values = look_at(all, logarithmic, run);
     if (!values) return values.error();
     const auto scale = scale_between(*values, options);
     if (!scale) return scale.error();
@@ -163,6 +168,11 @@ Result<FoundColors> with_scale(ColorField field, const ColorOptions& options, co
     found.field.scale = *scale;
     found.field.has_no_data = values->no_data;
     return found;
+}
+
+Result<FoundColors> with_scale(ColorField field, const ColorOptions& options, const Run& run) {
+    const Array all = field.values;
+    return with_scale(std::move(field), all, options, run);
 }
 
 const Field* find_named(const std::vector<Field>& fields, const std::string& name) {
@@ -198,10 +208,12 @@ Result<FoundColors> find_colors(const Grid& grid, const std::string& name, const
                                 const Run& run) {
     if (const Field* cells = cell_colors(grid, name)) {
         ColorField field{name, cells->values, Association::cell, {}};
+        const bool has_some = !options.all_values.empty();
+        const Array& all = has_some ? options.all_values : cells->values;
         if (!options.range && !options.scale.logarithmic)
-            if (const auto numbers = few_whole_numbers(cells->values, grid.cells); !numbers.empty())
-                return FoundColors{classified(std::move(field), numbers, options), {}};
-        return with_scale(std::move(field), options, run);
+            if (const auto numbers = few_whole_numbers(all, has_some ? Cells() : grid.cells); !numbers.empty())
+                return FoundColors{classified(std::move(field), all, numbers, options), {}};
+        return with_scale(std::move(field), all, options, run);
     }
     const Result<PointField> found = find_field(grid, name, {}, run);
     if (!found) return found.error();

@@ -7,18 +7,12 @@
 #include <utility>
 
 #include "base/memory.hpp"
-#include "grid/patches.hpp"
 #include "grid/values/values_in_ranges.hpp"
 
 namespace isotet::io {
 namespace {
 
 bool is_rounded(const Array& points) { return points.type() == ScalarType::float64; }
-
-bool all_have_volumes(const CellPlaces& places) {
-    if (places.are_uniform()) return core::has_a_volume(places.type(0));
-    return std::ranges::all_of(places.types(0, places.cells()), core::has_a_volume);
-}
 
 /// One more condition for the cells of a piece. False where its field is not as it must be, of `type` if that is known.
 Result<bool> restrict_piece(const Piece& piece, const CellCondition& condition, std::optional<ScalarType>& type,
@@ -56,7 +50,7 @@ Result<std::optional<ChosenCells>> ChosenCells::find(const OrderedPieces& all,
     for (const std::size_t p : order) {
         const Piece& piece = all.pieces[p];
         if (piece.cell_count() == 0) continue;
-        if (!all_have_volumes(piece.unread->places())) return nothing;
+        if (!piece.unread->places().all_have_volumes()) return nothing;
         const auto chosen = std::span(result.chosen_).subspan(first[p] - result.origin_, piece.cell_count());
         for (std::size_t i = 0; i < piece.left_out.size(); ++i)
             if (piece.left_out[i] != 0) chosen[i] = 0;

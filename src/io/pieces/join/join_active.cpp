@@ -19,7 +19,9 @@
 #include "io/pieces/active_filter.hpp"
 #include "io/pieces/active_pass.hpp"
 #include "io/pieces/boundary_pass.hpp"
+#include "io/pieces/cell_field_means.hpp"
 #include "io/pieces/join/chosen_cells.hpp"
+#include "io/pieces/join/field_digests.hpp"
 #include "io/pieces/join/joined_fields.hpp"
 #include "io/pieces/join/ordered_pieces.hpp"
 #include "io/pieces/survey_unread.hpp"
@@ -112,6 +114,7 @@ public:
     Result<std::optional<ReadResult>> join() {
         if (!are_unread()) return std::optional<ReadResult>();
         if (!counted_ && all_.size() == 1 && all_.pieces[0].left_out.empty()) return take_one();
+        if (!counted_ && options_.active_cells->averages) return std::optional<ReadResult>(); // of several pieces
         if (auto found = find_uses_with_ghosts(); !found) return found.error();
         std::optional<ReadResult> result;
         for (bool again = true; again && !needs_all_ && !freed_;) {
@@ -169,7 +172,7 @@ private:
     /// What the cells go by for; null where all are needed.
     std::unique_ptr<CellTaker> make_taker(const Grid& grid) {
         if (counted_) return CellCounter::make(grid.points, type_, kept_cells());
-        auto filter = active_filter(grid, type_, options_, wants_numbers(), isovalues_);
+        auto filter = active_filter(grid, averaged_, type_, options_, wants_numbers(), isovalues_);
         if (!filter) return nullptr;
         auto taker = std::make_unique<ActiveTaker>(*std::move(filter));
         if (type_) taker->set_type(*type_);
@@ -218,6 +221,9 @@ private:
             if (auto passed = pass_whole(*piece.unread, *chosen_); !passed) return passed.error();
             if (!chosen_->leave_values(result.grid)) return std::optional<ReadResult>();
         }
+        if (const auto averaged = average(piece); !averaged) return averaged.error();
+        else if (!*averaged) return std::optional<ReadResult>();
+        result.field = averaged_;
         auto taker = make_taker(result.grid);
         if (!taker) return std::optional<ReadResult>();
         auto& active = static_cast<ActiveTaker&>(*taker);
@@ -228,9 +234,11 @@ private:
         });
         if (options_.active_cells->bounds) used_.assign(piece.grid.points.tuples(), PointUse::none);
         std::optional<BoundaryPass> boundary;
-        if (options_.active_cells->boundary) {
+        StreamedBoundary of_averages; // without hanging points, which would have values of the larger cells, too
+        if (options_.active_cells->boundary || averaged_) {
             if (auto enough = BoundaryPass::check_memory(piece.grid.points); !enough) return enough.error();
-            boundary.emplace(*options_.active_cells->boundary, piece.grid.points, *piece.unread);
+            boundary.emplace(options_.active_cells->boundary ? *options_.active_cells->boundary : of_averages,
+                             piece.grid.points, *piece.unread);
         }
         bool is_first = true;
         do {
@@ -261,6 +269,16 @@ private:
             cells.finish();
             return {};
         });
+    }
+
+    /// Averages the field, where it is one of cells. False where all are needed.
+    Result<bool> average(const Piece& piece) {
+        if (!options_.active_cells->averages) return true;
+        if (chooses()) return false;
+        auto means = means_of_cells(piece, options_.active_cells->field, progress_);
+        if (!means) return means.error();
+        averaged_ = *std::move(means);
+        return averaged_.has_value();
     }
 
     /// Hands whole cells of a piece alone to a taker.
@@ -294,16 +312,41 @@ private:
             const Array all = filter.numbers(); // empty where there is no cell
             const auto numbers = all.empty() ? std::span<const std::uint64_t>() : all.as<std::uint64_t>();
             if (chosen_) result.chosen_cells = chosen_->count();
-            const auto read = read_fields(numbers, result);
+            auto read = read_fields(numbers, result);
             if (!read) return read.error();
             if (!*read) return std::optional<ReadResult>();
+            result.grid.cell_fields = **std::move(read);
             if (options_.active_cells->options.extract.source_cells) result.cell_numbers = numbers_in_grid(numbers);
         }
+        const auto colored = read_for_colors(result);
+        if (!colored) return colored.error();
+        if (!*colored) return std::optional<ReadResult>();
         if (!used_.empty()) {
             const Box box = box_of(result.grid.points, used_);
             result.bounds = {box.lower[0], box.lower[1], box.lower[2], box.upper[0], box.upper[1], box.upper[2]};
         }
         return std::optional(std::move(result));
+    }
+
+    /// Values at the boundary, and digests of all, where they are wanted. False where all cells are needed.
+    Result<bool> read_for_colors(ReadResult& result) {
+        const ReadActiveCells& asked = *options_.active_cells;
+        if (asked.boundary && asked.boundary->wants_cells) {
+            StreamedBoundary& boundary = *asked.boundary;
+            ReadResult told;
+            told.info = result.info;
+            auto fields = read_fields(boundary.numbers, told);
+            if (!fields) return fields.error();
+            if (!*fields) return false;
+            boundary.cells.points = result.grid.points;
+            boundary.cells.cell_fields = **std::move(fields);
+        }
+        if (!asked.digests) return true;
+        if (!dropped_.empty()) return false;
+        auto digests = digests_of(all_, result.grid.cell_fields, progress_);
+        if (!digests) return digests.error();
+        if (*digests) result.digests = **std::move(digests);
+        return digests->has_value();
     }
 
     /// Numbers as join() has them: of a piece alone those in its file, else without the cells that are left out.
@@ -329,8 +372,9 @@ private:
         return Array::own(std::move(result));
     }
 
-    /// Cell fields of cells with these numbers. False where one cannot be read.
-    Result<bool> read_fields(std::span<const std::uint64_t> numbers, ReadResult& result) {
+    /// Cell fields of cells with these numbers, with notes in `result`. Nothing where one cannot be read.
+    Result<std::optional<std::vector<Field>>> read_fields(std::span<const std::uint64_t> numbers, ReadResult& result) {
+        const std::optional<std::vector<Field>> nothing;
         const std::vector<std::uint64_t> first = first_cells();
         std::vector<std::vector<std::uint64_t>> cells(all_.size()); // by piece, in it
         std::vector<std::uint64_t> place(all_.size()), kept(all_.size());
@@ -353,18 +397,18 @@ private:
             }
         });
         if (const auto done = failed.result(); !done)
-            return done.error().code == ErrorCode::invalid_data ? Result<bool>(false) : done.error();
+            return done.error().code == ErrorCode::invalid_data ? Result<std::optional<std::vector<Field>>>(nothing)
+                                                                : done.error();
         auto fields = join_cell_fields(pieces, place, kept, numbers.size(), result, progress_);
         if (!fields) return fields.error();
-        result.grid.cell_fields = *std::move(fields);
-        return true;
+        return std::optional(*std::move(fields));
     }
 
     template <class PassAgain>
     Result<bool> may_have_hanging_points(const Grid& active, const PassAgain& pass_again) const {
         const Run run{.progress = {nullptr, progress_.cancel}};
         const ReadActiveCells& asked = *options_.active_cells;
-        const Result<PointField> field = active_field(active, asked);
+        const Result<PointField> field = active_field(active, asked, averaged_);
         if (!field) return field.error();
         Result<CellsAround> around = CellsAround::of(active, *field, isovalues_, run);
         if (!around) return around.error();
@@ -440,7 +484,7 @@ private:
         std::optional<BoundaryTaker> for_boundary;
         if (options_.active_cells->boundary) {
             if (auto enough = BoundaryPass::check_memory(result.grid.points); !enough) return enough.error();
-            search.emplace(result.grid.points);
+            begin_search(search, result.grid.points);
             for_boundary.emplace(*search, type_, BoundaryTaker::Round::add);
             static_cast<ActiveTaker&>(*taker).set_also(&*for_boundary);
         }
@@ -465,7 +509,7 @@ private:
             taker = make_taker(result.grid);
             if (search) {
                 for_boundary.reset();
-                search.emplace(result.grid.points);
+                begin_search(search, result.grid.points);
                 for_boundary.emplace(*search, type_, BoundaryTaker::Round::add);
                 static_cast<ActiveTaker&>(*taker).set_also(&*for_boundary);
             }
@@ -508,6 +552,11 @@ private:
         for (const LeftOut& item : fields_left_out) leave_out((*found)->info, item); // behind those of cells
         std::ranges::move(of_fields, std::back_inserter((*found)->notes));
         return found;
+    }
+
+    void begin_search(std::optional<core::BoundarySearch>& search, const Array& points) const {
+        search.emplace(points);
+        if (options_.active_cells->boundary->wants_cells) search->keep_numbers();
     }
 
     /// Finds the chosen cells, and leaves values at their points. Sets needs_all_ where all are needed.
@@ -686,6 +735,7 @@ private:
     std::vector<std::vector<std::uint64_t>> kept_before_;
     std::optional<ChosenCells> chosen_;  ///< where some are
     std::vector<double> isovalues_;      ///< for which cells are kept
+    std::optional<PointField> averaged_; ///< that cells are active of
     std::vector<PointUse> used_;         ///< of the joined points, where their bounds are asked for
     std::vector<std::uint64_t> dropped_; ///< numbers of cells that earlier pieces have
     std::atomic<bool> needs_all_ = false;
