@@ -336,7 +336,7 @@ Result<void> LegacyData::read_array(const Header& header) {
 /// has a line in both.
 Result<void> LegacyData::skip_strings(const Header& header) {
     const std::uint64_t components = header.components, tuples = header.tuples;
-    leave_out_array(header, "it holds text, not numbers");
+    if (wants_.tells_text) leave_out_array(header, "it holds text, not numbers");
     if (components == 0 || tuples > scanner_.left() / components)
         return invalid_data(fmt::format("{} x {} strings do not fit into the file", tuples, components));
     scanner_.next_line();

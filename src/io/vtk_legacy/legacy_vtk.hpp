@@ -89,6 +89,7 @@ struct LegacyWants {
     bool leave_corners = false;                            ///< corners of CELLS may stay in the file
     std::function<bool(std::string_view name)> leave = {}; ///< then: cell fields that may, too; empty: none
     std::string_view file_arrays = {}; ///< of arrays of the whole file those whose names begin so; empty: none
+    bool tells_text = true;            ///< arrays of text are told among what is left out
 };
 
 /// Reads a whole file. Arrays that are not wanted are skipped; integers of type vtkIdType become int64, as in VTK.

@@ -14,6 +14,7 @@ Result<Surface> parse_legacy_vtk(std::string_view content, std::vector<Field>& f
     wants.dataset = [&](std::string_view name) { return (kind = name) == "polydata"; };
     wants.field = [](Association, std::string_view) { return true; };
     wants.file_arrays = own_field_data;
+    wants.tells_text = false;
     auto file = read_legacy_vtk(ByteSource(content), wants, progress);
     if (!kind.empty() && kind != "polydata")
         return invalid_data(fmt::format("this is a dataset of kind {}, not a surface (POLYDATA)", in_quotes(kind)));
