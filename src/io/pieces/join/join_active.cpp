@@ -345,8 +345,9 @@ private:
         if (!dropped_.empty()) return false;
         auto digests = digests_of(all_, result.grid.cell_fields, progress_);
         if (!digests) return digests.error();
-        if (*digests) result.digests = **std::move(digests);
-        return digests->has_value();
+        if (!*digests) return false;
+        result.digests = **std::move(digests);
+        return true;
     }
 
     /// Numbers as join() has them: of a piece alone those in its file, else without the cells that are left out.
