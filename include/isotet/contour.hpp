@@ -104,22 +104,31 @@ ISOTET_API Estimate estimate(Method method, const Workload& workload) noexcept;
 // A session: a grid, a field and a way to answer isovalues. What a command, a slider, a pipeline filter and a time
 // series share.
 
+struct ContourInput;
+
+/// What is known of a grid that is a part of another.
+struct GridPart {
+    /// Set where cells are missing that an ActiveCellFilter did not keep (active_cells.hpp) for the expected isovalues: gives
+    /// `grid`, `cell_fields` and `part` of the input with all cells, and is called when something needs them. What else the
+    /// input has stays: it is of points, of which none are missing.
+    std::function<Result<ContourInput>(const Run& run)> whole = {};
+    Array cell_numbers = {}; ///< of the cells in the other grid, uint64: for source cells. Empty: they are the same
+    bool has_cells_around = false; ///< of the missing cells there are those that gradient normals need
+};
+
 /// What is contoured, and what surfaces carry. Arrays are shared; borrowed ones must live until the next set().
 struct ContourInput {
-    Grid grid;                       ///< its own fields are not looked at
-    PointField field;                ///< to contour
-    std::vector<Field> point_fields; ///< carried onto surfaces, as ExtractOptions::point_fields
-    std::vector<Field> cell_fields;  ///< as ExtractOptions::cell_fields
-    /// Set where the grid has only the cells that an ActiveCellFilter kept (active_cells.hpp) for the expected isovalues:
-    /// gives the same input with all cells, and is called when something needs them. `cell_fields` are of the cells that
-    /// are there.
-    std::function<Result<ContourInput>(const Run& run)> all_cells = {};
-    Array cell_numbers = {}; ///< of the cells where they have others, uint64, as of a part of a grid: for source cells
-    bool has_cells_around = false; ///< then: the filter kept those that gradient normals need, too
+    Grid grid;                         ///< its own fields are not looked at
+    PointField field;                  ///< to contour
+    std::vector<Field> point_fields;   ///< carried onto surfaces, as ExtractOptions::point_fields
+    std::vector<Field> cell_fields;    ///< as ExtractOptions::cell_fields
+    std::optional<GridPart> part = {}; ///< `cell_fields` are of the cells that are there
     /// In place of `grid` and `field`: a packed grid, of a PackedFile say. Surfaces come from its clusters as they are: the
     /// options must not ask for what was not packed.
     std::optional<PackedGrid> packed = {};
     std::vector<PackedGrid> packed_fields = {}; ///< carried, as ExtractOptions::packed_fields; of `packed` only
+
+    bool lacks_cells() const noexcept { return part && part->whole; }
 };
 
 struct ContourOptions {
@@ -201,7 +210,7 @@ struct ContourResult {
 ///              the call for a stale isovalue and makes the next
 class ISOTET_API Contour {
 public:
-    /// True where a session with these options has use for ContourInput::all_cells: surfaces of the expected isovalues,
+    /// True where a session with these options has use for GridPart::whole: surfaces of the expected isovalues,
     /// extracted directly by the CPU, without what needs all cells.
     static bool can_do_with_active_cells(const ContourOptions& options);
 

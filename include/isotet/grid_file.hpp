@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -29,6 +30,18 @@ struct FileSession {
     Contour contour;
     std::vector<std::string> notes; ///< of reading and closing: sentences for the user
 };
+
+/// What to read of a file where those cells do that the expected isovalues meet; nothing: all are needed.
+ISOTET_API std::optional<ReadActiveCells> active_cells_for(const std::string& field, const ContourOptions& options);
+
+/// ContourInput::part of a grid that was read; nothing where that is the whole.
+///
+/// `has_cells_around`   the active cells were chosen for gradient normals
+/// `read_all`           the same with all cells; is called when something needs them, where active ones were read
+/// `cell_fields`        gives those that surfaces carry, of that grid; empty: none
+ISOTET_API std::optional<GridPart>
+part_of(const ReadResult& read, bool has_cells_around, std::function<Result<ReadResult>(const Run& run)> read_all,
+        std::function<Result<std::vector<Field>>(const Grid& grid, const Run& run)> cell_fields = {});
 
 /// A grid file that was looked into.
 ///

@@ -157,12 +157,10 @@ struct IsosurfaceOptions {
     PictureOptions picture;                   ///< of the pictures to come: `draw` leaves device memory free for them
     bool split_cells = false;                 ///< as PackOptions::split_cells
     std::optional<RefineOptions> refine = {}; ///< as ContourOptions::refine; a device takes cells split at their nodes
-    /// Set where the grid has only the cells that an ActiveCellFilter kept for the first isovalues that are shown:
-    /// gives it with all, and the values of all cells where these colour. Then no slices are drawn, of boundaries only
-    /// `boundary`, with its colours, and all is as large as it or the bounds.
-    std::function<Result<Grid>(const Run& run)> all_cells = {};
-    std::vector<double> expected_isovalues = {}; ///< these
-    bool has_cells_around = false;               ///< then, as ContourInput::has_cells_around
+    /// As ContourInput::part; where cells colour, `whole` gives the values of all of them. Where cells are missing, no slices are
+    /// drawn, of boundaries only `boundary`, with its colours, and all is as large as it or the bounds.
+    std::optional<GridPart> part = {};
+    std::vector<double> expected_isovalues = {}; ///< the first that are shown
     Box bounds = {};                             ///< of the points that any cell has; with `packed`, too
     std::optional<Surface> boundary = {};        ///< of all cells, where it is known
     /// In place of `grid` and `field`. The CPU extracts; there are no solids, and cells colour isosurfaces and slices

@@ -67,6 +67,19 @@ Array in_order(const Array& values, std::span<const std::uint64_t> original) {
     });
 }
 
+Array source_cells_by(const Array& cells, const Array& numbers) {
+    if (cells.empty() || numbers.empty()) return cells;
+    const auto number_of = numbers.as<std::uint64_t>();
+    Buffer<std::int64_t> out(cells.tuples());
+    cells.visit([&](auto before) {
+        parallel_each(before.size(), renumber_grain, [&](std::size_t i) {
+            const auto cell = static_cast<std::int64_t>(before[i]);
+            out[i] = cell < 0 ? cell : static_cast<std::int64_t>(number_of[static_cast<std::size_t>(cell)]);
+        });
+    });
+    return std::move(out).to_array();
+}
+
 Result<void> check_point_numbers(const Grid& grid) {
     const Array& numbers = grid.point_numbers;
     if (is_floating(numbers.type()) || size_of(numbers.type()) < 4 || numbers.components() != 1 ||

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include <isotet/export.hpp>
 #include <isotet/grid.hpp>
 
 #include "base/buffer.hpp"
@@ -25,5 +26,8 @@ Result<Renumbered> sort_points_by_number(const Grid& grid);
 
 /// The tuples with some numbers, in their order.
 Array in_order(const Array& values, std::span<const std::uint64_t> original);
+
+/// Source cells as other numbers, int64: `numbers` of the cells, uint64. -1 stays; empty ones: all stay.
+ISOTET_API Array source_cells_by(const Array& cells, const Array& numbers);
 
 } // namespace isotet::core

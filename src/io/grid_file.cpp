@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include <isotet/active_cells.hpp>
 #include <isotet/contour.hpp>
 #include <isotet/fields.hpp>
 #include <isotet/linear_cells.hpp>
@@ -46,20 +47,8 @@ Result<ContourInput> input_of(ReadResult& read, const std::string& field, const 
     Result<ContourInput> input = contour_input(read.grid, field, options.with, run);
     if (!input) return input;
     if (!input->field.note.empty()) read.notes.push_back(input->field.note);
-    input->cell_numbers = read.cell_numbers;
     input->grid.point_fields = input->grid.cell_fields = {};
     return input;
-}
-
-/// What to read where the cells that the isovalues meet do; nothing: all are needed.
-std::optional<ReadActiveCells> active_cells(const std::string& field, const ContourOptions& options) {
-    if (!Contour::can_do_with_active_cells(options)) return std::nullopt;
-    ReadActiveCells active{field, options.expected_isovalues, {}};
-    active.options.precision = options.precision;
-    active.options.extract.ties = options.ties;
-    active.options.extract.source_cells = options.source_cells;
-    active.options.extract.normals = options.normals;
-    return active;
 }
 
 /// A session on the chunks of a packed file; nothing where it asks for what the file does not have as it is.
@@ -139,6 +128,41 @@ ReadOptions GridFile::Data::options_for(std::size_t step, const std::optional<Fi
     return wanted;
 }
 
+std::optional<ReadActiveCells> active_cells_for(const std::string& field, const ContourOptions& options) {
+    if (!Contour::can_do_with_active_cells(options) ||
+        options.expected_isovalues.size() > ActiveCellFilter::max_isovalues)
+        return std::nullopt;
+    ReadActiveCells active{field, options.expected_isovalues, {}};
+    active.options.precision = options.precision;
+    active.options.extract.ties = options.ties;
+    active.options.extract.source_cells = options.source_cells;
+    active.options.extract.normals = options.normals;
+    return active;
+}
+
+std::optional<GridPart> part_of(const ReadResult& read, bool has_cells_around,
+                                std::function<Result<ReadResult>(const Run&)> read_all,
+                                std::function<Result<std::vector<Field>>(const Grid&, const Run&)> cell_fields) {
+    if (!read.cells_in_file && read.cell_numbers.empty()) return std::nullopt;
+    GridPart part{{}, read.cell_numbers, has_cells_around};
+    if (!read.cells_in_file || !read_all) return part;
+    part.whole = [read_all = std::move(read_all),
+                  cell_fields = std::move(cell_fields)](const Run& run) -> Result<ContourInput> {
+        Result<ReadResult> all = read_all(run);
+        if (!all) return all.error();
+        ContourInput input;
+        if (cell_fields) {
+            Result<std::vector<Field>> fields = cell_fields(all->grid, run);
+            if (!fields) return fields.error();
+            input.cell_fields = *std::move(fields);
+        }
+        input.part = part_of(*all, false, {});
+        input.grid = std::move(all->grid);
+        return input;
+    };
+    return part;
+}
+
 GridFile::GridFile(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
 
 Result<GridFile> GridFile::open(const std::string& path, ReadOptions options, const Run& run) {
@@ -187,20 +211,20 @@ Result<FileSession> GridFile::session(const std::string& field, const FileContou
     const Result<FieldArrays> arrays = data_->arrays_of(names, options.step, run, &averages);
     if (!arrays) return arrays.error();
     ReadOptions wanted = data_->options_for(options.step, *arrays);
-    if (!averages && !arrays->neighbours) wanted.active_cells = active_cells(field, options.contour);
+    if (!averages && !arrays->neighbours) wanted.active_cells = active_cells_for(field, options.contour);
     Result<ReadResult> read = data_->read_closed(wanted, options.close_hanging_points, run);
     if (!read) return read.error();
     Result<ContourInput> input = input_of(*read, field, options, run);
     if (!input) return input.error();
-    if (read->cells_in_file) {
-        wanted.active_cells.reset();
-        input->has_cells_around = options.contour.normals == Normals::gradient;
-        input->all_cells = [data = data_, wanted, field, options](const Run& later) -> Result<ContourInput> {
-            Result<ReadResult> all = data->read_closed(wanted, options.close_hanging_points, later);
-            if (!all) return all.error();
-            return input_of(*all, field, options, later);
-        };
-    }
+    wanted.active_cells.reset();
+    const auto read_all = [data = data_, wanted, close_too = options.close_hanging_points](const Run& later) {
+        return data->read_closed(wanted, close_too, later);
+    };
+    const auto cell_fields = [field, with = options.with](const Grid& all, const Run& later) {
+        Result<ContourInput> same = contour_input(all, field, with, later);
+        return same ? Result<std::vector<Field>>(std::move(same->cell_fields)) : same.error();
+    };
+    input->part = part_of(*read, options.contour.normals == Normals::gradient, read_all, cell_fields);
     Result<Contour> contour = Contour::create(*std::move(input), options.contour, run);
     if (!contour) return contour.error();
     return FileSession{*std::move(contour), std::move(read->notes)};

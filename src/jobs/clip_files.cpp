@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <isotet/grid_file.hpp>
 #include <isotet/jobs/number_text.hpp>
 #include <isotet/write.hpp>
 
@@ -41,7 +42,6 @@ private:
     std::optional<GridSource> source_;
     ExtractPlan plan_;
     std::uint64_t emptied_ = 0; ///< cells that were not chosen
-    Array cell_numbers_;        ///< in the file, where they are others
     bool refines_ = true;
     std::vector<CollectionEntry> series_;
     std::vector<std::size_t> skipped_; ///< steps without the field
@@ -105,7 +105,7 @@ Result<std::optional<ContourInput>> ClipRun::load(std::size_t step) {
     caller_.detail(fmt::format("reading step {}", step));
     Result<ReadResult> read = source_->read_numbered(plan_.read, step, caller_);
     if (!read) return read.error();
-    cell_numbers_ = std::move(read->cell_numbers);
+    std::optional<GridPart> part = part_of(*read, false, {});
     Grid* const grid = &read->grid;
     if (plan_.steps.size() > 1 && !has_arrays_of(plan_.field, *grid)) return std::optional<ContourInput>();
     Result<PointField> field = find_chosen(*grid, plan_.field.name, chosen_.field, caller_);
@@ -120,8 +120,8 @@ Result<std::optional<ContourInput>> ClipRun::load(std::size_t step) {
     if (const std::string note = cells_left_out_note(*grid, caller_.run()); !note.empty()) caller_.note(note);
     grid->point_fields = grid->cell_fields = {};
     std::erase_if(fields->cell, [](const Field& carried) { return carried.name == "source_cell"; });
-    return std::optional(
-        ContourInput{std::move(*grid), *std::move(field), std::move(fields->point), std::move(fields->cell)});
+    return std::optional(ContourInput{std::move(*grid), *std::move(field), std::move(fields->point),
+                                      std::move(fields->cell), std::move(part)});
 }
 
 Result<void> ClipRun::check_that_some_are_kept(const ClippedGrid& clipped) const {
@@ -141,7 +141,7 @@ Result<void> ClipRun::write(const ClippedGrid& clipped, std::size_t step, ClipSt
     if (job_.out.empty()) return {};
     const core::Stopwatch writing;
     Grid grid = clipped.grid;
-    grid.cell_fields.push_back({"source_cell", numbers_in_file(clipped.source_cells, cell_numbers_)});
+    grid.cell_fields.push_back({"source_cell", clipped.source_cells});
     if (!clipped.edge_ends.empty()) {
         grid.point_fields.push_back({"edge_ends", clipped.edge_ends});
         grid.point_fields.push_back({"edge_weights", clipped.edge_weights});

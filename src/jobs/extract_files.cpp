@@ -12,12 +12,14 @@
 
 #include <isotet/device.hpp>
 #include <isotet/fields.hpp>
+#include <isotet/grid_file.hpp>
 #include <isotet/isovalues.hpp>
 #include <isotet/jobs/number_text.hpp>
 #include <isotet/memory.hpp>
 #include <isotet/write.hpp>
 
 #include "base/stopwatch.hpp"
+#include "grid/renumber.hpp"
 #include "jobs/extract_notes.hpp"
 #include "jobs/extract_plan.hpp"
 #include "jobs/pictures/packed_picture.hpp"
@@ -46,6 +48,7 @@ private:
     Result<void> open();
     Result<void> open_device();
     Result<std::optional<std::uint64_t>> read_grid(std::size_t step);
+    std::optional<GridPart> part_in_file(const ReadResult& read, std::size_t step);
     Result<bool> load(std::size_t step);
     Result<void> open_packed();
     Result<bool> load_packed(std::size_t step);
@@ -98,8 +101,7 @@ private:
     std::optional<Contour> contour_;
     std::optional<Solids> solids_;                 ///< in its place where solids are made
     Grid grid_;                                    ///< of the step at hand
-    Array cell_numbers_;                           ///< in the file, where they are others
-    Array active_numbers_;                         ///< in the whole grid, of active cells, if source cells are wanted
+    std::optional<GridPart> part_;                 ///< where it is one of the file's
     PointField field_;                             ///< that is contoured there
     core::FillValues fill_;                        ///< of the whole field, where isovalues follow from its range
     std::optional<PointField> averaged_;           ///< ReadResult::field
@@ -225,21 +227,32 @@ Result<void> ExtractRun::mark_other_pieces(const ContourInput& input) {
     return {};
 }
 
+std::optional<GridPart> ExtractRun::part_in_file(const ReadResult& read, std::size_t step) {
+    const auto read_all = [this, step](const Run& run) {
+        caller_.detail(fmt::format("reading all cells of step {}", step));
+        return source_->read_the_rest(plan_.read, step, run);
+    };
+    const auto cell_fields = [this](const Grid& all, const Run& run) {
+        Result<StepFields> fields = carried_fields(plan_, all, run);
+        return fields ? Result<std::vector<Field>>(std::move(fields->cell)) : fields.error();
+    };
+    return part_of(read, plan_.contour.normals == Normals::gradient, read_all, cell_fields);
+}
+
 /// Reads one step. Returns how many cells there are where only active ones were kept.
 Result<std::optional<std::uint64_t>> ExtractRun::read_grid(std::size_t step) {
     if (plan_.active_cells && !device_) {
         Result<ReadResult> read = source_->read_active(plan_.read, step, *plan_.active_cells, caller_);
         if (!read) return read.error();
+        part_ = part_in_file(*read, step);
         grid_ = std::move(read->grid);
         averaged_ = std::move(read->field);
-        active_numbers_ = read->cells_in_file ? read->cell_numbers : Array();
-        cell_numbers_ = read->cells_in_file ? Array() : read->cell_numbers;
         return read->cells_in_file;
     }
     Result<ReadResult> read = source_->read_numbered(plan_.read, step, caller_);
     if (!read) return with_cheaper_plan(read.error(), job_, plan_);
+    part_ = part_in_file(*read, step);
     grid_ = std::move(read->grid);
-    cell_numbers_ = std::move(read->cell_numbers);
     return std::optional<std::uint64_t>{};
 }
 
@@ -325,28 +338,14 @@ Result<bool> ExtractRun::load(std::size_t step) {
     if (auto shares = find_shares(); !shares) return shares.error();
     if (auto filled = find_fill(); !filled) return filled.error();
     coarse_tets_ = 0;
-    ContourInput input{grid_, *std::move(field), std::move(fields->point), std::move(fields->cell)};
+    ContourInput input{grid_, *std::move(field), std::move(fields->point), std::move(fields->cell), part_};
     if (job_.field.shape && plan_.contour.refine) plan_.contour.refine->carried = input.point_fields;
     if (plan_.active_cells && plan_.active_cells->choose)
         if (auto chosen = plan_.active_cells->choose(input.field)) // else the field has no value, which is told later
             plan_.contour.expected_isovalues = *std::move(chosen);
-    if (*cells_in_file) {
-        input.all_cells = [this, step, all = input](const Run& run) mutable -> Result<ContourInput> {
-            caller_.detail(fmt::format("reading all cells of step {}", step));
-            Result<ReadResult> read = source_->read_the_rest(plan_.read, step, run);
-            if (!read) return read.error();
-            Result<StepFields> of_all = carried_fields(plan_, read->grid, run);
-            if (!of_all) return of_all.error();
-            all.grid = std::move(read->grid);
-            cell_numbers_ = std::move(read->cell_numbers);
-            all.cell_fields = std::move(of_all->cell);
-            return all;
-        };
+    if (*cells_in_file)
         caller_.detail(fmt::format("{} of {} cells were kept: the isovalues meet no others", grid_.cells.count(),
                                    **cells_in_file));
-        input.cell_numbers = active_numbers_;
-        input.has_cells_around = plan_.contour.normals == Normals::gradient;
-    }
     if (job_.piece && has_curved_cells(input.grid.cells))
         return refusal("`piece` takes grids without quadratic cells only");
     if (job_.piece && job_.solid)
@@ -637,8 +636,8 @@ Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> is
             Result<Surface> numbered = number_as_whole(surface, grid_.point_numbers, first_cell_);
             if (!numbered) return numbered.error();
             surface = *std::move(numbered);
+            if (part_) surface.source_cells = core::source_cells_by(surface.source_cells, part_->cell_numbers);
         }
-        surface.source_cells = numbers_in_file(surface.source_cells, cell_numbers_);
         SurfaceNumbers& numbers = numbers_.surfaces.emplace_back();
         numbers.extract_seconds = seconds;
         if (result->engine == "vulkan") numbers.device = result->work;
@@ -699,7 +698,6 @@ Result<std::vector<Surface>> ExtractRun::extract_solid(double isovalue, std::siz
     note_what_a_solid_is(numbers_, numbers, caller_);
     std::vector<Surface> surfaces;
     surfaces.push_back(std::move(made->surface));
-    surfaces[0].source_cells = numbers_in_file(surfaces[0].source_cells, cell_numbers_);
     if (auto found = find_parts_of(surfaces[0], numbers); !found) return found.error();
     if (auto reduced = reduce_triangles(surfaces[0], numbers); !reduced) return reduced.error();
     if (!plan_.holds_fields) surfaces[0].cell_fields.clear(); // "boundary" alone: no note for that

@@ -9,8 +9,8 @@
 
 #include <fmt/format.h>
 
-#include <isotet/active_cells.hpp>
 #include <isotet/fields.hpp>
+#include <isotet/grid_file.hpp>
 #include <isotet/jobs/first_choice.hpp>
 #include <isotet/jobs/number_text.hpp>
 #include <isotet/jobs/range_shares.hpp>
@@ -101,18 +101,15 @@ std::optional<ReadActiveCells> plan_active_cells(const ExtractJob& job, const Ex
     const bool needs_all = (looks_around(plan.field) && !averages) || job.snap || !are_of_points(job.shares) ||
                            (chosen && (plan.steps.size() > 1 || !job.grid.cells.empty())) || job.piece || job.solid ||
                            job.volumes || job.grid.merge_points;
-    if (needs_all || looks_around_others || options.expected_isovalues.size() > ActiveCellFilter::max_isovalues ||
-        !Contour::can_do_with_active_cells(options))
-        return std::nullopt;
-    ReadActiveCells active{plan.field.name, {}, {}, job.field.shape};
-    active.averages = averages;
-    active.options.precision = plan.contour.precision;
-    active.options.extract.ties = plan.contour.ties;
-    active.options.extract.source_cells = plan.contour.source_cells;
-    active.options.extract.normals = plan.contour.normals;
-    if (!chosen) active.isovalues = job.isovalues;
-    else if (job.shares.empty()) active.choose = RangeLevels{.count = count, .whole_range = true};
-    else active.choose = isovalues_by_values(job.isovalues, job.shares);
+    if (needs_all || looks_around_others) return std::nullopt;
+    std::optional<ReadActiveCells> active = active_cells_for(plan.field.name, options);
+    if (!active) return active;
+    active->shape = job.field.shape;
+    active->averages = averages;
+    active->isovalues = {};
+    if (!chosen) active->isovalues = job.isovalues;
+    else if (job.shares.empty()) active->choose = RangeLevels{.count = count, .whole_range = true};
+    else active->choose = isovalues_by_values(job.isovalues, job.shares);
     return active;
 }
 

@@ -781,17 +781,6 @@ void GridSource::choose_fields(const FieldsToRead& fields, std::size_t step, Rea
     options.skip_missing_fields = info_.times.size() > 1 && described_ != step;
 }
 
-Array numbers_in_file(const Array& cells, const Array& numbers) {
-    if (cells.empty() || numbers.empty()) return cells;
-    const auto from = cells.as<std::int64_t>();
-    const auto number_of = numbers.as<std::uint64_t>();
-    std::vector<std::int64_t> out(from.size());
-    core::parallel_each(out.size(), 1 << 14, [&](std::size_t i) {
-        out[i] = from[i] < 0 ? from[i] : static_cast<std::int64_t>(number_of[static_cast<std::size_t>(from[i])]);
-    });
-    return Array::own(std::move(out));
-}
-
 Result<void> keep_broken(std::size_t step, Error error, std::size_t steps, std::vector<BrokenStep>& broken) {
     const bool is_of_the_file = error.code == ErrorCode::invalid_data || error.code == ErrorCode::file;
     if (!is_of_the_file || steps == 1) return error;

@@ -32,7 +32,7 @@ Result<IsosurfaceScene> IsosurfaceScene::create(const std::optional<Device>& dev
         if (options.boundary && data->look.boundary_opacity > 0) {
             data->take_boundary(*std::move(options.boundary));
             if (auto added = data->add_boundary(); !added) return added.error();
-        } else if (!options.all_cells)
+        } else if (!(options.part && options.part->whole))
             if (auto looked = data->look_around(options.grid, options.known_boundary.get(), run); !looked)
                 return looked.error();
         const IsosurfaceOptions tets{{}, {}, 1, {}, ExtractOn::cpu, options.draw, options.index, options.picture};

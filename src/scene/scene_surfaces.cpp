@@ -33,19 +33,10 @@ Result<void> IsosurfaceScene::Data::start(IsosurfaceOptions wanted, const Run& r
     options.surfaces = wanted.surfaces;
     const bool by_cells = look.colors && look.colors->association == Association::cell;
     const bool by_points = look.colors && !by_cells;
-    ContourInput plain{std::move(wanted.grid), std::move(wanted.field), {}, {}}, carrying = plain;
+    ContourInput plain{std::move(wanted.grid), std::move(wanted.field), {}, {}, std::move(wanted.part)},
+        carrying = plain;
     if (by_points) carrying.point_fields.push_back({look.colors->name, look.colors->values});
     if (by_cells) carrying.cell_fields.push_back({look.colors->name, look.colors->values});
-    if (wanted.all_cells)
-        carrying.all_cells = [all = carrying, read = wanted.all_cells](const Run& reading) -> Result<ContourInput> {
-            Result<Grid> grid = read(reading);
-            if (!grid) return grid.error();
-            ContourInput input = all;
-            if (!input.cell_fields.empty()) input.cell_fields = std::exchange(grid->cell_fields, {});
-            input.grid = *std::move(grid);
-            return input;
-        };
-    carrying.has_cells_around = wanted.has_cells_around;
     options.expected_isovalues = wanted.expected_isovalues;
     required = wanted.where == ExtractOn::device;
     if (!device && (required || wanted.draw))

@@ -17,6 +17,7 @@
 #include "grid/cell/linear_names.hpp"
 #include "grid/cell_faces.hpp"
 #include "grid/cells.hpp"
+#include "grid/renumber.hpp"
 #include "packed/packed.hpp"
 #include "packed/residency.hpp"
 #include "session/contour_data.hpp"
@@ -38,19 +39,17 @@ Result<void> check(const ContourOptions& options) {
 Result<ContourInput> input_for(ContourInput input, const ContourOptions& options, const Run& run) {
     if (input.packed) return input;
     const auto is_of_these = [&](const Field& field) { return field.values.tuples() == input.grid.cells.count(); };
-    const bool some_do = Contour::can_do_with_active_cells(options) &&
+    const bool some_do = input.lacks_cells() && !has_cells_to_linearize(input.grid.cells) &&
+                         Contour::can_do_with_active_cells(options) &&
                          std::ranges::all_of(input.cell_fields, is_of_these) &&
-                         (!options.source_cells || !input.cell_numbers.empty()) &&
-                         (options.normals != Normals::gradient || input.has_cells_around);
-    if (input.all_cells && !some_do) {
-        Result<ContourInput> all = input.all_cells(run);
+                         (!options.source_cells || !input.part->cell_numbers.empty()) &&
+                         (options.normals != Normals::gradient || input.part->has_cells_around);
+    if (input.lacks_cells() && !some_do) {
+        Result<ContourInput> all = session::with_all_cells(std::move(input), run);
         if (!all) return all;
         input = *std::move(all);
     }
-    if (const Array& numbers = input.cell_numbers;
-        !numbers.empty() && (numbers.type() != ScalarType::uint64 || numbers.size() != input.grid.cells.count()))
-        return invalid_argument(fmt::format("there are {} cell numbers of {}, but {} cells, and numbers are of uint64",
-                                            numbers.size(), name_of(numbers.type()), input.grid.cells.count()));
+    if (auto ok = session::check_cell_numbers(input); !ok) return ok.error();
     input.grid.cells = core::with_linear_names(std::move(input.grid.cells));
     return input;
 }
@@ -60,7 +59,7 @@ Result<std::optional<ContourResult>> extract_directly(const ContourInput& input,
                                                       std::span<const double> isovalues, const Run& run) {
     DirectOptions direct_options{session::extract_options(options, input), options.precision, options.split_cells,
                                  options.frame};
-    direct_options.active_cells_only = static_cast<bool>(input.all_cells);
+    direct_options.active_cells_only = input.lacks_cells();
     Result<DirectExtraction> direct =
         options.engine->extract_direct(input.grid, input.field, isovalues, direct_options, run);
     if (!direct) return std::move(direct).error();
@@ -141,6 +140,11 @@ struct Snapshot {
     std::uint64_t inputs = 0; ///< Asked::inputs
 };
 
+void number_cells(const Array& numbers, std::vector<Extraction>& surfaces) {
+    for (Extraction& one : surfaces)
+        one.surface.source_cells = core::source_cells_by(one.surface.source_cells, numbers);
+}
+
 /// What of the result follows from the cells before they were made linear.
 Result<void> finish(const Snapshot& now, std::span<const double> isovalues, const Run& run, ContourResult& result) {
     const std::shared_ptr<const LinearGrid>& linear = now.source.linear_grid();
@@ -150,12 +154,12 @@ Result<void> finish(const Snapshot& now, std::span<const double> isovalues, cons
             !ok)
             return ok;
     if (linear) {
-        session::map_source_cells(linear->source_cells, result.surfaces);
+        number_cells(linear->source_cells, result.surfaces);
         session::map_edge_ends(linear->user_points, linear->derived_numbers, result.surfaces);
         result.refinement = linear->refinement;
         result.cells_left_out += linear->refinement.left_out;
     }
-    session::map_source_cells(now.source.input().cell_numbers, result.surfaces);
+    if (const auto& part = now.source.input().part) number_cells(part->cell_numbers, result.surfaces);
     if (const std::optional<ValueRange> range = now.source.range()) {
         result.field.lower = range->lower;
         result.field.upper = range->upper;

@@ -5,7 +5,9 @@
 #include <array>
 #include <utility>
 
-#include "base/buffer.hpp"
+#include <fmt/format.h>
+
+#include "base/errors.hpp"
 #include "base/parallel.hpp"
 
 namespace isotet::session {
@@ -85,20 +87,22 @@ Result<ContourInput> on_linear_grid(ContourInput input, const LinearGrid& linear
     return input;
 }
 
-void map_source_cells(const Array& numbers, std::vector<Extraction>& surfaces) {
-    if (numbers.empty()) return;
-    const auto number_of = numbers.as<std::uint64_t>();
-    for (Extraction& extraction : surfaces) {
-        Array& cells = extraction.surface.source_cells;
-        if (cells.empty()) continue;
-        core::Buffer<std::int64_t> mapped(cells.tuples());
-        cells.visit([&](auto before) {
-            core::parallel_each(before.size(), 1 << 16, [&](std::size_t i) {
-                mapped[i] = static_cast<std::int64_t>(number_of[static_cast<std::size_t>(before[i])]);
-            });
-        });
-        cells = std::move(mapped).to_array();
-    }
+Result<void> check_cell_numbers(const ContourInput& input) {
+    if (!input.part || input.part->cell_numbers.empty()) return {};
+    const Array& numbers = input.part->cell_numbers;
+    if (numbers.type() == ScalarType::uint64 && numbers.size() == input.grid.cells.count()) return {};
+    return invalid_argument(fmt::format("there are {} cell numbers of {}, but {} cells, and numbers are of uint64",
+                                        numbers.size(), name_of(numbers.type()), input.grid.cells.count()));
+}
+
+Result<ContourInput> with_all_cells(ContourInput input, const Run& run) {
+    if (!input.lacks_cells()) return input;
+    Result<ContourInput> all = input.part->whole(run);
+    if (!all) return all;
+    input.grid = std::move(all->grid);
+    if (!all->cell_fields.empty()) input.cell_fields = std::move(all->cell_fields);
+    input.part = std::move(all->part);
+    return input;
 }
 
 void map_edge_ends(std::uint64_t user_points, const Array& numbers, std::vector<Extraction>& surfaces) {

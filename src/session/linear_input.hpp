@@ -72,8 +72,12 @@ private:
 /// Errors   as LinearGrid::extend()
 Result<ContourInput> on_linear_grid(ContourInput input, const LinearGrid& linear, const Run& run);
 
-/// Writes other numbers, uint64, over those of cells: `numbers` of the grid that the cells are of. Empty: they are the same.
-void map_source_cells(const Array& numbers, std::vector<Extraction>& surfaces);
+/// Errors   invalid_argument: GridPart::cell_numbers do not fit the cells
+Result<void> check_cell_numbers(const ContourInput& input);
+
+/// The input with the cells that it lacks.
+/// Errors   those of GridPart::whole
+Result<ContourInput> with_all_cells(ContourInput input, const Run& run);
 
 /// Writes LinearGrid::derived_numbers over the edge ends that are derived points. Empty: they are the same.
 void map_edge_ends(std::uint64_t user_points, const Array& numbers, std::vector<Extraction>& surfaces);

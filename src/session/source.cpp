@@ -61,14 +61,14 @@ const std::shared_ptr<const LinearGrid>& Source::linear_grid() const {
 
 bool Source::suffices(std::span<const double> isovalues, const ContourOptions& options) const {
     if (met_) return met_.is_good_for(isovalues);
-    return !input().all_cells || std::ranges::all_of(isovalues, [&](double isovalue) {
+    return !input().lacks_cells() || std::ranges::all_of(isovalues, [&](double isovalue) {
         return std::ranges::find(options.expected_isovalues, isovalue) != options.expected_isovalues.end();
     });
 }
 
 Result<Source> Source::whole(const ContourOptions& options, const Run& run, Told& told) const {
     const core::Stopwatch time;
-    Result<ContourInput> all = met_ ? Result<ContourInput>(met_.user()) : input().all_cells(run);
+    Result<ContourInput> all = met_ ? Result<ContourInput>(met_.user()) : with_all_cells(input(), run);
     if (!all) return all.error();
     const double before = told.seconds;
     Result<Source> source = take(*std::move(all), options, *this, true, run, told);

@@ -48,7 +48,7 @@ public:
     bool is_curved() const { return static_cast<bool>(curved_); }
     /// Not so where the input has curved cells that were not refined yet.
     bool is_refined() const { return !curved_ || curved_.grid(); }
-    bool is_part() const { return met_ || input().all_cells; }
+    bool is_part() const { return met_ || input().lacks_cells(); }
     /// Cells that are known again when they are set again.
     bool may_be_packed() const { return !curved_ && !met_; }
 
@@ -58,7 +58,7 @@ public:
     bool is_too_coarse(std::span<const double> isovalues) const { return curved_ && !curved_.is_good_for(isovalues); }
 
     /// With all cells, of a part.
-    /// Errors   those of the input's all_cells; as take()
+    /// Errors   those of GridPart::whole; as take()
     Result<Source> whole(const ContourOptions& options, const Run& run, Told& told) const;
 
     /// Refines curved cells for these. What was refined before is given back first.

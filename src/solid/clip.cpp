@@ -18,6 +18,7 @@
 #include "base/errors.hpp"
 #include "base/memory.hpp"
 #include "grid/orientation.hpp"
+#include "grid/renumber.hpp"
 #include "numbers/bounds.hpp"
 #include "numbers/storage.hpp"
 #include "session/linear_input.hpp"
@@ -31,6 +32,7 @@ struct Clipper::Data {
     ContourInput input; ///< with linear cells; tets where cells are split
     ContourOptions options;
     std::shared_ptr<const LinearGrid> linear;
+    Array cell_numbers;           ///< SolidInput::cell_numbers
     Array cells_before_splitting; ///< uint64, of each tet; empty: cells are not split
     std::optional<Contour> contour;
     solid::CellFacts facts;
@@ -272,14 +274,6 @@ private:
     CutInput cut_;
 };
 
-/// The user's cell numbers, of linear ones or tets.
-Array as_users(const Array& cells, const Array& sources) {
-    core::Buffer<std::uint64_t> out(cells.tuples());
-    const auto from = cells.as<std::uint64_t>(), to = sources.as<std::uint64_t>();
-    core::parallel_each(out.size(), 1 << 16, [&](std::size_t i) { out[i] = to[from[i]]; });
-    return std::move(out).to_array();
-}
-
 Array as_signed(const Array& numbers) {
     return Array(ScalarType::int64, numbers.data(), numbers.tuples(), 1, numbers.owner().lock());
 }
@@ -351,6 +345,7 @@ Result<Clipper> Clipper::create(ContourInput given, const ContourOptions& option
         if (!taken) return taken.error();
         auto data = std::make_unique<Data>();
         data->linear = std::move(taken->linear);
+        data->cell_numbers = std::move(taken->cell_numbers);
         data->input = std::move(taken->input);
         data->input.grid.point_fields = data->input.grid.cell_fields = {};
         data->notes = std::move(taken->notes);
@@ -410,10 +405,9 @@ Result<ClippedGrid> Clipper::clip(const SolidRange& range, const ClipOptions& op
         if (!options.polyhedra)
             if (auto ok = split_polyhedra(*out, inside); !ok) return ok.error();
         if (!out->source_cells.empty()) {
-            if (!data.cells_before_splitting.empty())
-                out->source_cells = as_users(out->source_cells, data.cells_before_splitting);
-            if (data.linear && !data.linear->source_cells.empty())
-                out->source_cells = as_users(out->source_cells, data.linear->source_cells);
+            for (const Array& numbers :
+                 {data.cells_before_splitting, data.linear ? data.linear->source_cells : Array(), data.cell_numbers})
+                out->source_cells = core::source_cells_by(out->source_cells, numbers);
             out->source_cells = as_signed(out->source_cells);
         }
         out->contour = clip.take_contour();

@@ -52,15 +52,15 @@ Result<std::shared_ptr<const LinearGrid>> linear_of(const ContourInput& input, c
 } // namespace
 
 Result<SolidInput> take_input(ContourInput given, const ContourOptions& options, const Run& run, bool is_piece) {
-    if (given.all_cells) {
-        Result<ContourInput> all = given.all_cells(run);
-        if (!all) return all.error();
-        given = *std::move(all);
-    }
+    Result<ContourInput> all = session::with_all_cells(std::move(given), run);
+    if (!all) return all.error();
+    given = *std::move(all);
     if (auto ok = check_options(given, options, is_piece); !ok) return ok.error();
+    if (auto ok = session::check_cell_numbers(given); !ok) return ok.error();
     given.grid.cells = core::with_linear_names(std::move(given.grid.cells));
-    given.cell_numbers = {}; // the boundary's cells have those of the grid
     SolidInput out;
+    if (given.part) out.cell_numbers = given.part->cell_numbers;
+    given.part.reset();
     out.user_grid = given.grid;
     out.user_grid.point_fields = {};
     out.user_grid.cell_fields = given.cell_fields;

@@ -16,6 +16,7 @@ struct SolidInput {
     ContourInput input;                       ///< with linear cells
     Grid user_grid;                           ///< before: without point fields
     std::shared_ptr<const LinearGrid> linear; ///< null where all were linear
+    Array cell_numbers;                       ///< GridPart::cell_numbers of the user's cells
     std::vector<std::string> notes;           ///< on making cells linear
 };
 

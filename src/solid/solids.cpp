@@ -19,6 +19,7 @@
 #include "base/errors.hpp"
 #include "base/guard.hpp"
 #include "base/memory.hpp"
+#include "grid/renumber.hpp"
 #include "session/linear_input.hpp"
 #include "solid/assemble.hpp"
 #include "solid/boundary_faces.hpp"
@@ -38,6 +39,7 @@ struct Solids::Data {
     solid::BoundaryFaces boundary;
     solid::BoundaryPoints points;
     std::vector<Field> user_cell_fields; ///< of the user's cells
+    Array cell_numbers;                  ///< SolidInput::cell_numbers
     std::vector<PatchName> patch_names;
     double grid_volume = 0;
     std::vector<std::string> notes;              ///< of making cells linear, told once
@@ -206,6 +208,7 @@ Result<Solids> Solids::make(ContourInput given, const Array* ghosts, const Conto
         auto data = std::make_unique<Data>();
         data->linear = std::move(taken->linear);
         data->input = std::move(taken->input);
+        data->cell_numbers = std::move(taken->cell_numbers);
         data->notes = std::move(taken->notes);
         data->options = options;
         if (ghosts) data->origin = options.frame->whole.lower;
@@ -294,13 +297,11 @@ Result<Solid> Solids::extract(const SolidRange& range, const Run& run) {
         out.isosurface_area = solid::area_of(out.surface, 0, out.isosurface_triangles);
         out.boundary_area = solid::area_of(out.surface, out.isosurface_triangles, out.surface.triangle_count());
         if (data.linear) {
-            std::vector<Extraction> mapped(1);
-            mapped[0].surface.source_cells = out.surface.source_cells;
-            session::map_source_cells(data.linear->source_cells, mapped);
-            out.surface.source_cells = mapped[0].surface.source_cells;
+            out.surface.source_cells = core::source_cells_by(out.surface.source_cells, data.linear->source_cells);
             out.contour.refinement = data.linear->refinement;
             out.contour.cells_left_out += data.linear->refinement.left_out;
         }
+        out.surface.source_cells = core::source_cells_by(out.surface.source_cells, data.cell_numbers);
         out.contour.notes.insert(out.contour.notes.begin(), data.notes.begin(), data.notes.end());
         data.notes.clear();
         return out;

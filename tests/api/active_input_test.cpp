@@ -1,12 +1,16 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // A session that is given active cells only gives the surfaces of all, and asks for all when it needs them.
+#include <algorithm>
+#include <cstdint>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include <isotet/active_cells.hpp>
 #include <isotet/contour.hpp>
 #include <isotet/make.hpp>
+#include <isotet/solid.hpp>
 
 #include "support/small_grid.hpp"
 #include "support/surface_bytes.hpp"
@@ -25,12 +29,12 @@ protected:
         do filter->add(0, grid.cells.connectivity);
         while (filter->next_round());
         ContourInput input{grid, field, {}, {}};
-        input.has_cells_around = around;
         input.grid.cells = filter->finish().value();
-        input.all_cells = [this](const isotet::Run&) -> Result<ContourInput> {
+        const auto whole = [this](const isotet::Run&) -> Result<ContourInput> {
             ++asked;
             return all();
         };
+        input.part = GridPart{whole, {}, around};
         return input;
     }
     ContourInput all() const { return {grid, field, {}, {}}; }
@@ -92,18 +96,75 @@ TEST_F(ActiveInput, HasANumberOfEachCell) {
     for (const std::size_t count : {1, 10'000'000})
         for (const bool narrow : {false, true}) {
             ContourInput input = some({0.1});
-            input.cell_numbers = narrow ? Array::own(std::vector<std::uint32_t>(input.grid.cells.count()))
-                                        : Array::own(std::vector<std::uint64_t>(count));
+            input.part->cell_numbers = narrow ? Array::own(std::vector<std::uint32_t>(input.grid.cells.count()))
+                                              : Array::own(std::vector<std::uint64_t>(count));
             const auto contour = Contour::create(std::move(input), options({0.1}));
             ASSERT_FALSE(contour);
             EXPECT_EQ(contour.error().code, ErrorCode::invalid_argument);
         }
 }
 
+/// Of the cells `numbers` say which.
+Array numbered(const Array& cells, const Array& numbers) {
+    std::vector<std::int64_t> out;
+    for (const std::int64_t cell : cells.as<std::int64_t>())
+        out.push_back(static_cast<std::int64_t>(numbers.as<std::uint64_t>()[static_cast<std::size_t>(cell)]));
+    return Array::own(std::move(out));
+}
+
+void expect_equal(const Array& found, const Array& wanted) {
+    ASSERT_EQ(found.tuples(), wanted.tuples());
+    ASSERT_GT(found.tuples(), 0);
+    EXPECT_TRUE(std::ranges::equal(found.as<std::int64_t>(), wanted.as<std::int64_t>()));
+}
+
+/// Of a file some of whose cells were left out, say: none is missing for good.
+TEST_F(ActiveInput, NumbersSourceCells) {
+    std::vector<std::uint64_t> sevens(grid.cells.count());
+    for (std::size_t cell = 0; cell < sevens.size(); ++cell) sevens[cell] = 7 * cell;
+    const Array numbers = Array::own(std::move(sevens));
+    ContourInput input = all();
+    input.part = GridPart{{}, numbers};
+    ContourOptions chosen;
+    chosen.source_cells = true;
+    for (const Method method : {Method::direct, Method::clusters}) {
+        chosen.method = method;
+        const auto plain = Contour::create(all(), chosen).value().extract(0.1).value();
+        const auto found = Contour::create(input, chosen).value().extract(0.1).value();
+        expect_equal(found.surfaces[0].surface.source_cells, numbered(plain.surfaces[0].surface.source_cells, numbers));
+    }
+    const SolidRange above{0.1};
+    expect_equal(Solids::create(input, chosen).value().extract(above).value().surface.source_cells,
+                 numbered(Solids::create(all(), chosen).value().extract(above).value().surface.source_cells, numbers));
+    expect_equal(Clipper::create(input, chosen).value().clip(above).value().source_cells,
+                 numbered(Clipper::create(all(), chosen).value().clip(above).value().source_cells, numbers));
+    input.part->cell_numbers = Array::own(std::vector<std::uint64_t>(3));
+    EXPECT_EQ(Clipper::create(input, chosen).error().code, ErrorCode::invalid_argument);
+}
+
+/// What surfaces carry of points is not read again.
+TEST_F(ActiveInput, KeepsFieldsOfPointsWhenItIsCompleted) {
+    std::vector<std::uint64_t> ones(grid.cells.count(), 1);
+    ContourInput input = some({0.1});
+    input.point_fields = {{"gyroid", field.values}};
+    input.part->whole = [&](const isotet::Run&) {
+        ContourInput out;
+        out.grid = grid;
+        out.cell_fields = {{"one", Array::own(std::move(ones))}};
+        return Result<ContourInput>(std::move(out));
+    };
+    Contour contour = Contour::create(input, options({0.1})).value();
+    const Surface surface = contour.extract(0.2).value().surfaces[0].surface;
+    ASSERT_EQ(surface.point_fields.size(), 1);
+    EXPECT_EQ(surface.point_fields[0].values.tuples(), surface.vertex_count());
+    ASSERT_EQ(surface.cell_fields.size(), 1);
+    EXPECT_EQ(surface.cell_fields[0].values.at(0), 1);
+}
+
 TEST_F(ActiveInput, IsCompletedForOptionsThatNeedAllCells) {
     std::vector<ContourOptions> each(6, options({0.1}));
     each[0].normals = Normals::gradient; // of which the input has not the cells around
-    each[1].source_cells = true; // of which the input has no numbers
+    each[1].source_cells = true;         // of which the input has no numbers
     each[2].method = Method::clusters;
     each[3].expected_isovalues.clear();
     each[4].surfaces = 1000;
@@ -161,7 +222,12 @@ TEST_F(ActiveInput, IsCompletedAsItWasWhenAnotherGridIsSetMeanwhile) {
     ASSERT_TRUE(was_set);
     EXPECT_TRUE(bytes_of(found->surfaces[0].surface) == wanted) << "of one grid, with the options of the other";
     EXPECT_TRUE(bytes_of(contour.extract(0.5).value().surfaces[0].surface) ==
-                bytes_of(Contour::create({other, point_field(other), {}, {}}, chosen).value().extract(0.5).value().surfaces[0].surface));
+                bytes_of(Contour::create({other, point_field(other), {}, {}}, chosen)
+                             .value()
+                             .extract(0.5)
+                             .value()
+                             .surfaces[0]
+                             .surface));
 }
 
 TEST_F(ActiveInput, FiltersThatWereMovedFromAnswerPolitely) {
@@ -175,7 +241,7 @@ TEST_F(ActiveInput, FiltersThatWereMovedFromAnswerPolitely) {
 
 TEST_F(ActiveInput, PassesOnTheErrorOfReadingAll) {
     ContourInput input = some({0.1});
-    input.all_cells = [](const isotet::Run&) -> Result<ContourInput> { return Error{ErrorCode::file, "gone"}; };
+    input.part->whole = [](const isotet::Run&) -> Result<ContourInput> { return Error{ErrorCode::file, "gone"}; };
     Contour contour = Contour::create(input, options({0.1})).value();
     const auto failed = contour.extract(0.2);
     ASSERT_FALSE(failed);

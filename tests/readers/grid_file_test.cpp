@@ -89,6 +89,19 @@ TEST(GridFile, GivesSourceCellsOfTheWholeGrid) {
     }
 }
 
+TEST(GridFile, ReadsAllCellsForMoreIsovaluesThanAreFiltered) {
+    const TemporaryFolder folder;
+    const Grid grid = made("kuhn", 6);
+    ASSERT_TRUE(write_grid(grid, folder.file("grid.vtu")));
+    FileContourOptions options;
+    options.contour.method = Method::direct;
+    std::vector<double> many(256, 0.1);
+    many[1] = -0.7;
+    ContourResult found = opened(folder.file("grid.vtu")).contour("gyroid", many, options).value();
+    found.surfaces.resize(2);
+    expect_same(found, expected(grid, "gyroid", {}, options.contour));
+}
+
 TEST(GridFile, CarriesCellFieldsAndReadsAllForThem) {
     const TemporaryFolder folder;
     Grid grid = made("mixed");

@@ -212,10 +212,6 @@ private:
     std::shared_ptr<KnownClosing> closing_; ///< of the last of several steps; shared by copies
 };
 
-/// Source cells of a surface or a grid by the numbers that the file has.
-/// `cells`     int64; -1: of none
-/// `numbers`   ReadResult::cell_numbers
-Array numbers_in_file(const Array& cells, const Array& numbers);
 
 /// A time step that cannot be read, among others that can.
 struct BrokenStep {

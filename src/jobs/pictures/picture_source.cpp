@@ -11,6 +11,7 @@
 #include <isotet/active_cells.hpp>
 #include <isotet/boundary.hpp>
 #include <isotet/fields.hpp>
+#include <isotet/grid_file.hpp>
 #include <isotet/scene.hpp>
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/first_choice.hpp>
@@ -84,10 +85,10 @@ struct PictureSource::Contents {
     std::optional<ColorField> colors;
     std::optional<VolumeLook> volume;
     std::optional<ColorField> volume_colors;
-    bool model = false;      ///< the boundary is what is shown: opaque, coloured where there are colours
-    std::uint64_t cells = 0; ///< of the grid in the file
-    Box bounds = {};         ///< where `all_cells` is set: the grid has only the active cells; or of `packed`
-    std::function<Result<Grid>(const Run& run)> all_cells = {};
+    bool model = false;                     ///< the boundary is what is shown: opaque, coloured where there are colours
+    std::uint64_t cells = 0;                ///< of the grid in the file
+    std::optional<GridPart> part = {};      ///< where the grid has only the active cells
+    Box bounds = {};                        ///< then; or of `packed`
     std::optional<Surface> boundary = {};   ///< then, where it is drawn
     std::vector<Field> digests = {};        ///< ReadResult::digests
     std::optional<PackedScene> packed = {}; ///< in place of the grid; `field` has values where they were needed
@@ -372,13 +373,13 @@ std::optional<ReadActiveCells> PictureSource::active_cells(const Contents& conte
     if (needs_all_cells_ || !(averages || needs_no_cells(contoured)) || !(of_cells || needs_no_cells(colored)))
         return std::nullopt;
     ReadActiveCells active{contoured.name, job_.isovalues, {}};
-    active.averages = averages;
-    active.digests = of_cells;
     if (contours) {
         if (steps_.size() > 1 && job_.isovalues.empty() && job_.shares.empty()) return std::nullopt; // by all steps
         const auto options = options_with_active_cells();
-        if (!options) return std::nullopt;
-        active.options.extract.normals = options->normals;
+        const auto wanted = options ? active_cells_for(contoured.name, *options) : std::nullopt;
+        if (!wanted) return std::nullopt;
+        active = *wanted;
+        active.isovalues = job_.isovalues;
         active.bounds = job_.boundary == 0.0;
         if (!job_.shares.empty()) active.choose = isovalues_by_values(job_.isovalues, job_.shares);
         else if (job_.isovalues.empty()) active.choose = levels_of(job_);
@@ -388,6 +389,8 @@ std::optional<ReadActiveCells> PictureSource::active_cells(const Contents& conte
     } else {
         return std::nullopt;
     }
+    active.averages = averages;
+    active.digests = of_cells;
     if (active.bounds) return active;
     streamed_boundary_->wants_cells = contents.model && of_cells;
     active.boundary = streamed_boundary_;
@@ -426,10 +429,8 @@ Result<void> PictureSource::read_cells(const FieldsToRead& fields, std::size_t s
         contents.cells = some->cells_in_file.value_or(contents.grid.cells.count());
         needs_all_cells_ = !some->cells_in_file; // of the next steps, too, most likely
         if (needs_all_cells_) return {};
-        const auto all = [source = *source_, fields, step](const Run& run) -> Result<Grid> {
-            Result<ReadResult> read = source.read_the_rest(fields, step, run);
-            if (!read) return read.error();
-            return std::move(read->grid);
+        const auto all = [source = *source_, fields, step](const Run& run) {
+            return source.read_the_rest(fields, step, run);
         };
         const bool has_boundary = active->boundary && active->boundary->is_there;
         if (some->bounds || has_boundary) {
@@ -439,16 +440,16 @@ Result<void> PictureSource::read_cells(const FieldsToRead& fields, std::size_t s
                 const auto& [x, y, z, far_x, far_y, far_z] = *some->bounds;
                 contents.bounds = {{x, y, z}, {far_x, far_y, far_z}};
             }
-            contents.all_cells = all;
+            contents.part = part_of(*some, job_.shade_by == ShadeBy::gradient, all);
             caller.detail(active->field.empty()
                               ? fmt::format("none of {} cells were kept: only the boundary is drawn", contents.cells)
                               : fmt::format("{} of {} cells were kept: the isovalues meet no others",
                                             contents.grid.cells.count(), contents.cells));
             return {};
         }
-        Result<Grid> whole = all(caller.run());
+        Result<ReadResult> whole = all(caller.run());
         if (!whole) return whole.error();
-        contents.grid = *std::move(whole);
+        contents.grid = std::move(whole->grid);
         contents.digests.clear();
         return {};
     }
@@ -614,7 +615,7 @@ Result<void> PictureSource::take_colors(const std::string& color, Contents& cont
     Result<ColorField> colors = colors_of(contents.grid, color, regions, job_, caller, all_values);
     if (!colors) return colors.error();
     contents.colors = *std::move(colors);
-    if (!contents.all_cells) return {};
+    if (!contents.part) return {};
     const bool of_cells = contents.colors->association == Association::cell;
     const Result<ColorOptions> options = options_of_colors(color, regions, job_, all_values);
     if (!options) return options.error();
@@ -630,13 +631,13 @@ Result<void> PictureSource::take_colors(const std::string& color, Contents& cont
         if (auto done = color_boundary(*contents.boundary, around, *walls, caller.run()); !done) return done;
     }
     if (!of_cells) return {};
-    contents.all_cells = [read = contents.all_cells, color, colors_in](const Run& run) -> Result<Grid> {
-        Result<Grid> grid = read(run);
-        if (!grid) return grid;
-        const Result<ColorField> found = colors_in(*grid, run);
+    contents.part->whole = [whole = contents.part->whole, color, colors_in](const Run& run) -> Result<ContourInput> {
+        Result<ContourInput> all = whole(run);
+        if (!all) return all;
+        const Result<ColorField> found = colors_in(all->grid, run);
         if (!found) return found.error();
-        grid->cell_fields = {{color, found->values}};
-        return grid;
+        all->cell_fields = {{color, found->values}};
+        return all;
     };
     return {};
 }
@@ -744,9 +745,8 @@ IsosurfaceOptions PictureSource::scene_options(Contents& contents, const std::ve
     IsosurfaceOptions options;
     if (contents.field) options.field = *contents.field;
     options.grid = std::exchange(contents.grid, {});
-    options.all_cells = contents.all_cells;
+    options.part = std::move(contents.part);
     options.bounds = contents.bounds;
-    options.has_cells_around = options.all_cells && job_.shade_by == ShadeBy::gradient;
     options.boundary = std::move(contents.boundary);
     options.packed = std::move(contents.packed);
     if (job_.sweep.empty() && !draws_volume(job_)) options.expected_isovalues = isovalues;
@@ -780,7 +780,7 @@ Result<DrawInput> PictureSource::read(std::size_t which, const std::optional<Dev
     if (auto found = find_sweep(*contents, caller); !found) return found.error();
     input.sweep = job_.sweep;
     const bool is_last = which + 1 == steps();
-    if (!is_last && caller.run().threads != 1 && !contents->all_cells && !contents->packed)
+    if (!is_last && caller.run().threads != 1 && !contents->part && !contents->packed)
         grids_->read_ahead(steps_[which + 1]);
     if (!is_last && contents->packed && fraction_ == 0) {
         const std::size_t next = steps_[which / each + 1];
