@@ -162,6 +162,10 @@ struct ContourOptions {
     /// What is packed has gradients and the cells of tets, so that normals and cell fields that are asked for later do not
     /// pack again: 4 bytes a point and 4 a tet.
     bool pack_all = false;
+    /// Contour::prepare() packs beside calls of other threads, which extract directly until it is done: the first surface
+    /// comes at once, the same triangles in the order of direct extraction. Another grid is extracted directly, too, until
+    /// prepare() packs it. For engines that extract directly and keep no grid, `method` not set.
+    bool extract_while_packing = false;
     /// As ExtractOptions::sink. What is not as the engine made it (source cells of cells that were made linear, vertices that were
     /// moved) is copied there.
     std::shared_ptr<SurfaceSink> sink = {};
@@ -206,8 +210,8 @@ struct ContourResult {
 /// Guarantees   the same calls give the same bytes, on every machine, for any thread count and on every engine, except
 ///              where a note says that another method was taken for want of memory
 /// Threads      extract() of many threads at once where nothing is to be packed and no device is used, else one call at
-///              a time: calls wait for each other. A call is stopped through its own Run::progress; a slider cancels
-///              the call for a stale isovalue and makes the next
+///              a time: calls wait for each other, but see ContourOptions::extract_while_packing. A call is stopped
+///              through its own Run::progress; a slider cancels the call for a stale isovalue and makes the next
 class ISOTET_API Contour {
 public:
     /// True where a session with these options has use for GridPart::whole: surfaces of the expected isovalues,
@@ -257,8 +261,10 @@ public:
                           const std::function<Result<void>(EngineGrid&, const ExtractOptions&)>& work,
                           const Run& run = {});
 
-    /// Packs now what the first extract() would pack; nothing where surfaces are extracted directly.
-    /// Errors   as pack()
+    /// Packs now what the first extract() would pack; nothing where surfaces are extracted directly. With
+    /// ContourOptions::extract_while_packing whatever the rule says, and what the session has when it is done: what set() has
+    /// changed meanwhile is packed after.
+    /// Errors   as pack(); the session goes on as before
     Result<void> prepare(const Run& run = {});
 
     /// The next call with so many isovalues extracts by this method, memory permitting.

@@ -123,8 +123,7 @@ Result<ContourUpdate> Contour::set(ContourInput given, const ContourOptions& opt
 Result<void> Contour::prepare(const Run& run) {
     return core::guarded("preparing to contour", [&]() -> Result<void> {
         if (!data_) return moved_from("the session");
-        const std::lock_guard lock(data_->mutex);
-        return data_->prepare(1, run);
+        return data_->pack_aside(run);
     });
 }
 
@@ -238,7 +237,7 @@ Result<ContourResult> Contour::extract(std::span<const double> isovalues, const 
             Result<std::optional<ContourResult>> found =
                 extract_directly(now.source.input(), now.options, isovalues, run);
             if (found && !*found) {
-                Result<session::Source> all = now.source.whole(now.options, run, told);
+                Result<session::Source> all = now.source.whole(now.options, now.source, run, told);
                 if (!all) return all.error();
                 now.source = *std::move(all);
                 if (auto ok = data.keep_all_cells(now.source, now.options, now.inputs); !ok) return ok.error();

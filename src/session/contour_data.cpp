@@ -42,6 +42,7 @@ Result<ContourUpdate> Contour::Data::set(ContourInput next, const ContourOptions
     if (options.engine != next_options.engine) state.forget_grid();
     state.fall_behind(update);
     options = next_options;
+    if (update == ContourUpdate::grid && packs_aside()) state.forget(); // what is extracted directly needs no room beside it
     source = *std::move(taken);
     told.add(std::move(news.notes));
     told.seconds += news.seconds;
@@ -60,7 +61,7 @@ Result<void> Contour::Data::get_cells_for(std::span<const double> isovalues, con
 
 Result<void> Contour::Data::get_all_cells(const Run& run) {
     if (!source.is_part()) return {};
-    Result<session::Source> all = source.whole(options, run, told);
+    Result<session::Source> all = source.whole(options, source, run, told);
     if (!all) return all.error();
     Result<FieldSample> sample = sample_of(*all, options);
     if (!sample) return sample.error();
@@ -85,6 +86,7 @@ Method Contour::Data::method_of_next(std::size_t isovalues) const {
     if (!options.engine->extracts_directly()) return Method::clusters;
     if (options.method) return *options.method;
     if (source.is_curved()) return Method::direct; // for a few isovalues
+    if (packs_aside() && !state.has_cells()) return Method::direct;
     if (direct_for_memory) return Method::direct;
     if (state.packed()) return Method::clusters;
     const std::uint64_t surfaces = options.surfaces ? options.surfaces : asked.surfaces + isovalues;
@@ -108,6 +110,49 @@ Result<void> Contour::Data::prepare(std::size_t isovalues, const Run& run) {
     told.notes.push_back(ready.error().message + ": surfaces are extracted directly instead");
     direct_for_memory = true;
     return {};
+}
+
+bool Contour::Data::packs_aside() const {
+    return options.extract_while_packing && !options.method && options.engine->extracts_directly() &&
+           options.engine->is_stateless() && !state.is_given();
+}
+
+/// Without the lock while it packs; again where another thread has set something else meanwhile.
+Result<void> Contour::Data::pack_aside(const Run& run) {
+    session::PackedState made;
+    session::Source known;
+    ContourOptions of_known;
+    for (;;) {
+        std::unique_lock lock(mutex);
+        if (!packs_aside() || state.has_cells() || source.is_curved()) return prepare(1, run);
+        session::Source all = source;
+        ContourOptions now = options;
+        const std::uint64_t inputs = asked.inputs;
+        lock.unlock();
+        session::Told news;
+        std::optional<FieldSample> sample;
+        if (all.is_part()) {
+            Result<session::Source> whole = all.whole(now, known, run, news);
+            if (!whole) return whole.error();
+            all = *std::move(whole);
+            Result<FieldSample> of_all = sample_of(all, now);
+            if (!of_all) return of_all.error();
+            sample = *std::move(of_all);
+        }
+        if (made.packed()) made.fall_behind(made.what_changed(all.input(), of_known, now, run));
+        if (auto ok = made.bring_up_to_date(all, now, run, news); !ok) return ok;
+        lock.lock();
+        if (asked.inputs == inputs) {
+            state = std::move(made);
+            source = std::move(all);
+            if (sample) look.sample = *std::move(sample);
+            told.add(std::move(news.notes));
+            told.seconds += news.seconds;
+            return {};
+        }
+        known = std::move(all);
+        of_known = std::move(now);
+    }
 }
 
 const FieldReport& Contour::Data::field_of_curved() {

@@ -40,6 +40,8 @@ struct Contour::Data {
     Result<void> keep_all_cells(const session::Source& all, const ContourOptions& of, std::uint64_t inputs);
     Method method_of_next(std::size_t isovalues) const;
     Result<void> prepare(std::size_t isovalues, const Run& run);
+    bool packs_aside() const;
+    Result<void> pack_aside(const Run& run);
     const FieldReport& field_of_curved();
 };
 

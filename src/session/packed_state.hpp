@@ -20,7 +20,8 @@ class PackedState {
 public:
     const std::optional<PackedGrid>& packed() const { return packed_; } ///< as it was last brought up to date
     bool is_current() const { return packed_ && behind_ == ContourUpdate::nothing; }
-    bool is_given() const { return is_given_; } ///< ContourInput::packed
+    bool has_cells() const { return packed_ && behind_ != ContourUpdate::grid; } ///< so that little is stored again
+    bool is_given() const { return is_given_; }                                  ///< ContourInput::packed
     bool has_grid() const { return grid_ != nullptr; }
     EngineGrid& grid() { return *grid_; } ///< of an engine that keeps one
 

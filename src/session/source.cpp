@@ -66,12 +66,12 @@ bool Source::suffices(std::span<const double> isovalues, const ContourOptions& o
     });
 }
 
-Result<Source> Source::whole(const ContourOptions& options, const Run& run, Told& told) const {
+Result<Source> Source::whole(const ContourOptions& options, const Source& known, const Run& run, Told& told) const {
     const core::Stopwatch time;
     Result<ContourInput> all = met_ ? Result<ContourInput>(met_.user()) : with_all_cells(input(), run);
     if (!all) return all.error();
     const double before = told.seconds;
-    Result<Source> source = take(*std::move(all), options, *this, true, run, told);
+    Result<Source> source = take(*std::move(all), options, known, true, run, told);
     told.seconds = before + time.seconds();
     return source;
 }

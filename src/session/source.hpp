@@ -57,9 +57,9 @@ public:
     /// Whether there are curved cells, and they were not refined for these.
     bool is_too_coarse(std::span<const double> isovalues) const { return curved_ && !curved_.is_good_for(isovalues); }
 
-    /// With all cells, of a part.
+    /// With all cells, of a part. `known`   as `before` of take()
     /// Errors   those of GridPart::whole; as take()
-    Result<Source> whole(const ContourOptions& options, const Run& run, Told& told) const;
+    Result<Source> whole(const ContourOptions& options, const Source& known, const Run& run, Told& told) const;
 
     /// Refines curved cells for these. What was refined before is given back first.
     /// Errors   as refine(): nothing is refined then

@@ -286,7 +286,7 @@ Result<void> GridView::show_grid(std::optional<std::uint64_t> wanted, const std:
     }
     if (other_cells) {
         cells_ = cells;
-        direct_.contour.reset();
+        chosen_.contour.reset();
         solids_.reset();
         scene_.reset();
         spectrum_.reset();
@@ -335,7 +335,22 @@ Result<void> GridView::tell_field(const std::string& field, FrameFacts& facts, c
     return {};
 }
 
-Result<void> GridView::pack(const std::string& field, const Run& run) {
+/// The session of all cells; with `field` where there is none yet.
+Result<std::shared_ptr<Contour>> GridView::session_to_pack(const Grid& grid, const std::string& field, std::size_t step,
+                                                           const std::vector<double>& isovalues, const Run& run) {
+    const std::lock_guard lock(session_mutex_);
+    if (session_.contour) return session_.contour;
+    Result<PointField> contoured = find_field(grid, field, {}, run);
+    if (!contoured) return contoured.error();
+    if (auto set = set_source(session_, {grid, *std::move(contoured), {}, {}}, isovalues, run); !set)
+        return set.error();
+    session_.field = field;
+    session_.color_by.clear();
+    session_.step = step;
+    return session_.contour;
+}
+
+Result<void> GridView::pack(const std::string& field, const Run& run, const std::vector<double>& isovalues) {
     if (is_of_file()) return {};
     // The cache of fields is frame()'s: this thread finds its own, in a copy that shares the arrays.
     std::unique_lock lock(grid_mutex_);
@@ -344,21 +359,18 @@ Result<void> GridView::pack(const std::string& field, const Run& run) {
     if (all_cells_) grid.cells = *all_cells_;
     lock.unlock();
     if (has_only_flat_cells(grid.cells)) return {};
-    Result<PointField> contoured = find_field(grid, field, {}, run);
-    if (!contoured) return contoured.error();
-    ContourOptions options;
-    options.method = Method::clusters;
-    options.engine = options_.engine;
-    options.source_cells = !grid.cell_fields.empty();
-    const bool lean = may_release_cells(grid);
-    options.source_cells |= lean; // for picks
-    Result<Contour> contour = Contour::create({grid, *contoured, {}, {}}, options);
-    if (!contour) return contour.error();
-    if (Result<void> ready = contour->prepare(run); !ready) return ready;
-    if (lean) lean_.emplace(*contour->packed(), *std::move(contoured), options_.engine);
-    else packed_.contour = *std::move(contour);
-    packed_.field = field;
-    packed_.step = step;
+    const auto session = session_to_pack(grid, field, step, isovalues, run);
+    if (!session) return session.error();
+    std::optional<PackedGrid> packed;
+    while (!packed) { // another field may come in between
+        if (Result<void> ready = (*session)->prepare(run); !ready) return ready;
+        packed = (*session)->packed();
+    }
+    if (may_release_cells(grid)) {
+        Result<PointField> contoured = find_field(grid, packed->field().name, {}, run);
+        if (!contoured) return contoured.error();
+        lean_.emplace(*packed, *std::move(contoured), options_.engine);
+    }
     is_packed_.store(true, std::memory_order_release);
     return {};
 }
@@ -367,8 +379,6 @@ Result<void> GridView::take_packed(const PackedGrid& packed, const std::string& 
     Result<PointField> contoured = field_of(field, run);
     if (!contoured) return contoured.error();
     lean_.emplace(packed, *std::move(contoured), options_.engine);
-    packed_.field = field;
-    packed_.step = step_;
     is_packed_.store(true, std::memory_order_release);
     return {};
 }
@@ -420,7 +430,7 @@ void GridView::rest() {
     if (uses_packed() && lean_ && has_cells_ && !solids_) {
         if (!sample_) sample_ = sample_of_cells(grid_);
         if (!cells_sum_) cells_sum_ = sum_of(grid_.cells);
-        direct_.contour.reset();
+        session_.contour.reset();
         const std::lock_guard lock(grid_mutex_);
         grid_.cells = {};
         if (is_of_file()) grid_.cell_fields = cell_fields_of_file(step_);
@@ -445,30 +455,39 @@ Result<ExtractOptions> GridView::carried_fields(const std::string& color_by, con
     return options;
 }
 
+Result<void> GridView::set_source(Source& source, ContourInput input, const std::vector<double>& isovalues,
+                                  const Run& run) {
+    ContourOptions options;
+    options.engine = options_.engine;
+    options.extract_while_packing = true;
+    options.source_cells = !input.grid.cell_fields.empty() || may_release_cells(input.grid); // for colours and picks
+    options.expected_isovalues = isovalues; // making all polyhedra linear takes longer than these surfaces
+    options.surfaces = isovalues.size();
+    const std::uint64_t cells = input.grid.cells.count();
+    if (source.contour) {
+        const Result<ContourUpdate> update = source.contour->set(std::move(input), options, run);
+        if (!update) return update.error();
+    } else {
+        Result<Contour> contour = Contour::create(std::move(input), options, run);
+        if (!contour) return contour.error();
+        source.contour = std::make_shared<Contour>(*std::move(contour));
+    }
+    const auto linear = source.contour->linear_grid();
+    source.isovalues = linear && linear->grid.cells.count() < cells ? isovalues : std::vector<double>();
+    return {};
+}
+
 Result<GridView::Source*> GridView::source_for(const ViewState& state, const Run& run) {
-    const bool packed = uses_packed();
-    Source& source = packed ? packed_ : direct_;
-    if (packed) direct_.contour.reset();
-    if (!source.isovalues.empty() && source.isovalues != state.isovalues) source.contour.reset();
-    if (source.contour && source.field == state.field && source.color_by == state.color_by && source.step == step_)
+    std::unique_lock lock(session_mutex_, std::defer_lock);
+    if (cells_.empty() && !uses_packed()) lock.lock();
+    Source& source = cells_.empty() ? session_ : chosen_;
+    const bool is_for_these = source.isovalues.empty() || source.isovalues == state.isovalues;
+    if (source.contour && source.field == state.field && source.color_by == state.color_by && source.step == step_ &&
+        is_for_these)
         return &source;
     Result<ContourInput> input = input_of(state.field, state.color_by, run);
     if (!input) return input.error();
-    if (source.contour) {
-        const Result<ContourUpdate> update = source.contour->set(*std::move(input), run);
-        if (!update) return update.error();
-    } else {
-        ContourOptions options;
-        options.method = Method::direct;
-        options.expected_isovalues = state.isovalues; // making all polyhedra linear takes longer than these surfaces
-        options.surfaces = state.isovalues.size();
-        Result<Contour> contour = Contour::create(*std::move(input), options);
-        if (!contour) return contour.error();
-        source.contour = *std::move(contour);
-        source.isovalues.clear();
-        const auto linear = source.contour->linear_grid();
-        if (linear && linear->grid.cells.count() < grid_.cells.count()) source.isovalues = state.isovalues;
-    }
+    if (auto set = set_source(source, *std::move(input), state.isovalues, run); !set) return set.error();
     source.field = state.field;
     source.color_by = state.color_by;
     source.step = step_;
@@ -486,7 +505,7 @@ Result<Chart> GridView::chart(const std::string& field, std::optional<std::uint6
     if (uses_packed() && has_cells_to_linearize(grid_.cells)) { // the linear ones are known
         ViewState state;
         state.field = field;
-        state.color_by = packed_.color_by;
+        state.color_by = session_.color_by;
         const Result<Source*> source = source_for(state, run);
         if (!source) return source.error();
         const auto expected = [&](double isovalue) {

@@ -86,9 +86,11 @@ public:
     /// Whether ShowMessage::refined makes a difference.
     bool refines() const { return options_.refine && has_curved_cells(grid_.cells); }
 
-    /// Packs the grid for `field`. frame() extracts directly until then, and from the packed grid afterwards.
-    /// Errors   as Contour::prepare(); frame() then goes on directly
-    Result<void> pack(const std::string& field, const Run& run);
+    /// Packs the grid, for the field that frame() was asked for last, else `field`. frame() extracts directly until then, and
+    /// from the packed grid afterwards.
+    /// `isovalues`   that are shown first
+    /// Errors   as find_field() and Contour::prepare(); frame() then goes on directly
+    Result<void> pack(const std::string& field, const Run& run, const std::vector<double>& isovalues = {});
 
     /// Whether the grid lies in a packed file: pack() does nothing then.
     bool is_of_file() const noexcept { return options_.packed.has_value(); }
@@ -152,9 +154,9 @@ private:
         std::shared_ptr<const Mesh> mesh;
         std::optional<double> field_bound; ///< where cells were refined
     };
-    /// The session that surfaces come from, and what it was set to.
+    /// A session that surfaces come from, and what it was set to.
     struct Source {
-        std::optional<Contour> contour;
+        std::shared_ptr<Contour> contour;
         std::string field, color_by;
         std::size_t step = 0;
         std::vector<double> isovalues = {}; ///< that `contour` is for, where it has only polyhedra that these meet
@@ -193,6 +195,9 @@ private:
     Result<ContourInput> input_of(const std::string& field, const std::string& color_by, const Run& run);
     Result<std::optional<ColorScale>> scale_of(const ViewState& state, const Run& run);
     Result<Source*> source_for(const ViewState& state, const Run& run);
+    Result<void> set_source(Source& source, ContourInput input, const std::vector<double>& isovalues, const Run& run);
+    Result<std::shared_ptr<Contour>> session_to_pack(const Grid& grid, const std::string& field, std::size_t step,
+                                                     const std::vector<double>& isovalues, const Run& run);
     Result<Frame> picture_frame(const ShowMessage& message, double wait_seconds, std::vector<std::string>& known,
                                 const Run& run);
     Result<void> make_scene(const ShowMessage& message, const std::optional<ColorScale>& scale, const Run& run);
@@ -239,7 +244,7 @@ private:
     std::uint64_t cell_count_ = 0;
     std::optional<Solids> solids_; ///< of solids_key_, while solids are shown
     std::string solids_key_;
-    std::optional<PackedSource> lean_;       ///< instead of packed_, where cells may be released
+    std::optional<PackedSource> lean_;       ///< instead of session_, where cells may be released
     std::optional<CellSample> sample_;       ///< of the cells that were released
     std::optional<std::uint64_t> cells_sum_; ///< of these, to know them again
     GridViewOptions options_;
@@ -247,7 +252,9 @@ private:
     Box bounds_;
     std::map<std::string, PointField> found_; ///< fields that were asked for
     std::vector<Kept> kept_;                  ///< of the last frame
-    Source direct_, packed_;
+    std::mutex session_mutex_;
+    Source session_; ///< of all cells: pack() packs it beside frame(); session_mutex_ guards it until then
+    Source chosen_;  ///< of `cells_`
     std::atomic<bool> is_packed_{false};
     std::size_t step_ = 0; ///< that grid_ is
     std::unique_ptr<StepReader> steps_;

@@ -263,7 +263,7 @@ Result<void> GridView::add_isosurfaces(const ShowMessage& message, const std::ve
         making.facts.method = name_of(packed ? Method::clusters : Method::direct);
         return {};
     }
-    if (lean) direct_.contour.reset();
+    if (lean) session_.contour.reset();
     if (!state.solid) solids_.reset();
     Result<Source*> source = lean || state.solid ? Result<Source*>(nullptr) : source_for(state, run);
     if (!source) return source.error();

@@ -4,8 +4,10 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <numeric>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -108,6 +110,71 @@ TEST(Contour, KnowsFromTheStartHowManySurfacesWillBeAskedFor) {
     EXPECT_EQ(few.method(1000), Method::direct);
     Contour shaded = Contour::create(input_of(grid), {.surfaces = 4, .normals = Normals::gradient}).value();
     EXPECT_EQ(shaded.method(), Method::clusters);
+}
+
+/// Prepares the session, with `meanwhile` on another thread once packing has begun.
+void prepare_beside(Contour& contour, const std::function<void()>& meanwhile) {
+    std::atomic<bool> done{false};
+    Run run;
+    run.progress.report = [&](std::string_view, double) {
+        if (!done.exchange(true)) std::thread(meanwhile).join();
+    };
+    const Result<void> ready = contour.prepare(run);
+    ASSERT_TRUE(ready) << ready.error().message;
+    ASSERT_TRUE(done) << "nothing was packed";
+}
+
+TEST(Contour, ExtractsDirectlyWhileItPacks) {
+    const Grid grid = kuhn(16);
+    Contour contour = Contour::create(input_of(grid), {.surfaces = 100, .extract_while_packing = true}).value();
+    prepare_beside(contour, [&] {
+        const ContourResult result = contour.extract(0.1).value();
+        EXPECT_EQ(result.method, Method::direct);
+        EXPECT_EQ(bytes_of(result.surfaces[0].surface), direct_bytes(grid, 0, 0.1));
+    });
+    const ContourResult result = contour.extract(0.1).value();
+    EXPECT_EQ(result.method, Method::clusters);
+    EXPECT_EQ(bytes_of(result.surfaces[0].surface), packed_bytes(grid, 0, 0.1));
+}
+
+TEST(Contour, PacksWhatWasSetWhileItPacked) {
+    const Grid grid = kuhn(16), other = kuhn(11);
+    const ContourOptions options{.extract_while_packing = true};
+    for (const ContourInput& next : {input_of(grid, 1), input_of(other, 1)}) {
+        Contour contour = Contour::create(input_of(grid), options).value();
+        prepare_beside(contour, [&] {
+            ASSERT_TRUE(contour.set(next));
+            EXPECT_EQ(bytes_of(contour.extract(0.4).value().surfaces[0].surface), direct_bytes(next.grid, 1, 0.4));
+        });
+        const ContourResult result = contour.extract(0.4).value();
+        EXPECT_EQ(result.method, Method::clusters);
+        EXPECT_EQ(bytes_of(result.surfaces[0].surface), packed_bytes(next.grid, 1, 0.4));
+        ASSERT_TRUE(contour.set(input_of(other))) << "another grid is not packed before prepare() is called";
+        EXPECT_EQ(contour.extract(0.1).value().method,
+                  next.grid.points.data() == other.points.data() ? Method::clusters : Method::direct);
+        ASSERT_TRUE(contour.prepare());
+        EXPECT_EQ(bytes_of(contour.extract(0.1).value().surfaces[0].surface), packed_bytes(other, 0, 0.1));
+    }
+}
+
+TEST(Contour, PacksAllPolyhedraWhileItHasThoseThatIsovaluesMeet) {
+    const Grid grid = make_grid({.shape = "kelvin", .side = 6, .fields = {"gyroid", "sphere"}}).value();
+    ContourOptions options{.surfaces = 1, .source_cells = true, .expected_isovalues = {0.1}};
+    options.extract_while_packing = true;
+    Contour contour = Contour::create(input_of(grid), options).value();
+    const std::uint64_t met = contour.linear_grid()->grid.cells.count();
+    const auto bytes_by = [&](Method method, double isovalue) {
+        Contour one = Contour::create(input_of(grid), {.method = method, .source_cells = true}).value();
+        return bytes_of(one.extract(isovalue).value().surfaces[0].surface);
+    };
+    prepare_beside(contour, [&] {
+        options.expected_isovalues = {0.3};
+        ASSERT_TRUE(contour.set(input_of(grid), options));
+        EXPECT_EQ(bytes_of(contour.extract(0.3).value().surfaces[0].surface), bytes_by(Method::direct, 0.3));
+    });
+    EXPECT_LT(met, contour.linear_grid()->grid.cells.count());
+    EXPECT_EQ(contour.method(), Method::clusters);
+    EXPECT_EQ(bytes_of(contour.extract(0.7).value().surfaces[0].surface), bytes_by(Method::clusters, 0.7));
 }
 
 TEST(Contour, TakesTheMethodThatIsAskedFor) {

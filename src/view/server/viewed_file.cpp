@@ -171,7 +171,7 @@ void ViewedFile::read_and_pack() {
     for (const bool boundary : {!input->state.isosurfaces, input->state.isosurfaces}) { // what is seen first
         tell_progress(boundary ? "boundary" : "pack", 0);
         if (boundary) found = view_->find_boundary(run);
-        else packed = view_->pack(input->state.field, run);
+        else packed = view_->pack(input->state.field, run, input->state.isovalues);
     }
     worker_->start_background();
     if (!packed) return tell_progress("not packed: " + packed.error().message, 1);
