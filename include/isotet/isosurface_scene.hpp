@@ -147,22 +147,20 @@ struct PackedScene {
 
 /// A grid to contour, and how.
 struct IsosurfaceOptions {
-    Grid grid;                    ///< its own fields are not looked at
-    PointField field;             ///< without values: nothing is contoured, show() takes no isovalues
-    std::uint64_t surfaces = 1;   ///< how many isovalues will be shown, as ContourOptions::surfaces
-    std::optional<Method> method; ///< as ContourOptions::method
+    Grid grid;        ///< its own fields are not looked at
+    PointField field; ///< without values: nothing is contoured, show() takes no isovalues
+    /// Of these method, surfaces, split cells, expected isovalues and refinement are taken; a device takes curved cells split at
+    /// their nodes.
+    ContourOptions contour{.surfaces = 1};
     ExtractOn where = ExtractOn::best;
     std::optional<DrawMethod> draw;                  ///< tets are drawn by this method instead, and no surface is made
     SearchIndex index = SearchIndex::cluster_ranges; ///< that finds the tets to draw
-    PictureOptions picture;                   ///< of the pictures to come: `draw` leaves device memory free for them
-    bool split_cells = false;                 ///< as PackOptions::split_cells
-    std::optional<RefineOptions> refine = {}; ///< as ContourOptions::refine; a device takes cells split at their nodes
-    /// As ContourInput::part; where cells colour, `whole` gives the values of all of them. Where cells are missing, no slices are
-    /// drawn, of boundaries only `boundary`, with its colours, and all is as large as it or the bounds.
+    PictureOptions picture; ///< of the pictures to come: `draw` leaves device memory free for them
+    /// As ContourInput::part; where cells colour, `whole` gives the values of all of them. Where cells are missing, no slices
+    /// are drawn, of boundaries only `boundary`, with its colours, and all is as large as it or the bounds.
     std::optional<GridPart> part = {};
-    std::vector<double> expected_isovalues = {}; ///< the first that are shown
-    Box bounds = {};                             ///< of the points that any cell has; with `packed`, too
-    std::optional<Surface> boundary = {};        ///< of all cells, where it is known
+    Box bounds = {};                      ///< of the points that any cell has; with `packed`, too
+    std::optional<Surface> boundary = {}; ///< of all cells, where it is known
     /// In place of `grid` and `field`. The CPU extracts; there are no solids, and cells colour isosurfaces and slices
     /// only, of a grid that was packed with source cells.
     std::optional<PackedScene> packed = {};

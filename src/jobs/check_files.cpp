@@ -122,10 +122,10 @@ bool names_isovalues(const CheckJob& job) { return !job.isovalues.empty() || !jo
 
 /// The grid with its curved cells refined as for the surface, where they were.
 Result<Origin> refined_origin(Origin origin, const CheckJob& job, const SurfaceFile& file, const Run& run) {
-    if (!job.refine || !origin.field || !has_curved_cells(origin.grid.cells)) return origin;
+    if (!job.contour.refine || !origin.field || !has_curved_cells(origin.grid.cells)) return origin;
     const std::optional<RefineOptions> recorded = find_refinement_record(file.field_data);
     if (origin.field->averaged && !job.refine_averaged && !recorded) return origin;
-    RefineOptions options = recorded && is_default(*job.refine) ? *recorded : *job.refine;
+    RefineOptions options = recorded && is_default(*job.contour.refine) ? *recorded : *job.contour.refine;
     if (names_isovalues(job)) {
         const auto found = isovalues_at(origin.grid, *origin.field, job.shares, run);
         if (!found) return found.error();
@@ -229,7 +229,7 @@ Result<CheckedFiles> check_files(const CheckJob& job, Caller& caller) {
         if (!read) return read.error();
         origin = *std::move(read);
         options.grid = &origin->grid;
-        options.split_cells = job.split_cells;
+        options.split_cells = job.contour.split_cells;
         if (origin->field) options.field = &*origin->field;
     }
     Result<SurfaceReport> report = check(file->surface, options, caller.run());

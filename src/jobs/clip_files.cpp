@@ -88,14 +88,10 @@ Result<void> ClipRun::plan() {
 }
 
 ContourOptions ClipRun::options() const {
-    ContourOptions out;
-    out.method = job_.method;
+    ContourOptions out = job_.contour;
     out.surfaces = plan_.steps.size();
-    out.precision = job_.precision;
-    out.edge_ends = job_.edge_ends;
     out.source_cells = true;
-    out.split_cells = job_.split_cells;
-    if (refines_) out.refine = job_.refine;
+    if (!refines_) out.refine.reset();
     return out;
 }
 

@@ -127,7 +127,7 @@ Result<void> ExtractRun::open_device() {
         return refusal("a device is asked for, but only `engine` vulkan and auto use one");
     const bool wanted = required || (!job_.device.name.empty() && job_.device.name != "none");
     if (!wanted) return {};
-    if (job_.method == Method::direct)
+    if (job_.contour.method == Method::direct)
         return refusal("`method` direct was asked for, but devices take packed grids only: clusters");
     if (job_.device.name == "none") return refusal("`engine` vulkan needs a device, but `device` is none");
     Result<std::optional<Device>> device = jobs::open_device(job_.device, caller_);
@@ -156,7 +156,7 @@ Result<void> ExtractRun::open() {
     if (!source) return source.error();
     source_ = *std::move(source);
     if (job_.solid) source_->require_beside({"finding the boundary", 9});
-    else if (job_.method == Method::clusters && !job_.piece) source_->require_beside({"packing", 38});
+    else if (job_.contour.method == Method::clusters && !job_.piece) source_->require_beside({"packing", 38});
     if (auto paths = check_output_paths(source_->info().files, with_others(job_, fixed_name ? job_.out : "")); !paths)
         return paths;
     Result<ExtractPlan> plan = plan_extract(job_, *source_, caller_);
@@ -204,7 +204,7 @@ Result<Contour> ExtractRun::start(ContourInput input) {
 
 /// The piece, and the frame of the whole.
 Result<void> ExtractRun::take_piece_of(ContourInput& input) {
-    Result<FramedPiece> piece = take_piece(input, *job_.piece, {job_.split_cells}, caller_.run());
+    Result<FramedPiece> piece = take_piece(input, *job_.piece, {job_.contour.split_cells}, caller_.run());
     if (!piece) return piece.error();
     plan_.contour.frame = piece->frame;
     first_cell_ = piece->first_cell;
@@ -217,7 +217,7 @@ Result<void> ExtractRun::take_piece_of(ContourInput& input) {
 
 /// The frame of the whole, and which of its cells are of other pieces.
 Result<void> ExtractRun::mark_other_pieces(const ContourInput& input) {
-    Result<FramedPiece> piece = take_piece(input, *job_.piece, {job_.split_cells}, caller_.run());
+    Result<FramedPiece> piece = take_piece(input, *job_.piece, {job_.contour.split_cells}, caller_.run());
     if (!piece) return piece.error();
     plan_.contour.frame = piece->frame;
     const std::size_t first = piece->first_cell, count = piece->input.grid.cells.count();
@@ -381,9 +381,10 @@ Result<void> ExtractRun::prepare_and_look(std::size_t step) {
 
 /// Whether a packed grid does not do.
 bool ExtractRun::reworks_cells() const {
-    return job_.piece || job_.solid || plan_.touched || job_.volumes || !job_.shares.empty() || job_.exact_vertices ||
-           job_.split_cells || job_.grid.merge_points || !job_.grid.displace.empty() || !job_.grid.cells.empty() ||
-           job_.method == Method::direct || job_.engine == EngineChoice::reference;
+    return job_.piece || job_.solid || plan_.touched || job_.volumes || !job_.shares.empty() ||
+           job_.contour.exact_vertices || job_.contour.split_cells || job_.grid.merge_points ||
+           !job_.grid.displace.empty() || !job_.grid.cells.empty() || job_.contour.method == Method::direct ||
+           job_.engine == EngineChoice::reference;
 }
 
 /// Opens the grid as a packed file, where surfaces as the job asks for them come from its chunks.
@@ -399,7 +400,7 @@ Result<void> ExtractRun::open_packed() {
     Result<PackedFile> file = PackedFile::open(job_.grid.file, {job_.memory.value_or(0)}, caller_.run());
     if (!file) return file.error();
     const PackedFileInfo& info = file->info();
-    const bool needs_gradients = job_.normals == Normals::gradient;
+    const bool needs_gradients = job_.contour.normals == Normals::gradient;
     const auto has_field = [&](const PackedFieldInfo& field) {
         if (job_.field.shape) return !needs_gradients;
         return field.report.name == plan_.field.name && (!needs_gradients || field.gradients);
@@ -407,7 +408,8 @@ Result<void> ExtractRun::open_packed() {
     const auto is_packed = [&](const FoundField& component) {
         return std::ranges::any_of(info.fields, [&](const auto& field) { return field.report.name == component.name; });
     };
-    const bool has_all = std::ranges::any_of(info.fields, has_field) && (!job_.source_cells || info.source_cells) &&
+    const bool has_all = std::ranges::any_of(info.fields, has_field) &&
+                         (!job_.contour.source_cells || info.source_cells) &&
                          (!plan_.carried || std::ranges::all_of(plan_.carried->components, is_packed)) && !plan_.color;
     if (reworks_cells() || !has_all) {
         caller_.note(note_of_unpacking(info));

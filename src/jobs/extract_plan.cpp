@@ -37,12 +37,12 @@ Result<Holds> holds(const ExtractJob& job) {
     if (!format) return format.error();
     const bool vtk = format->name == "vtp" || format->name == "vtk";
     for (const auto& [asked, option] :
-         {std::pair{job.edge_ends, "`edge_ends`"}, {job.source_cells, "`source_cells`"}}) {
+         {std::pair{job.contour.edge_ends, "`edge_ends`"}, {job.contour.source_cells, "`source_cells`"}}) {
         if (asked && !vtk) {
             return refusal("{} was asked for, but {} holds no such array: .vtp and .vtk do", option, format->name);
         }
     }
-    if (job.reduce && (job.edge_ends || job.source_cells))
+    if (job.reduce && (job.contour.edge_ends || job.contour.source_cells))
         return refusal("`reduce` was asked for, which leaves no `edge_ends` and `source_cells`: they belong to the "
                        "triangles of an isosurface as it is cut");
     const bool colored = vtk || format->name == "glb" || format->name == "ply" || format->name == "usda";
@@ -115,17 +115,9 @@ std::optional<ReadActiveCells> plan_active_cells(const ExtractJob& job, const Ex
 
 /// `steps`   how many of them
 ContourOptions contour_options_of(const ExtractJob& job, std::size_t steps) {
-    ContourOptions options;
-    options.method = job.method;
+    ContourOptions options = job.contour;
     if (job.engine == EngineChoice::reference) options.engine = reference_engine();
-    options.precision = job.precision;
     options.ties = job.keep_degenerate ? Ties::keep : Ties::merge;
-    options.normals = job.normals;
-    options.edge_ends = job.edge_ends;
-    options.source_cells = job.source_cells;
-    options.split_cells = job.split_cells;
-    options.refine = job.refine;
-    options.exact_vertices = job.exact_vertices;
     const std::size_t named = job.isovalues.size() + job.shares.size();
     const std::size_t isovalues = named == 0 ? std::max<std::uint64_t>(job.levels, 1) : named;
     options.surfaces = isovalues * steps;
@@ -142,9 +134,9 @@ bool uses_device(const ExtractJob& job) {
 /// What does not go together with solids.
 Result<void> check_solid(const ExtractJob& job) {
     if (!job.solid) return {};
-    for (const auto& [asked, option] : {std::pair{job.exact_vertices, "`exact_vertices`"},
+    for (const auto& [asked, option] : {std::pair{job.contour.exact_vertices, "`exact_vertices`"},
                                         {job.keep_degenerate, "`keep_degenerate`"},
-                                        {job.normals == Normals::gradient, "`normals` gradient"},
+                                        {job.contour.normals == Normals::gradient, "`normals` gradient"},
                                         {uses_device(job), "a device"}})
         if (asked) return refusal("`solid` was asked for, which does not go with {}", option);
     if (job.solid->kind == SolidChoice::Kind::between && names_isovalues(job))
@@ -445,10 +437,10 @@ Estimate predict(const ExtractJob& job, const ExtractPlan& plan, const FieldSamp
     work.points = sample.points();
     work.tets = static_cast<std::uint64_t>(static_cast<double>(sample.tets()) / (kept > 0 ? kept : 1));
     work.surfaces = static_cast<double>(isovalues.size() * plan.steps.size());
-    work.gradients = job.normals == Normals::gradient;
+    work.gradients = job.contour.normals == Normals::gradient;
     work.find_range = !names_isovalues(job) || job.levels > 0;
     work.triangles = all / static_cast<double>(isovalues.size());
-    return estimate(method_for(isovalues.size() * plan.steps.size(), work.gradients, job.method), work);
+    return estimate(method_for(isovalues.size() * plan.steps.size(), work.gradients, job.contour.method), work);
 }
 
 std::vector<std::string> with_others(const ExtractJob& job, const std::string& output) {

@@ -153,9 +153,9 @@ Result<void> PackRun::look_at_file() {
     const Result<PackedFile> file = PackedFile::open(job_.out, {}, caller_.run());
     if (!file) return file.error();
     const PackedFileInfo& info = file->info();
-    job_.precision = info.precision;
-    job_.source_cells = info.source_cells;
-    job_.gradients = info.fields.back().gradients;
+    job_.pack.precision = info.precision;
+    job_.pack.source_cells = info.source_cells;
+    job_.pack.gradients = info.fields.back().gradients;
     for (const PackedCellFieldInfo& field : info.cell_fields)
         for (auto* const names : {&job_.cell_fields, &written_cell_fields_}) add_names(*names, {field.name});
     if (!job_.fields.empty()) return {};
@@ -229,7 +229,7 @@ Result<void> PackRun::choose_cell_fields() {
             return refusal("`cell_fields` got '{}', but whole cell fields are packed: {}", name, quoted_list(known));
         add_names(job_.cell_fields, {name});
     }
-    job_.source_cells = true;
+    job_.pack.source_cells = true;
     return {};
 }
 
@@ -257,17 +257,17 @@ Result<void> PackRun::choose_names() {
 Result<PackedGrid> PackRun::packed_with(const Grid& grid, PointField field, std::size_t step) {
     ContourOptions options;
     options.method = Method::clusters;
-    options.precision = job_.precision;
-    options.source_cells = job_.source_cells;
-    options.split_cells = job_.split_cells;
-    options.normals = job_.gradients ? Normals::gradient : Normals::none;
+    options.precision = job_.pack.precision;
+    options.source_cells = job_.pack.source_cells;
+    options.split_cells = job_.pack.split_cells;
+    options.normals = job_.pack.gradients ? Normals::gradient : Normals::none;
     ContourInput input{grid, std::move(field), {}, {}};
     if (!contour_) {
         Result<Contour> started = Contour::create(std::move(input), options, caller_.run());
         if (!started) return started.error();
         contour_ = *std::move(started);
         if (const auto linear = contour_->linear_grid()) numbers_.curved_cells = linear->refinement.curved_cells;
-        if (contour_->linear_grid() && job_.source_cells)
+        if (contour_->linear_grid() && job_.pack.source_cells)
             return refusal(
                 "`source_cells` of polyhedra and quadratic cells are not kept in packed files: these cells are "
                 "split first");

@@ -35,7 +35,11 @@ Result<IsosurfaceScene> IsosurfaceScene::create(const std::optional<Device>& dev
         } else if (!(options.part && options.part->whole))
             if (auto looked = data->look_around(options.grid, options.known_boundary.get(), run); !looked)
                 return looked.error();
-        const IsosurfaceOptions tets{{}, {}, 1, {}, ExtractOn::cpu, options.draw, options.index, options.picture};
+        IsosurfaceOptions tets;
+        tets.where = ExtractOn::cpu;
+        tets.draw = options.draw;
+        tets.index = options.index;
+        tets.picture = options.picture;
         if (!options.field.values.empty())
             if (auto started = data->start(std::move(options), run); !started) return started.error();
         if (tets.draw)

@@ -29,26 +29,26 @@ Result<void> IsosurfaceScene::Data::start(IsosurfaceOptions wanted, const Run& r
     const bool by_gradient = look.shade_by == ShadeBy::gradient && !look.solid;
     options.normals =
         by_gradient || wanted.draw || wanted.where == ExtractOn::device ? Normals::gradient : Normals::none;
-    options.method = wanted.draw || look.volume ? Method::clusters : wanted.method;
-    options.surfaces = wanted.surfaces;
+    options.method = wanted.draw || look.volume ? Method::clusters : wanted.contour.method;
+    options.surfaces = wanted.contour.surfaces;
     const bool by_cells = look.colors && look.colors->association == Association::cell;
     const bool by_points = look.colors && !by_cells;
     ContourInput plain{std::move(wanted.grid), std::move(wanted.field), {}, {}, std::move(wanted.part)},
         carrying = plain;
     if (by_points) carrying.point_fields.push_back({look.colors->name, look.colors->values});
     if (by_cells) carrying.cell_fields.push_back({look.colors->name, look.colors->values});
-    options.expected_isovalues = wanted.expected_isovalues;
+    options.expected_isovalues = wanted.contour.expected_isovalues;
     required = wanted.where == ExtractOn::device;
     if (!device && (required || wanted.draw))
         return invalid_argument("a scene without a device, but it is to extract, or to draw tets, on one");
-    options.split_cells = wanted.split_cells || wanted.draw;
+    options.split_cells = wanted.contour.split_cells || wanted.draw;
     const bool in_memory = // surfaces are worked on
         !look.clips.empty() || look.shade_by == ShadeBy::vertices || draws_surface_edges() || look.keep;
     const bool card = device && device->info().kind != DeviceKind::software &&
                       method_for(options.surfaces, true, options.method) == Method::clusters;
     const bool use_device =
         !wanted.draw && (required || (card && !in_memory && !look.solid && wanted.where == ExtractOn::best));
-    if (!use_device && !wanted.draw && !look.volume) options.refine = wanted.refine;
+    if (!use_device && !wanted.draw && !look.volume) options.refine = wanted.contour.refine;
     if (use_device) {
         options.engine = vulkan_engine(*device);
         options.engine_required = required;

@@ -66,7 +66,7 @@ Result<void> GridView::make_scene(const ShowMessage& message, const std::optiona
     if (!scene_ || scene_key_ != key) {
         scene_.reset();
         IsosurfaceOptions options;
-        options.surfaces = isovalues.size();
+        options.contour.surfaces = isovalues.size();
         options.where = ExtractOn::cpu;
         const bool from_file = draws_from_file(state), colored = scale && !state.color_by.empty();
         if (from_file) {

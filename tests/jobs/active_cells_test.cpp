@@ -91,7 +91,7 @@ TEST(ActiveCellsOfFiles, GiveTheFileOfAllCells) {
             ASSERT_TRUE(write_grid(grid, file));
             ExtractJob job = active_job(file, folder.file("active.vtp"));
             job.keep_degenerate = degenerate;
-            job.edge_ends = degenerate;
+            job.contour.edge_ends = degenerate;
             Listener listener;
             const ExtractNumbers numbers = extract_files(job, listener).value();
             EXPECT_EQ(numbers.cells, grid.cells.count());
@@ -124,9 +124,9 @@ TEST(ActiveCellsOfFiles, MayBeThoseOfARegion) {
                 ASSERT_TRUE(write_grid(grid, file));
                 ExtractJob job = active_job(file, folder.file("active.vtp"));
                 job.grid.cells = choice;
-                job.source_cells = job.edge_ends = true;
+                job.contour.source_cells = job.contour.edge_ends = true;
                 job.with = std::vector<std::string>{"integer", "part"};
-                job.normals = choice.size() == 1 ? Normals::none : Normals::gradient;
+                job.contour.normals = choice.size() == 1 ? Normals::none : Normals::gradient;
                 Listener listener, other;
                 const ExtractNumbers some = extract_files(job, listener).value();
                 const bool streams = shape != std::string("mixed") || ending != std::string(".vtk");
@@ -162,7 +162,7 @@ TEST(ActiveCellsOfFiles, AreOfCellFieldsThatAreAveraged) {
                 ExtractJob job = active_job(file, folder.file("active.vtp"));
                 job.field.name = field;
                 job.isovalues = {0.5, 0.9};
-                if (std::string(ending) == ".vtk") job.normals = Normals::gradient;
+                if (std::string(ending) == ".vtk") job.contour.normals = Normals::gradient;
                 if (std::string(field) == "part") job.isovalues.clear(); // by the values
                 Listener listener, other;
                 const ExtractNumbers some = extract_files(job, listener).value();
@@ -196,8 +196,8 @@ TEST(ActiveCellsOfFiles, HaveThoseAroundThemForGradientNormals) {
                 EXPECT_LT(some.grid.cells.count(), *some.cells_in_file);
             }
             ExtractJob job = active_job(file, folder.file("active.vtp"));
-            job.normals = Normals::gradient;
-            job.source_cells = true;
+            job.contour.normals = Normals::gradient;
+            job.contour.source_cells = true;
             Listener listener;
             EXPECT_EQ(extract_files(job, listener).value().method, Method::direct);
             EXPECT_FALSE(was_read_twice(listener));
@@ -216,8 +216,8 @@ TEST(ActiveCellsOfFiles, AreOfAnyNumberOfIsovaluesWithTheirNumbers) {
             job.isovalues.clear();
             for (std::size_t i = 0; i < isovalues; ++i)
                 job.isovalues.push_back(0.05 * static_cast<double>((7 * i) % 31) - 0.7);
-            job.source_cells = true;
-            job.edge_ends = isovalues == 2;
+            job.contour.source_cells = true;
+            job.contour.edge_ends = isovalues == 2;
             Listener listener;
             EXPECT_EQ(extract_files(job, listener).value().method, Method::direct);
             EXPECT_FALSE(was_read_twice(listener));
@@ -426,7 +426,7 @@ TEST(ActiveCellsOfFiles, HaveTheirValuesOfCellFields) {
                 }
                 ExtractJob job = active_job(file, folder.file("active.vtp"));
                 job.with = {"number", "small", "vector", "odd", "integer"};
-                job.source_cells = true;
+                job.contour.source_cells = true;
                 Listener listener;
                 ASSERT_TRUE(extract_files(job, listener));
                 EXPECT_FALSE(was_read_twice(listener));
@@ -521,7 +521,7 @@ TEST(ActiveCellsOfFiles, HaveTheirNumbersBehindCellsThatAreLeftOut) {
         ExtractJob job = active_job(file, folder.file("active.vtp"));
         job.isovalues = {0.1};
         job.with = {"number", "vector"};
-        job.source_cells = true;
+        job.contour.source_cells = true;
         Listener listener;
         ASSERT_TRUE(extract_files(job, listener));
         EXPECT_EQ(was_read_twice(listener), twice);

@@ -139,7 +139,7 @@ TEST_P(ActiveCellsOfLegacyFiles, GiveTheFileOfAllCells) {
         ASSERT_TRUE(extract_files(reference, listener));
         EXPECT_TRUE(test::content_of(job.out) == test::content_of(reference.out));
         ExtractJob numbered = legacy_job(file, folder_.file("active.vtp"));
-        numbered.source_cells = reference.source_cells = true;
+        numbered.contour.source_cells = reference.contour.source_cells = true;
         numbered.isovalues = reference.isovalues = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, -0.5};
         ASSERT_TRUE(extract_files(numbered, listener));
         EXPECT_EQ(std::ranges::find(listener.details, "reading all cells of step 0"), listener.details.end());

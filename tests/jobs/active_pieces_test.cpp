@@ -163,10 +163,10 @@ void expect_same_surface(const test::TemporaryFolder& folder, const std::string&
     job.field.name = asked.field;
     job.isovalues = asked.isovalues;
     job.allow_empty = true;
-    job.edge_ends = asked.edge_ends;
-    job.source_cells = asked.source_cells;
+    job.contour.edge_ends = asked.edge_ends;
+    job.contour.source_cells = asked.source_cells;
     job.keep_degenerate = asked.degenerate;
-    job.normals = asked.normals;
+    job.contour.normals = asked.normals;
     if (!asked.with.empty()) job.with = asked.with;
     job.grid.cells = asked.cells;
     Listener listener(asked.threads), other;

@@ -106,8 +106,8 @@ Surface surface_of(const std::string& file, std::vector<std::string> cells, List
     job.out = folder.file("out.vtp");
     job.field.name = "sphere";
     job.isovalues = {0.5};
-    job.method = method;
-    job.source_cells = true;
+    job.contour.method = method;
+    job.contour.source_cells = true;
     EXPECT_TRUE(extract_files(job, listener));
     return read_surface(job.out).value().surface;
 }
@@ -356,7 +356,7 @@ TEST(ChosenCells, OfASeriesAreThoseOfEachStep) {
     job.isovalues = {0.5};
     job.all_steps = true;
     job.out = folder.file("out-{step}.vtp");
-    job.source_cells = true;
+    job.contour.source_cells = true;
     Listener listener;
     ASSERT_TRUE(extract_files(job, listener));
     for (const char* step : {"0", "1"}) {

@@ -25,7 +25,7 @@ std::string extracted(const test::TemporaryFolder& folder, double isovalue, bool
     job.grid.file = "make:kuhn:6:sphere";
     job.out = folder.file("surface.vtp");
     job.isovalues = {isovalue};
-    job.edge_ends = edge_ends;
+    job.contour.edge_ends = edge_ends;
     return extract_files(job, listener).value().surfaces[0].file;
 }
 
@@ -37,17 +37,17 @@ TEST(CheckFiles, DerivesThePointsOfRefinedCellsAgain) {
         extract.grid.file = shape;
         extract.out = folder.file("refined.vtp");
         extract.isovalues = {0.5, 0.7};
-        extract.refine->relative_tolerance = 0.01;
-        extract.edge_ends = true;
+        extract.contour.refine->relative_tolerance = 0.01;
+        extract.contour.edge_ends = true;
         CheckJob job;
         job.surface = extract_files(extract, listener).value().surfaces[0].file;
         job.grid.file = shape;
-        job.refine = extract.refine;
+        job.contour.refine = extract.contour.refine;
         const CheckedFiles checked = check_files(job, listener).value(); // the file has its isovalues
         EXPECT_TRUE(checked.passed) << shape;
         EXPECT_EQ(checked.report.blamed_edges, 0u);
         EXPECT_GT(checked.report.triangles, 100u);
-        job.refine.reset();
+        job.contour.refine.reset();
         const auto at_nodes = check_files(job, listener);
         ASSERT_FALSE(at_nodes) << "other points";
         EXPECT_NE(at_nodes.error().message.find("derived again"), std::string::npos) << at_nodes.error().message;
@@ -62,7 +62,7 @@ TEST(CheckFiles, TheFileSaysHowCurvedCellsWereRefined) {
         extract.grid.file = "make:tet10:3:sphere";
         extract.out = folder.file(name);
         extract.isovalues = {0.6};
-        extract.edge_ends = true;
+        extract.contour.edge_ends = true;
         CheckJob job;
         job.surface = extract_files(extract, listener).value().surfaces[0].file;
         job.grid.file = extract.grid.file;
@@ -70,7 +70,7 @@ TEST(CheckFiles, TheFileSaysHowCurvedCellsWereRefined) {
         ASSERT_TRUE(checked) << name << ": " << checked.error().message;
         EXPECT_TRUE(checked->passed) << name;
         EXPECT_GT(checked->report.triangles, 100u);
-        job.refine->relative_tolerance = 0.02;
+        job.contour.refine->relative_tolerance = 0.02;
         const auto other = check_files(job, listener);
         EXPECT_FALSE(other && other->passed) << "what is asked for counts";
     }
@@ -83,7 +83,7 @@ TEST(CheckFiles, TakesIsovaluesByShareAsExtractDoes) {
     extract.grid.file = "make:tet10:3:sphere";
     extract.out = folder.file("half.vtp");
     extract.shares = {{IsovalueShare::Of::volume, 50}};
-    extract.edge_ends = true;
+    extract.contour.edge_ends = true;
     CheckJob job;
     job.surface = extract_files(extract, listener).value().surfaces[0].file;
     job.grid.file = extract.grid.file;
@@ -152,7 +152,7 @@ TEST(CheckFiles, TakesTheStepOfTheSurface) {
             extract.grid.file = series;
             extract.grid.step = step;
             extract.isovalues = {0.7};
-            extract.edge_ends = true;
+            extract.contour.edge_ends = true;
             extract.out = folder.file(name);
             ASSERT_TRUE(extract_files(extract, listener));
             CheckJob job;
@@ -175,7 +175,7 @@ TEST(CheckFiles, TakesTheTimeOfTheSurfaceWhereStepsHaveOtherNumbers) {
     extract.grid.file = series_of(folder);
     extract.grid.step = 2;
     extract.isovalues = {0.7};
-    extract.edge_ends = true;
+    extract.contour.edge_ends = true;
     extract.out = folder.file("s.vtp");
     ASSERT_TRUE(extract_files(extract, listener));
     CheckJob job;

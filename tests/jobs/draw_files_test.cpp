@@ -285,7 +285,7 @@ std::string packed_file(const test::TemporaryFolder& folder) {
     PackJob pack;
     pack.grid.file = "make:mixed:6:gyroid,plane";
     pack.out = folder.file("grid.isotet");
-    pack.gradients = true;
+    pack.pack.gradients = true;
     Listener listener;
     pack_file(pack, listener).value();
     return pack.out;

@@ -68,7 +68,7 @@ TEST(ExtractFiles, ChoosesIsovaluesWithoutNumbersThatStandForNone) {
             SCOPED_TRACE(fmt::format("{} {}", text, method == Method::direct));
             Listener listener;
             ExtractJob job = job_of(with_fill_values(folder, fill), folder.file("out.vtp"));
-            job.method = method;
+            job.contour.method = method;
             const ExtractNumbers numbers = extract_files(job, listener).value();
             ASSERT_EQ(numbers.surfaces.size(), 1u);
             EXPECT_NEAR(numbers.surfaces[0].isovalue, std::sqrt(3) / 2, 1e-6);
@@ -301,7 +301,7 @@ TEST(ExtractFiles, RefusesOptionsThatContradictEachOther) {
     job.device.name = "none";
     EXPECT_EQ(extract_files(job, listener).error().message, "`engine` vulkan needs a device, but `device` is none");
     job = job_of("make:kuhn:4:sphere", "a.stl");
-    job.edge_ends = true;
+    job.contour.edge_ends = true;
     EXPECT_EQ(extract_files(job, listener).error().message,
               "`edge_ends` was asked for, but stl holds no such array: .vtp and .vtk do");
 }

@@ -288,7 +288,7 @@ TEST(HangingPointJobs, ChecksTakeTheGridAsExtractionDid) {
     for (const HangingChoice choice : {HangingChoice::close, HangingChoice::leave}) {
         ExtractJob job = job_for("make:octree-random:3:gyroid", out, choice);
         job.field.name = "gyroid";
-        job.edge_ends = true;
+        job.contour.edge_ends = true;
         test::Listener quiet;
         ASSERT_TRUE(extract_files(job, quiet));
         CheckJob check;
@@ -307,7 +307,7 @@ TEST(HangingPointJobs, CloseQuadraticCellsAndJudgeThemOpenWhereTheyAreLeft) {
     for (const HangingChoice choice : {HangingChoice::close, HangingChoice::leave}) {
         ExtractJob job = job_for(file, out, choice);
         job.field.name = "square";
-        job.edge_ends = true;
+        job.contour.edge_ends = true;
         test::Listener heard;
         ASSERT_TRUE(extract_files(job, heard));
         EXPECT_EQ(has_note(heard, "above degree 1: they are linear between"), choice == HangingChoice::close);

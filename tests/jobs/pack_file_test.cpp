@@ -86,7 +86,7 @@ TEST(PackFile, SurfacesCarryVectorsAsThoseOfTheGrid) {
         job.field.name = "U:mag";
         job.isovalues = {0.7};
         job.with = std::move(with);
-        if (file == grid) job.method = Method::clusters;
+        if (file == grid) job.contour.method = Method::clusters;
         Listener told;
         extract_files(job, told).value();
         for (const std::string& note : told.noted) EXPECT_EQ(note.find("all of the packed file"), note.npos) << note;
@@ -239,12 +239,12 @@ TEST(PackFile, KeepsPointsThatMove) {
             plain.grid.file = files[step];
             plain.field.name = "gyroid";
             plain.isovalues = {0.1};
-            plain.method = Method::clusters;
+            plain.contour.method = Method::clusters;
             plain.out = folder.file("a.vtp");
             ExtractJob packed_job = plain;
             packed_job.grid.file = folder.file(out);
             packed_job.grid.step = step;
-            packed_job.method.reset();
+            packed_job.contour.method.reset();
             packed_job.out = folder.file("b.vtp");
             extract_files(plain, listener).value();
             extract_files(packed_job, listener).value();
@@ -313,7 +313,7 @@ TEST(PackFile, GivesSurfacesBetweenSteps) {
     ExtractJob refused = job_between(files[0], folder.file("u{step}.vtp"), 1);
     EXPECT_EQ(extract_files(refused, listener).error().code, ErrorCode::invalid_argument) << "no packed file";
     refused = job_between(pack.out, folder.file("u{step}.vtp"), 1);
-    refused.normals = Normals::gradient;
+    refused.contour.normals = Normals::gradient;
     EXPECT_EQ(extract_files(refused, listener).error().code, ErrorCode::invalid_argument) << "no gradients";
     draw.solid = SolidSide::above;
     EXPECT_EQ(draw_files(draw, listener).error().code, ErrorCode::invalid_argument);
@@ -340,7 +340,7 @@ TEST(PackFile, IsSlicedWithoutItsGrid) {
     EXPECT_EQ(surface.cell_fields[0].name, "region");
     SliceJob whole = job;
     whole.grid.file = grid;
-    whole.method = Method::clusters;
+    whole.contour.method = Method::clusters;
     whole.with = {"U", "region"};
     job.with = whole.with;
     whole.out = folder.file("whole.vtp");
@@ -364,7 +364,7 @@ TEST(PackFile, SurfacesCarryCellFieldsAsThoseOfTheGrid) {
         extract.field.name = "U:mag";
         extract.isovalues = {0.7};
         extract.with = std::vector<std::string>{"region"};
-        if (!from_file) extract.method = Method::clusters;
+        if (!from_file) extract.contour.method = Method::clusters;
         Listener told;
         extract_files(extract, told).value();
         contents[from_file] = test::content_of(extract.out);
@@ -418,8 +418,8 @@ TEST(PackFile, GivesTheSameFileWithItsArraysInScratchFiles) {
         PackJob job;
         job.grid.file = grid;
         job.out = folder.file("plain.isotet");
-        job.precision = Precision::float64;
-        job.gradients = true;
+        job.pack.precision = Precision::float64;
+        job.pack.gradients = true;
         if (grid == kinds) job.cell_fields = {"region"};
         EXPECT_EQ(pack_file(job, listener).value().scratch_bytes, 0U);
         const std::string expected = test::content_of(job.out);

@@ -57,7 +57,7 @@ TEST(SliceFiles, CarriesAllPointAndCellFields) {
     ASSERT_TRUE(write_grid(numbered_grid("mixed", 5), folder.file("grid.vtu")));
     Listener listener;
     SliceJob job = slice_of_file(folder.file("grid.vtu"), folder.file("cut.vtp"), Plane{{0, 0, 1}, 0.1});
-    job.source_cells = true;
+    job.contour.source_cells = true;
     const ExtractNumbers numbers = slice_files(job, listener).value();
     EXPECT_TRUE(listener.noted.empty());
     ASSERT_EQ(numbers.surfaces.size(), 1u);

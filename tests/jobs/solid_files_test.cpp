@@ -77,7 +77,8 @@ TEST(SolidFiles, OfKeptPartsHaveTheirVolumeAndTellOfCavities) {
     EXPECT_LT(all.volume, 7.6);
     EXPECT_NEAR(kept.solid->boundary_area, 24, 1e-6);
     EXPECT_EQ(kept.solid->isosurface_area, 0);
-    EXPECT_EQ(listener.noted.back(), "of the parts left out 1 is a cavity, of negative volume: the solid is filled there");
+    EXPECT_EQ(listener.noted.back(),
+              "of the parts left out 1 is a cavity, of negative volume: the solid is filled there");
 }
 
 /// A cube of hexahedra with the cell field "group": 1 for them, 10 and 11 for quadrilaterals on its lower and upper side.
@@ -116,8 +117,11 @@ TEST(SolidFiles, MarkTheirBoundaryByRegionAndPatch) {
     job.isovalues = {1.2};
     ASSERT_TRUE(extract_files(job, listener));
     const Surface solid = read_surface(job.out).value().surface;
-    const auto field = [&](const char* name) { return std::ranges::find(solid.cell_fields, name, &Field::name)->values; };
-    const Array group = field("group"), patch = field("patch_group"), on_cell = field("patch_cell"), part = field("boundary");
+    const auto field = [&](const char* name) {
+        return std::ranges::find(solid.cell_fields, name, &Field::name)->values;
+    };
+    const Array group = field("group"), patch = field("patch_group"), on_cell = field("patch_cell"),
+                part = field("boundary");
     std::size_t on_patches = 0;
     for (std::size_t i = 0; i < solid.triangle_count(); ++i) {
         double height = 0; // of all corners
@@ -137,8 +141,8 @@ TEST(SolidFiles, MarkTheirBoundaryByRegionAndPatch) {
 
 TEST(SolidFiles, TellThePatchesThatAFileNames) {
     Listener listener;
-    ExtractJob job = solid_job(test::source_folder().string() + "/data/msh/inclusions_v22_ascii.msh", "",
-                              SolidChoice::Kind::above);
+    ExtractJob job =
+        solid_job(test::source_folder().string() + "/data/msh/inclusions_v22_ascii.msh", "", SolidChoice::Kind::above);
     job.field.name = "x";
     job.isovalues = {0.25};
     const SolidNumbers solid = *extract_files(job, listener).value().surfaces[0].solid;
@@ -205,7 +209,7 @@ TEST(SolidFiles, RefuseWhatDoesNotGoTogether) {
     piece.piece = PieceOf{0, 2};
     piece.isovalues = {0.5};
     ExtractJob gradient = solid_job("make:kuhn:4:gyroid", "", SolidChoice::Kind::above);
-    gradient.normals = Normals::gradient;
+    gradient.contour.normals = Normals::gradient;
     ExtractJob other = solid_job("make:kuhn:4:gyroid", "", SolidChoice::Kind::between);
     other.solid->range = {0, 1};
     other.isovalues = {0.5};

@@ -53,7 +53,7 @@ void expect_numbers_of_file(const std::string& file, const test::TemporaryFolder
             job.out = folder.file("out.vtp");
             job.field.name = field;
             job.isovalues = {0.1};
-            job.source_cells = true;
+            job.contour.source_cells = true;
             job.with = {"id"};
             if (solid) {
                 job.solid.emplace();

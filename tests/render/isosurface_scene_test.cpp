@@ -57,7 +57,7 @@ TEST_F(IsosurfaceScenes, LookTheSameWhereverTheyAreExtracted) {
 
 TEST_F(IsosurfaceScenes, PackForManySurfaces) {
     IsosurfaceOptions many = options();
-    many.surfaces = 50;
+    many.contour.surfaces = 50;
     SceneLook look;
     look.boundary_opacity = 0;
     IsosurfaceScene scene = IsosurfaceScene::create(*device_, std::move(many), look).value();
@@ -92,7 +92,7 @@ TEST_F(IsosurfaceScenes, ShowASurfaceThatIsThere) {
 
 TEST_F(IsosurfaceScenes, RefuseWhatDoesNotFitAndCanBeCancelled) {
     IsosurfaceOptions wrong = options(ExtractOn::device);
-    wrong.method = Method::direct;
+    wrong.contour.method = Method::direct;
     EXPECT_EQ(IsosurfaceScene::create(*device_, std::move(wrong), {}).error().code, ErrorCode::invalid_argument);
     IsosurfaceScene scene = IsosurfaceScene::create(*device_, options(), {}).value();
     const std::atomic<bool> cancel = true;

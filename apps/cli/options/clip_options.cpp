@@ -66,14 +66,14 @@ void add_clip_command(const Command& program, ClipCommand& clip) {
         "Carry these fields only, separated by commas; may be repeated; an empty name carries none");
     command.add_flag("--no-polyhedra", clip.no_polyhedra,
                      "Split pieces that would be polyhedra into tetrahedra and pyramids around a point inside");
-    command.add_flag("--edge-ends", clip.edge_ends,
+    command.add_flag("--edge-ends", clip.contour.edge_ends,
                      "Write the two grid points of each point (edge_ends) and its place between them (edge_weights)");
-    command.add_flag("--split-cells", clip.split_cells, "Split all cells into tetrahedra first");
+    command.add_flag("--split-cells", clip.contour.split_cells, "Split all cells into tetrahedra first");
     command.add_flag("--allow-empty", clip.allow_empty,
                      "Write a grid without cells where none is in the range, which else is an error, exit status 3");
-    add_refinement(command, clip.refine, &clip.refine_averaged);
+    add_refinement(command, clip.contour.refine, &clip.refine_averaged);
     add_compression(command, clip.compression, ".vtu");
-    command.add_choice<Precision>("--precision", clip.precision,
+    command.add_choice<Precision>("--precision", clip.contour.precision,
                                   {{"float", Precision::float32}, {"double", Precision::float64}},
                                   "Precision of the points on edges, and of values there");
     add_reading(command, clip.grid, "--format");

@@ -270,7 +270,7 @@ void add_levels(const Command& command, ExtractCommand& extract) {
 
 void add_surface_arrays(const Command& command, ExtractJob& extract) {
     const OptionGroup group(command, "Arrays of the surface");
-    command.add_choice<Normals>("--normals", extract.normals,
+    command.add_choice<Normals>("--normals", extract.contour.normals,
                                 {{"none", Normals::none},
                                  {"gradient", Normals::gradient},
                                  {"face", Normals::face},
@@ -282,13 +282,13 @@ void add_surface_arrays(const Command& command, ExtractJob& extract) {
         "Carry these point and cell fields onto the surface; may be repeated; an empty name carries none. Default: "
         "point fields that the format can hold");
     command.add_flag(
-        "--edge-ends", extract.edge_ends,
+        "--edge-ends", extract.contour.edge_ends,
         "Write the two grid points of each vertex (edge_ends) and its place between them (edge_weights); .vtp, .vtk");
-    command.add_flag("--source-cells", extract.source_cells,
+    command.add_flag("--source-cells", extract.contour.source_cells,
                      "Write the grid cell of each triangle (source_cell); .vtp, .vtk");
-    command.add_flag("--exact-vertices", extract.exact_vertices,
+    command.add_flag("--exact-vertices", extract.contour.exact_vertices,
                      "Quadratic cells: vertices where the quadratic field has the isovalue on their edges");
-    command.add_flag("--split-cells", extract.split_cells,
+    command.add_flag("--split-cells", extract.contour.split_cells,
                      "Split pyramids, wedges and hexahedra into tets first: 2 to 3 times the triangles");
 }
 
@@ -475,9 +475,9 @@ void add_check(const Command& program, CheckCommand& check) {
     add_field(command, check.field, "The field that was contoured: cells without a value do not count").needs(grid);
     command.option("--cell-field").needs(grid);
     add_time(command, check.grid);
-    command.add_flag("--split-cells", check.split_cells, "The surface was made with --split-cells").needs(grid);
+    command.add_flag("--split-cells", check.contour.split_cells, "The surface was made with --split-cells").needs(grid);
     add_isovalues(command, check.isovalues, check.shares).needs(grid);
-    add_refinement(command, check.refine, &check.refine_averaged);
+    add_refinement(command, check.contour.refine, &check.refine_averaged);
     for (const char* name : {"--tolerance", "--distance", "--geometry-tolerance"}) command.option(name).needs(grid);
     command.add_flag("--strict", check.strict,
                      "Fail also for flat triangles, touching vertices and the like (--help-all)");
@@ -512,12 +512,12 @@ void add_pack(const Command& program, PackCommand& pack) {
     command.add_flag(
         "--append", pack.append,
         "Add the time step, or all, to OUT, which has the same cells: with its fields, precision and so on");
-    command.add_flag("--source-cells", pack.source_cells,
+    command.add_flag("--source-cells", pack.pack.source_cells,
                      "Keep the numbers of cells, for extract --source-cells: 4 bytes a tet, 8 another cell");
-    command.add_flag("--gradients", pack.gradients,
+    command.add_flag("--gradients", pack.pack.gradients,
                      "Keep gradients, for --normals gradient: 4 bytes a point, a field and a step");
-    command.add_flag("--split-cells", pack.split_cells, "Split pyramids, wedges and hexahedra into tets first");
-    command.add_choice<Precision>("--precision", pack.precision,
+    command.add_flag("--split-cells", pack.pack.split_cells, "Split pyramids, wedges and hexahedra into tets first");
+    command.add_choice<Precision>("--precision", pack.pack.precision,
                                   {{"float", Precision::float32}, {"double", Precision::float64}},
                                   "Precision of the packed grid");
     add_bytes(command, "--memory", pack.memory,
@@ -886,11 +886,12 @@ void add_parts_and_solids(const Command& command, ExtractJob& job, const std::st
 
 void add_method(const Command& command, ExtractJob& job) {
     const OptionGroup group(command, "Method and machine");
-    command.add_choice<Precision>("--precision", job.precision,
+    command.add_choice<Precision>("--precision", job.contour.precision,
                                   {{"float", Precision::float32}, {"double", Precision::float64}},
                                   "Precision of the packed grid");
     command.add_choice<std::optional<Method>>(
-        "--method", job.method, {{"auto", std::nullopt}, {"clusters", Method::clusters}, {"direct", Method::direct}},
+        "--method", job.contour.method,
+        {{"auto", std::nullopt}, {"clusters", Method::clusters}, {"direct", Method::direct}},
         "clusters packs the grid once, which pays for many surfaces; direct goes through all cells for each; auto "
         "chooses by their number");
     command.add_choice<EngineChoice>("--engine", job.engine,
@@ -914,7 +915,7 @@ void add_surface_options(const Command& command, ExtractJob& job, const std::str
         add_interpolate(command, job.interpolate, "surfaces");
     }
     add_surface_arrays(command, job);
-    add_refinement(command, job.refine, &job.refine_averaged);
+    add_refinement(command, job.contour.refine, &job.refine_averaged);
     add_parts_and_solids(command, job, solids);
     {
         const OptionGroup group(command, "Colours and files");

@@ -184,9 +184,9 @@ void add_cuts(const Command& command, RenderCommand& render) {
     command.add_flag(
         "--edges", render.edges,
         "Draw the edges of the triangles of boundary and slices, or of the surfaces where neither is drawn");
-    command.add_flag("--split-cells", render.split_cells,
+    command.add_flag("--split-cells", render.contour.split_cells,
                      "Split pyramids, wedges and hexahedra into tets first: 2 to 3 times the triangles");
-    add_refinement(command, render.refine, &render.refine_averaged);
+    add_refinement(command, render.contour.refine, &render.refine_averaged);
     command.add_text("--boundary-color-by", render.boundary_color_by, "FIELD",
                      "Colour the grid's boundary by this field, opaque unless --boundary says otherwise; isosurfaces "
                      "only with -f, -i, --levels or --sweep");

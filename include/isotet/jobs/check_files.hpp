@@ -7,10 +7,10 @@
 #include <vector>
 
 #include <isotet/check.hpp>
+#include <isotet/contour.hpp>
 #include <isotet/isovalues.hpp>
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
-#include <isotet/linear_cells.hpp>
 
 namespace isotet::jobs {
 
@@ -21,12 +21,12 @@ struct CheckJob {
     std::string format;
     bool closed = false;
     bool strict = false;
-    bool split_cells = false;
     GridOptions grid; ///< that the surface was extracted from; `file` is empty without one
     FieldChoice field;
-    /// Of a grid with curved cells: as they were refined for the surface, so that its points are derived again.
-    std::optional<RefineOptions> refine = RefineOptions{};
-    bool refine_averaged = false;
+    /// As the surface was made, of which split cells count; and curved cells are refined as they were for it, so that its points
+    /// are derived again.
+    ContourOptions contour{.refine = RefineOptions{}};
+    bool refine_averaged = false; ///< as of ExtractJob
     /// All that were extracted together; empty: those of the cell field `isovalue` of a file with several, else the cells
     /// are taken at their nodes.
     std::vector<double> isovalues;

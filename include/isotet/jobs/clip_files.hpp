@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include <isotet/contour.hpp>
 #include <isotet/solid.hpp>
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
-#include <isotet/linear_cells.hpp>
 #include <isotet/jobs/range_shares.hpp>
 #include <isotet/write.hpp>
 
@@ -27,14 +27,11 @@ struct ClipJob {
     RangeShares shares; ///< of `range`, each time step its own
     ClipOptions clip;
     std::optional<std::vector<std::string>> with; ///< nothing: all fields
-    bool edge_ends = false;
-    bool split_cells = false;
-    bool allow_empty = false; ///< also where no cell is in the range, which else is an error
-    Precision precision = Precision::float32;
-    std::optional<Method> method; ///< of the isosurfaces; nothing: by the rule
+    ContourOptions contour{
+        .refine = RefineOptions{}}; ///< of the isosurfaces; of these the job sets surfaces and source cells
+    bool refine_averaged = false;   ///< as of ExtractJob
+    bool allow_empty = false;       ///< also where no cell is in the range, which else is an error
     Compression compression = Compression::none;
-    std::optional<RefineOptions> refine = RefineOptions{}; ///< as ExtractJob has them
-    bool refine_averaged = false;
 };
 
 /// One clipped grid.
@@ -43,7 +40,7 @@ struct ClipStepNumbers {
     std::uint64_t points = 0, cells = 0;
     std::uint64_t whole_cells = 0, cut_cells = 0, polyhedra = 0; ///< as ClippedGrid
     std::uint64_t flat_pieces = 0, folded_pieces = 0;            ///< the same
-    std::uint64_t tied_points = 0; ///< of both ends of the range
+    std::uint64_t tied_points = 0;                               ///< of both ends of the range
     double clip_seconds = 0, write_seconds = 0;
     std::string file; ///< empty without OUT
 };

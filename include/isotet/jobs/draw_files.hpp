@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <isotet/contour.hpp>
 #include <isotet/isosurface_scene.hpp>
 #include <isotet/isovalues.hpp>
 #include <isotet/render.hpp>
@@ -60,7 +61,6 @@ struct DrawJob {
     std::optional<SolidSide> solid; ///< in place of isosurfaces: solids on this side of them
     std::optional<PartChoice> keep; ///< of each isosurface or solid only these parts; nothing: all
     bool edges = false;
-    bool split_cells = false;
     ShadeBy shade_by = ShadeBy::vertices;
     std::string boundary_color_by; ///< a field; empty: none
     bool all_steps = false;
@@ -87,8 +87,8 @@ struct DrawJob {
     std::string reference;    ///< a picture to compare with; empty: none
     double threshold = 0.001; ///< share of its pixels that may differ
     DeviceChoice device;
-    std::optional<RefineOptions> refine = RefineOptions{}; ///< of curved cells; nothing: at their nodes only
-    bool refine_averaged = false; ///< also for a field averaged from cells, which else is taken at the nodes only
+    ContourOptions contour{.refine = RefineOptions{}}; ///< of these split cells and refinement are taken
+    bool refine_averaged = false;                      ///< as of ExtractJob
     std::optional<std::uint64_t>
         memory; ///< of a packed file, as PackedFileOptions::memory; nothing: half of what is free
 };

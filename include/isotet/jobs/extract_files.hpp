@@ -46,39 +46,35 @@ struct ColorChoice {
 struct ExtractJob {
     GridOptions grid;
     bool all_steps = false;
-    std::uint64_t interpolate = 0; ///< surfaces between two steps of a packed file, with `all_steps`: PackedFile::interpolated()
-    std::string out;                        ///< with {value}, {time} and {step}; empty: only numbers
+    std::uint64_t interpolate =
+        0;           ///< surfaces between two steps of a packed file, with `all_steps`: PackedFile::interpolated()
+    std::string out; ///< with {value}, {time} and {step}; empty: only numbers
     std::vector<std::string> other_outputs; ///< of the caller: no surface may overwrite them
     FieldChoice field;
     std::vector<double> isovalues;
     std::optional<double> decimal_comma; ///< what two isovalues mean if their comma is a decimal sign
-    std::vector<IsovalueShare> shares; ///< more isovalues, after the others: of each time step its own
-    std::uint64_t levels = 0;          ///< 0: `isovalues` and `shares` say it
-    bool volumes = false;              ///< the volume on both sides of each isovalue: SurfaceNumbers::volumes
+    std::vector<IsovalueShare> shares;   ///< more isovalues, after the others: of each time step its own
+    std::uint64_t levels = 0;            ///< 0: `isovalues` and `shares` say it
+    bool volumes = false;                ///< the volume on both sides of each isovalue: SurfaceNumbers::volumes
     bool snap = false;
-    Normals normals = Normals::none;
+    /// Of these the job sets engine, ties, surfaces, expected isovalues and sink itself.
+    ContourOptions contour{.refine = RefineOptions{}};
+    bool refine_averaged = false; ///< also for a field averaged from cells, which else is taken at the nodes only
     std::optional<std::vector<std::string>> with; ///< nothing: all point fields that the format can hold
     bool keep_degenerate = false;
     bool fail_if_empty = false;
     bool allow_empty =
         false; ///< also where all isovalues are outside the field's range, or a solid has nothing, which else
                ///< is an error
-    bool edge_ends = false;
-    bool source_cells = false;
-    bool split_cells = false;
-    bool exact_vertices = false;
-    Precision precision = Precision::float32;
-    std::optional<Method> method; ///< nothing: by the rule
     EngineChoice engine = EngineChoice::automatic;
     DeviceChoice device; ///< `name` is empty where none is asked for
     std::optional<PieceOf> piece;
     Compression compression = Compression::none;
     ColorChoice colors;
-    std::optional<RefineOptions> refine = RefineOptions{}; ///< of curved cells; nothing: at their nodes only
-    bool refine_averaged = false; ///< also for a field averaged from cells, which else is taken at the nodes only
-    std::optional<SolidChoice> solid;                      ///< nothing: isosurfaces
-    std::optional<PartChoice> keep; ///< nothing: all parts; its region may be one that the file names, or "FIELD=VALUE" or
-                                    ///< "FIELD=LOWER:UPPER" of cells
+    std::optional<SolidChoice> solid; ///< nothing: isosurfaces
+    std::optional<PartChoice>
+        keep; ///< nothing: all parts; its region may be one that the file names, or "FIELD=VALUE" or
+              ///< "FIELD=LOWER:UPPER" of cells
     std::optional<ReduceOptions> reduce; ///< nothing: all triangles
     std::string parts_table; ///< a CSV file with a row for each part; empty: none, and parts are not looked for
     std::optional<std::uint64_t> memory; ///< as PackedFileOptions::memory, where the grid is a packed file
@@ -121,8 +117,8 @@ struct ExtractNumbers {
     std::size_t cells = 0;
     std::optional<PackReport> pack; ///< of the last packing; nothing where nothing is packed
     std::uint64_t cells_left_out = 0;
-    FieldReport field;     ///< of the last time step
-    std::size_t steps = 1; ///< time steps
+    FieldReport field;                    ///< of the last time step
+    std::size_t steps = 1;                ///< time steps
     std::vector<BrokenStep> broken_steps; ///< of these
     bool averaged = false;
     Precision precision = Precision::float32;
@@ -139,9 +135,9 @@ struct ExtractNumbers {
     double measure_seconds = 0;      ///< for the areas
     std::uint64_t process_bytes = 0; ///< most that the whole process had
     std::vector<SurfaceNumbers> surfaces;
-    std::string collection;           ///< of a series; empty: none
-    std::string parts_table;          ///< the file that was written; empty: none
-    RefinementReport refinement = {}; ///< of the last surface
+    std::string collection;                     ///< of a series; empty: none
+    std::string parts_table;                    ///< the file that was written; empty: none
+    RefinementReport refinement = {};           ///< of the last surface
     std::optional<ResidencyReport> packed_file; ///< where the grid is one that was read in parts
     std::uint64_t packed_file_bytes = 0;        ///< of it, whole
 

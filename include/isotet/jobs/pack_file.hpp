@@ -17,21 +17,20 @@ namespace isotet::jobs {
 struct PackJob {
     GridOptions grid;
     bool all_steps = false;
-    bool append = false; ///< OUT is there, with the same cells: steps are added, as PackedWriter::append(), also where points
-                         ///< have moved. Fields, precision, source cells and gradients are those of the file
+    bool append =
+        false; ///< OUT is there, with the same cells: steps are added, as PackedWriter::append(), also where points
+               ///< have moved. Fields, precision, source cells and gradients are those of the file
     std::string out;                        ///< .isotet
     std::vector<std::string> other_outputs; ///< of the caller: OUT may not be one
-    std::vector<std::string> fields; ///< as choose_field_names(); empty: all point fields of one or three components, or if
-                                     ///< there are none the one that is shown first. A vector is packed as its components
-                                     ///< and its magnitude
+    std::vector<std::string>
+        fields; ///< as choose_field_names(); empty: all point fields of one or three components, or if
+                ///< there are none the one that is shown first. A vector is packed as its components
+                ///< and its magnitude
     std::vector<std::string> cell_fields; ///< packed as they are; source cells are packed, too
-    bool coordinates_do = false; ///< where the grid has no field
-    bool scalars_only = false;            ///< no vectors, and what is left out is not noted: for callers that say it themselves
-    bool cell_field = false;              ///< as FieldChoice
-    Precision precision = Precision::float32;
-    bool source_cells = false;
-    bool gradients = false;
-    bool split_cells = false;
+    bool coordinates_do = false;          ///< where the grid has no field
+    bool scalars_only = false; ///< no vectors, and what is left out is not noted: for callers that say it themselves
+    bool cell_field = false;   ///< as FieldChoice
+    PackOptions pack;
     std::optional<int>
         value_bits; ///< 1 to 24: values are rounded to multiples of the smallest power of two that is at least the
                     ///< range of the step's field over 2^value_bits; files compress better then
@@ -49,8 +48,8 @@ struct PackNumbers {
     std::vector<FieldReport> fields; ///< of the last step
     std::vector<double> rounded_by;  ///< with `value_bits`, of each field: the largest change of a value
     std::size_t steps = 1;
-    std::uint64_t curved_cells = 0; ///< that were split at their nodes
-    std::uint64_t bytes = 0;        ///< of the file
+    std::uint64_t curved_cells = 0;  ///< that were split at their nodes
+    std::uint64_t bytes = 0;         ///< of the file
     std::uint64_t scratch_bytes = 0; ///< at most in scratch files
     double read_seconds = 0, pack_seconds = 0, write_seconds = 0;
 };

@@ -13,7 +13,7 @@ namespace isotet::jobs {
 
 bool needs_cells(const DrawJob& job) {
     const bool shares = !job.shares.empty() || job.sweep_shares.lower || job.sweep_shares.upper;
-    return shares || !job.stretch.empty() || job.solid || job.split_cells || !job.dirac_shares.empty() ||
+    return shares || !job.stretch.empty() || job.solid || job.contour.split_cells || !job.dirac_shares.empty() ||
            job.method.draw || job.method.extract == Method::direct || job.engine == EngineChoice::vulkan ||
            job.grid.merge_points || !job.grid.displace.empty() || !job.grid.blocks.empty() || !job.grid.cells.empty();
 }

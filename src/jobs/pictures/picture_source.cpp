@@ -749,14 +749,13 @@ IsosurfaceOptions PictureSource::scene_options(Contents& contents, const std::ve
     options.bounds = contents.bounds;
     options.boundary = std::move(contents.boundary);
     options.packed = std::move(contents.packed);
-    if (job_.sweep.empty() && !draws_volume(job_)) options.expected_isovalues = isovalues;
+    options.contour = job_.contour;
+    if (job_.sweep.empty() && !draws_volume(job_)) options.contour.expected_isovalues = isovalues;
     if (!job_.stretch.empty()) options.grid.points = stretched(options.grid.points, factors_of(job_.stretch));
-    options.surfaces = job_.sweep.empty() ? isovalues.size() : static_cast<std::uint64_t>(job_.sweep[2]);
-    options.method = job_.method.extract;
+    options.contour.surfaces = job_.sweep.empty() ? isovalues.size() : static_cast<std::uint64_t>(job_.sweep[2]);
+    options.contour.method = job_.method.extract;
     options.draw = job_.method.draw;
-    options.split_cells = job_.split_cells;
-    options.refine = job_.refine;
-    if (options.field.averaged && !job_.refine_averaged) options.refine.reset();
+    if (options.field.averaged && !job_.refine_averaged) options.contour.refine.reset();
     options.index = job_.index.value_or(default_index);
     options.picture = job_.picture;
     options.where = draws_volume(job_)                    ? ExtractOn::cpu
