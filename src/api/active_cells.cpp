@@ -10,7 +10,7 @@
 #include "api/active_cells.hpp"
 #include "api/finish.hpp"
 #include "base/errors.hpp"
-#include "base/fresh_memory.hpp"
+#include "base/system/fresh_memory.hpp"
 #include "base/guard.hpp"
 #include "cpu/direct/active_filter.hpp"
 #include "grid/cells.hpp"

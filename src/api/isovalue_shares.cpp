@@ -11,7 +11,7 @@
 #include "api/spectrum_source.hpp"
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 
 namespace isotet {
 
@@ -97,8 +97,7 @@ Result<std::vector<double>> isovalues_of_volume(const Grid& grid, const PointFie
     if (!(whole->volume > 0))
         return invalid_data(fmt::format("the tets where field '{}' has values have no volume", field.name));
     std::vector<ShareBracket> brackets;
-    for (const double percent : percents)
-        brackets.emplace_back(whole->volume * (percent / 100), whole->volume, range);
+    for (const double percent : percents) brackets.emplace_back(whole->volume * (percent / 100), whole->volume, range);
     for (;;) {
         std::vector<double> places;
         for (const ShareBracket& bracket : brackets) bracket.add_places(places);

@@ -1,8 +1,8 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <isotet/memory.hpp>
 
-#include "base/block.hpp"
-#include "base/memory.hpp"
+#include "base/system/block.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 
 namespace isotet {

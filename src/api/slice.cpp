@@ -7,7 +7,7 @@
 #include "base/buffer.hpp"
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 
 namespace isotet {
@@ -27,7 +27,7 @@ Result<PointField> field_of_function(const Array& points, const Function& functi
             for (std::size_t i = begin; i < end; ++i)
                 values[i] =
                     function(core::Vector3{static_cast<double>(scalars[3 * i]), static_cast<double>(scalars[3 * i + 1]),
-                                          static_cast<double>(scalars[3 * i + 2])});
+                                           static_cast<double>(scalars[3 * i + 2])});
         });
     });
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "slicing was cancelled"};

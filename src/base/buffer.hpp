@@ -13,7 +13,7 @@
 
 #include <isotet/array.hpp>
 
-#include "base/block.hpp"
+#include "base/system/block.hpp"
 
 namespace isotet::core {
 

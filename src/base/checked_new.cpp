@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <new>
 
-#include "base/block.hpp"
-#include "base/fresh_memory.hpp"
+#include "base/system/block.hpp"
+#include "base/system/fresh_memory.hpp"
 
 namespace {
 

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "base/parallel.hpp"
-#include "base/apart.hpp"
+#include "base/system/apart.hpp"
 
 #ifndef __wasm__
 #include <pthread.h>

@@ -16,10 +16,10 @@
 #include <meshoptimizer.h>
 #include <tbb/parallel_sort.h>
 
-#include "base/apart.hpp"
+#include "base/system/apart.hpp"
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/until_cancelled.hpp"
 #include "check/mesh.hpp"
 #include "grid/surface_rows.hpp"

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <string_view>
 
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "cpu/batches.hpp"
 #include "cpu/steps.hpp"

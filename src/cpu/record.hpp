@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/block.hpp"
+#include "base/system/block.hpp"
 #include "packed/packed.hpp"
 
 namespace isotet::cpu {

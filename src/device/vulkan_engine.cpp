@@ -9,7 +9,7 @@
 
 #include "base/array_slot.hpp"
 #include "base/errors.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 
 namespace isotet {

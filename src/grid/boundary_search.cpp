@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "grid/boundary_faces.hpp"
 #include "grid/cell_block.hpp"

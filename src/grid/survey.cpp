@@ -8,7 +8,7 @@
 #include <isotet/grid.hpp>
 
 #include "base/carry_out.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "grid/cell_block.hpp"
 #include "grid/cell_survey.hpp"
 #include "grid/faces.hpp"

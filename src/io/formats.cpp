@@ -19,7 +19,7 @@
 #include <isotet/grid.hpp>
 #include <isotet/text.hpp>
 
-#include "io/files/file_kind.hpp"
+#include "base/system/descriptor.hpp"
 #include "io/files/text_scanner.hpp"
 #include "io/foam/read_openfoam.hpp"
 #include "io/vtk_xml/load.hpp"
@@ -115,14 +115,14 @@ Result<Head> read_head(const std::string& path) {
         return Error{ErrorCode::file, fmt::format("{}: {}: {}", path, what, std::generic_category().message(number))};
     };
     // Without O_NONBLOCK opening a pipe would wait for a writer.
-    const Descriptor descriptor(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+    const core::Descriptor descriptor(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
     if (!descriptor && path == "-")
         return Error{ErrorCode::file, "'-' would be standard input, but only files can be read"};
     if (!descriptor) return failed("cannot be opened", errno);
     struct stat status{};
     if (::fstat(descriptor.number(), &status) != 0) return failed("cannot be looked at", errno);
     if (S_ISDIR(status.st_mode)) return Head{{}, true};
-    if (const auto other = what_else_than_a_file(status.st_mode); !other.empty()) {
+    if (const auto other = core::what_else_than_a_file(status.st_mode); !other.empty()) {
         return Error{ErrorCode::file, fmt::format("{} is {}, but only files can be read", path, other)};
     }
     constexpr std::size_t of_others = 4096, of_hdf5 = 65536; // HDF5 has the first names behind its own tables

@@ -15,7 +15,7 @@
 #include <isotet/boundary.hpp>
 #include <isotet/fields.hpp>
 
-#include "base/fresh_memory.hpp"
+#include "base/system/fresh_memory.hpp"
 #include "base/parallel.hpp"
 #include "base/rising_progress.hpp"
 #include "grid/cell/linear_names.hpp"

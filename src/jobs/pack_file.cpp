@@ -18,7 +18,7 @@
 #include <isotet/packed_file.hpp>
 #include <isotet/text.hpp>
 
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/stopwatch.hpp"
 #include "jobs/refuse.hpp"
 #include "jobs/way_out.hpp"

@@ -11,9 +11,9 @@
 
 #include <isotet/text.hpp>
 
-#include "base/block.hpp"
-#include "base/fresh_memory.hpp"
-#include "base/scratch_memory.hpp"
+#include "base/system/block.hpp"
+#include "base/system/fresh_memory.hpp"
+#include "base/system/scratch_memory.hpp"
 
 namespace isotet::jobs {
 

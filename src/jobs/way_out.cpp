@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "base/fresh_memory.hpp"
+#include "base/system/fresh_memory.hpp"
 
 namespace isotet::jobs {
 

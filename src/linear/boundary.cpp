@@ -8,7 +8,7 @@
 #include <isotet/linear_cells.hpp>
 
 #include "base/carry_out.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "grid/boundary_search.hpp"
 #include "grid/cells.hpp"
 #include "grid/sheet.hpp"

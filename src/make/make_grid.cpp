@@ -11,7 +11,7 @@
 
 #include "base/buffer.hpp"
 #include "base/carry_out.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/until_cancelled.hpp"
 #include "grid/cells.hpp"
 #include "make/analytic_field.hpp"

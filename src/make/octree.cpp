@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/buffer.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/until_cancelled.hpp"
 #include "make/analytic_field.hpp"
 #include "make/cube_cells.hpp"

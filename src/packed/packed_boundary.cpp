@@ -17,7 +17,7 @@
 #include "base/buffer.hpp"
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "grid/boundary_faces.hpp"
 #include "grid/cell/native_cells.hpp"

@@ -11,7 +11,7 @@
 
 #include "base/buffer.hpp"
 #include "base/carry_out.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "numbers/storage.hpp"
 #include "packed/packed.hpp"

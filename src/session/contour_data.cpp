@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 
 namespace isotet {
 
@@ -42,7 +42,8 @@ Result<ContourUpdate> Contour::Data::set(ContourInput next, const ContourOptions
     if (options.engine != next_options.engine) state.forget_grid();
     state.fall_behind(update);
     options = next_options;
-    if (update == ContourUpdate::grid && packs_aside()) state.forget(); // what is extracted directly needs no room beside it
+    if (update == ContourUpdate::grid && packs_aside())
+        state.forget(); // what is extracted directly needs no room beside it
     source = *std::move(taken);
     told.add(std::move(news.notes));
     told.seconds += news.seconds;

@@ -12,7 +12,7 @@
 
 #include "base/buffer.hpp"
 #include "base/errors.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "grid/cell/native_cells.hpp"
 #include "grid/cells.hpp"
@@ -99,8 +99,7 @@ private:
             for (std::size_t k = 0; k < corners; ++k)
                 if (no_data_[part.corners[k]]) return;
         const auto at = [&](std::uint8_t corner) { return points_[part.corners[corner]]; };
-        const bool mirrored =
-            !core::is_ordered(cells_.type(cell)) && core::is_mirrored(part.kind, part.corners, at);
+        const bool mirrored = !core::is_ordered(cells_.type(cell)) && core::is_mirrored(part.kind, part.corners, at);
         for (const core::CellFace& shape : core::shape_of(part.kind).faces()) {
             std::array<std::uint64_t, 4> points{};
             std::size_t count = 0; // a corner that is repeated once

@@ -16,7 +16,7 @@
 
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "grid/orientation.hpp"
 #include "grid/renumber.hpp"
 #include "numbers/bounds.hpp"

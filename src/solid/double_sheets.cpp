@@ -9,7 +9,7 @@
 
 #include <tbb/parallel_sort.h>
 
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "grid/orientation.hpp"
 #include "grid/surface_rows.hpp"

@@ -18,7 +18,7 @@
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
 #include "base/guard.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "grid/renumber.hpp"
 #include "session/linear_input.hpp"
 #include "solid/assemble.hpp"

@@ -8,7 +8,7 @@
 
 #include <fmt/core.h>
 
-#include "base/cache_folder.hpp"
+#include "base/system/cache_folder.hpp"
 #include "base/errors.hpp"
 #include "base/guard.hpp"
 #include "vulkan/devices/choice.hpp"

@@ -7,7 +7,7 @@
 
 #include <fmt/core.h>
 
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "vulkan/devices/failure.hpp"
 
 namespace isotet::vulkan {

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// What the system does elsewhere. WebAssembly has 4 GiB, and grows until it has them (base/memory.cpp asks the system);
+// What the system does elsewhere. WebAssembly has 4 GiB, and grows until it has them (base/system/memory.cpp asks the system);
 // what would be thrown ends the module; pictures are drawn by the page.
 #include <cstddef>
 #include <cstdint>
@@ -7,15 +7,15 @@
 
 #include <fmt/core.h>
 
-#include "base/fresh_memory.hpp"
-#include "base/memory.hpp"
+#include "base/system/fresh_memory.hpp"
+#include "base/system/memory.hpp"
 #include "view/grid_view.hpp"
 
 extern "C" {
 void* __cxa_allocate_exception(std::size_t) { __builtin_trap(); }
 void __cxa_throw(void*, void*, void (*)(void*)) { __builtin_trap(); }
 int madvise(void*, std::size_t, int) { return 0; }
-int mprotect(void*, std::size_t, int) { return 0; } // tests alone ask for it
+int mprotect(void*, std::size_t, int) { return 0; }                  // tests alone ask for it
 int __cxa_thread_atexit(void (*)(void*), void*, void*) { return 0; } // the one thread does not end
 }
 

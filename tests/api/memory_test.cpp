@@ -12,8 +12,8 @@
 #include <isotet/memory.hpp>
 #include <isotet/pack.hpp>
 
-#include "base/block.hpp"
-#include "base/memory.hpp"
+#include "base/system/block.hpp"
+#include "base/system/memory.hpp"
 #include "support/small_grid.hpp"
 #include "support/surface_bytes.hpp"
 

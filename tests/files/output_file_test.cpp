@@ -11,13 +11,13 @@
 #include <isotet/write.hpp>
 
 #include "files/sample_files.hpp"
-#include "io/files/output_file.hpp"
-#include "io/files/unfinished_files.hpp"
+#include "base/system/output_file.hpp"
+#include "base/system/unfinished_files.hpp"
 
 namespace isotet::test {
 namespace {
 
-using io::OutputFile;
+using core::OutputFile;
 
 ErrorCode code_of_opening(const std::string& path) {
     const auto file = OutputFile::open(path);
@@ -60,13 +60,13 @@ TEST(OutputFile, IsRemovedByRemoveUnfinishedFiles) {
     const int descriptor = ::open((folder / ".").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     ASSERT_GE(descriptor, 0);
     for (const char* name : {"begun", "done", "other"}) put_content(folder / name, "x");
-    io::note_unfinished_file(descriptor, "begun");
-    io::note_unfinished_file(descriptor, "done");
-    io::forget_unfinished_file(descriptor, "done");
+    core::note_unfinished_file(descriptor, "begun");
+    core::note_unfinished_file(descriptor, "done");
+    core::forget_unfinished_file(descriptor, "done");
     remove_unfinished_files();
     EXPECT_EQ(folder.entries(), 2U);
     EXPECT_EQ(content_of(folder / "done"), "x");
-    io::forget_unfinished_file(descriptor, "begun");
+    core::forget_unfinished_file(descriptor, "begun");
     auto file = OutputFile::open(folder / "out"); // with a name before it is whole, or without one
     ASSERT_TRUE(file);
     remove_unfinished_files();

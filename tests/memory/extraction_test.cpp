@@ -9,7 +9,7 @@
 #include <isotet/extract.hpp>
 #include <isotet/pack.hpp>
 
-#include "base/block.hpp"
+#include "base/system/block.hpp"
 #include "memory/counted_memory.hpp"
 #include "support/random_grid.hpp"
 #include "support/seeds.hpp"

@@ -6,7 +6,7 @@
 
 #include <isotet/pack.hpp>
 
-#include "base/block.hpp"
+#include "base/system/block.hpp"
 #include "memory/counted_memory.hpp"
 #include "support/small_grid.hpp"
 

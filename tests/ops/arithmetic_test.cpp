@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "base/bits.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "grid/cell/case_table.hpp"
 #include "numbers/normal_code.hpp"
 

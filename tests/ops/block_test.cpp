@@ -12,10 +12,10 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "base/block.hpp"
-#include "base/block_reuse.hpp"
+#include "base/system/block.hpp"
+#include "base/system/block_reuse.hpp"
 #include "base/buffer.hpp"
-#include "base/fresh_memory.hpp"
+#include "base/system/fresh_memory.hpp"
 
 namespace isotet::core {
 namespace {

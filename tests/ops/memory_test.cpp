@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Free memory under control groups, from files as the system shows them: the smallest of all limits counts.
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 
 #include <filesystem>
 #include <fstream>

@@ -21,7 +21,7 @@
 #include <gtest/gtest.h>
 
 #include "base/buffer.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace isotet::test {

@@ -13,7 +13,7 @@
 
 #include <isotet/read.hpp>
 
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "io/files/byte_source.hpp"
 #include "io/files/number_text.hpp"
 #include "io/files/text_scanner.hpp"
@@ -187,7 +187,8 @@ TEST(VtkXml, PlanesInABoxTakeNoneOfItsCells) {
     for (const int at : {0, 1, 3})
         for (const bool before : {false, true}) {
             const std::string solid = image_piece(0, 3, 1), flat = image_piece(at, at, 9);
-            const auto box = read(folder.write("box.vti", image_file(0, 3, before ? flat + solid : solid + flat))).value();
+            const auto box =
+                read(folder.write("box.vti", image_file(0, 3, before ? flat + solid : solid + flat))).value();
             ASSERT_EQ(box.grid.cells.count(), 27u);
             for (std::size_t cell = 0; cell < 27; ++cell) EXPECT_EQ(box.grid.cell_fields[0].values.at(cell), 1);
 

@@ -12,7 +12,7 @@
 
 #include <isotet/read.hpp>
 
-#include "io/files/plain_file.hpp"
+#include "base/system/plain_file.hpp"
 #include "io/files/whole_file.hpp"
 #include "readers/gmsh_sample.hpp"
 #include "support/temporary_folder.hpp"
@@ -114,7 +114,7 @@ TEST(KeptFiles, AreReadAgainWhereTheyWereChanged) {
 
 TEST(WholeFile, ThatBecameShorterIsAnError) {
     const TemporaryFolder folder;
-    const auto file = io::open_plain_file(folder.write("file", std::string(1000, 'x')));
+    const auto file = core::open_plain_file(folder.write("file", std::string(1000, 'x')));
     ASSERT_TRUE(file);
     std::vector<std::byte> room(file->size);
     EXPECT_TRUE(read_bytes(*file, "file", room, {}));

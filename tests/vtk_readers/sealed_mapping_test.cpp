@@ -12,14 +12,14 @@
 
 #include <gtest/gtest.h>
 
-#include "io/files/file_kind.hpp"
-#include "io/process/sealed_mapping.hpp"
+#include "base/system/descriptor.hpp"
+#include "base/system/sealed_mapping.hpp"
 
 namespace isotet::test {
 namespace {
 
-using io::Descriptor;
-using io::confined::map_sealed;
+using core::Descriptor;
+using core::map_sealed;
 
 Descriptor memory_file(const std::string& content) {
     Descriptor file(::memfd_create("isotet-test", MFD_CLOEXEC | MFD_ALLOW_SEALING));

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/cache_folder.hpp"
+#include "base/system/cache_folder.hpp"
 #include "support/temporary_folder.hpp"
 #include "vulkan/pipeline_cache.hpp"
 #include "vulkan/software_device.hpp"

@@ -9,9 +9,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/block.hpp"
+#include "base/system/block.hpp"
 #include "base/buffer.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 
 namespace isotet::cpu::direct {
 

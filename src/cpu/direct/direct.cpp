@@ -7,7 +7,7 @@
 
 #include <fmt/core.h>
 
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/workers.hpp"
 #include "cpu/direct/emit.hpp"
 #include "cpu/direct/normals.hpp"

@@ -14,7 +14,7 @@
 #include <isotet/grid.hpp>
 
 #include "base/carry_out.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "grid/orientation.hpp"
 #include "grid/points/same_place.hpp"

@@ -9,7 +9,7 @@
 #include <fmt/core.h>
 
 #include "base/buffer.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "io/amr/point_values.hpp"
 #include "io/amr/shown_cells.hpp"

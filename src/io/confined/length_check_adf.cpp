@@ -6,7 +6,7 @@
 #include <fmt/core.h>
 
 #include "io/confined/length_check.hpp"
-#include "io/files/plain_file.hpp"
+#include "base/system/plain_file.hpp"
 #include "io/pieces/loaded.hpp"
 
 namespace isotet::io::confined {
@@ -23,7 +23,7 @@ std::uint64_t adf_number(const char* bytes, std::size_t count, bool little) {
 } // namespace
 
 Result<void> check_adf_length(const std::string& path) {
-    const auto file = open_plain_file(path);
+    const auto file = core::open_plain_file(path);
     if (!file) return file.error();
     char header[186] = {};
     if (::pread(file->descriptor.number(), header, sizeof header, 0) != static_cast<ssize_t>(sizeof header)) return {};

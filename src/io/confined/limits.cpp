@@ -13,7 +13,7 @@
 
 #include <fmt/core.h>
 
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "io/confined/exodus/exodus_parts.hpp"
 
 namespace isotet::io::confined {

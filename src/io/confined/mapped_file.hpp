@@ -18,7 +18,7 @@ namespace isotet::io {
 /// program cuts short while it is mapped ends this process (SIGBUS), which its parent then reports.
 class MappedFile {
 public:
-    /// Errors   as open_plain_file(); machine: mapping failed
+    /// Errors   as core::open_plain_file(); machine: mapping failed
     static Result<MappedFile> open(const std::string& path);
 
     std::span<const std::byte> bytes() const noexcept { return {static_cast<const std::byte*>(data_.get()), size_}; }

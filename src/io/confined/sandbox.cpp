@@ -17,13 +17,13 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include "io/files/file_kind.hpp"
+#include "base/system/descriptor.hpp"
 
 namespace isotet::io::confined {
 namespace {
 
 void allow_reading(int ruleset, const std::string& path) {
-    const Descriptor place(::open(path.c_str(), O_PATH | O_CLOEXEC));
+    const core::Descriptor place(::open(path.c_str(), O_PATH | O_CLOEXEC));
     struct stat status{};
     if (!place || ::fstat(place.number(), &status) != 0) return;
     landlock_path_beneath_attr rule{};
@@ -39,7 +39,7 @@ void confine_files(std::span<const std::string> readable) {
     // Every right that the version knows: 13, and one each that versions 2, 3 and 5 added.
     const unsigned rights = version >= 5 ? 16 : version >= 3 ? 15 : version == 2 ? 14 : 13;
     const std::uint64_t handled = (std::uint64_t(1) << rights) - 1;
-    const Descriptor ruleset(
+    const core::Descriptor ruleset(
         static_cast<int>(::syscall(SYS_landlock_create_ruleset, &handled, sizeof handled, 0))); // its first member
     if (!ruleset) return;
     for (const std::string& path : readable) allow_reading(ruleset.number(), path);

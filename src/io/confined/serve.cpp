@@ -22,7 +22,7 @@
 
 #include <fmt/core.h>
 
-#include "base/fresh_memory.hpp"
+#include "base/system/fresh_memory.hpp"
 #include "io/confined/limits.hpp"
 #include "io/confined/loaders.hpp"
 #include "io/confined/opened_files.hpp"
@@ -31,7 +31,7 @@
 #include "io/files/escape.hpp"
 #include "io/pieces/join/join.hpp"
 #include "io/pieces/survey_unread.hpp"
-#include "io/process/channel.hpp"
+#include "base/system/channel.hpp"
 #include "io/process/messages.hpp"
 
 namespace isotet::io::confined {
@@ -39,7 +39,9 @@ namespace {
 
 constexpr int idle_milliseconds = 10000;
 
-void tell(unsigned char status) { [[maybe_unused]] const ssize_t written = ::write(channel_descriptor, &status, 1); }
+void tell(unsigned char status) {
+    [[maybe_unused]] const ssize_t written = ::write(core::channel_descriptor, &status, 1);
+}
 
 /// A thread that ends the process when the program that started it is gone, even in the middle of a file.
 void end_with_parent() {
@@ -51,7 +53,7 @@ void end_with_parent() {
     ::pthread_create(
         &thread, &attributes,
         [](void*) -> void* {
-            pollfd channel{channel_descriptor, 0, 0}; // POLLHUP is always told
+            pollfd channel{core::channel_descriptor, 0, 0}; // POLLHUP is always told
             while (::poll(&channel, 1, -1) < 0 && errno == EINTR) {}
             ::_exit(EXIT_SUCCESS);
         },
@@ -133,7 +135,7 @@ void confine_to(const Request& request) {
     watch_opened_files();
 }
 
-void serve_one(const Parcel& parcel) {
+void serve_one(const core::Parcel& parcel) {
     tell(0);
     Reply reply = Error{};
     if (auto request = receive(parcel.request.number()); !request) {
@@ -146,8 +148,8 @@ void serve_one(const Parcel& parcel) {
             const int percent = static_cast<int>(std::clamp(fraction, 0.0, 1.0) * 100);
             if (percent > last) tell(static_cast<unsigned char>(last = percent));
         });
-        limit_memory(request->options.memory_limit, [] { tell(status_memory_ran_out); });
-        limit_processor_time(*request, [] { tell(status_time_ran_out); });
+        limit_memory(request->options.memory_limit, [] { tell(core::status_memory_ran_out); });
+        limit_processor_time(*request, [] { tell(core::status_time_ran_out); });
         forbid_file_growth();
         reply = answer(*request);
     }
@@ -155,8 +157,8 @@ void serve_one(const Parcel& parcel) {
     allow_file_growth();
     const bool good = !std::holds_alternative<Error>(reply);
     const auto written = write_reply(parcel.reply.number(), std::move(reply));
-    if (written) tell(status_replied);
-    else tell(written.error().code == ErrorCode::out_of_memory ? status_memory_ran_out : status_file_limit);
+    if (written) tell(core::status_replied);
+    else tell(written.error().code == ErrorCode::out_of_memory ? core::status_memory_ran_out : core::status_file_limit);
     if (!good || !written)
         ::_exit(written ? EXIT_SUCCESS : EXIT_FAILURE); // what a broken file left behind is not used again
 }
@@ -174,7 +176,7 @@ void be_the_first_to_end() {
 int serve() {
     int kind = 0;
     socklen_t size = sizeof kind;
-    if (::getsockopt(channel_descriptor, SOL_SOCKET, SO_TYPE, &kind, &size) != 0 || kind != SOCK_SEQPACKET) {
+    if (::getsockopt(core::channel_descriptor, SOL_SOCKET, SO_TYPE, &kind, &size) != 0 || kind != SOCK_SEQPACKET) {
         std::fputs("isotet-reader reads grids for isotet, which starts it: there is nothing to call it for\n", stderr);
         return EXIT_FAILURE;
     }
@@ -183,9 +185,9 @@ int serve() {
     ::setrlimit(RLIMIT_CORE, &none);
     ::mallopt(M_MMAP_THRESHOLD, 1 << 20); // large blocks are given back to the system when freed
     std::signal(SIGXFSZ, SIG_IGN);        // a write that fails says why
-    pollfd channel{channel_descriptor, POLLIN, 0};
+    pollfd channel{core::channel_descriptor, POLLIN, 0};
     while (::poll(&channel, 1, idle_milliseconds) > 0) {
-        const auto parcel = receive_parcel(channel_descriptor);
+        const auto parcel = core::receive_parcel(core::channel_descriptor);
         if (!parcel) break;
         serve_one(*parcel);
     }

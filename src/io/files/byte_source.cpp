@@ -10,7 +10,7 @@
 namespace isotet::io {
 
 Result<ByteSource> ByteSource::open(const std::string& path) {
-    auto file = open_plain_file(path);
+    auto file = core::open_plain_file(path);
     if (!file) return file.error();
     const std::size_t size = file->size;
     return ByteSource(std::make_shared<const OpenFile>(OpenFile{std::move(*file), path}), size);

@@ -13,7 +13,7 @@
 #include <isotet/result.hpp>
 
 #include "base/buffer.hpp"
-#include "io/files/plain_file.hpp"
+#include "base/system/plain_file.hpp"
 
 namespace isotet::io {
 
@@ -43,7 +43,7 @@ private:
 /// Threads   safe from many threads
 class ISOTET_API ByteSource {
 public:
-    /// Errors   as open_plain_file()
+    /// Errors   as core::open_plain_file()
     static Result<ByteSource> open(const std::string& path);
 
     /// Borrows the text, or shares its owner.
@@ -67,7 +67,7 @@ public:
 
 private:
     struct OpenFile {
-        PlainFile file;
+        core::PlainFile file;
         std::string path;
     };
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <new>
 
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "io/files/first_error.hpp"
 
@@ -17,7 +17,7 @@ constexpr std::size_t many_bytes = std::size_t{64} << 20; ///< asking what is fr
 
 } // namespace
 
-Result<void> read_bytes(const PlainFile& file, const std::string& path, std::span<std::byte> to,
+Result<void> read_bytes(const core::PlainFile& file, const std::string& path, std::span<std::byte> to,
                         const Progress& progress, std::size_t at) {
     FirstError failed;
     core::parallel_pieces(to.size(), piece_bytes, progress, [&](std::size_t begin, std::size_t end) {
@@ -39,7 +39,7 @@ Result<WholeFile> WholeFile::read_rest(WholeFile begin, const std::string& path,
 
 Result<WholeFile> WholeFile::read_behind(std::span<const std::byte> begin, const std::string& path,
                                          const Progress& progress, std::size_t most) {
-    const auto file = open_plain_file(path);
+    const auto file = core::open_plain_file(path);
     if (!file) return file.error();
     const std::size_t size = std::min(file->size, most);
     if (begin.size() > size) begin = {}; // it was cut short since

@@ -14,7 +14,7 @@
 
 #include "base/buffer.hpp"
 #include "io/files/byte_source.hpp"
-#include "io/files/plain_file.hpp"
+#include "base/system/plain_file.hpp"
 
 namespace isotet::io {
 
@@ -26,7 +26,7 @@ public:
     static constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
 
     /// `most`   bytes from the beginning
-    /// Errors   as open_plain_file(); file, when it was cut short meanwhile; out_of_memory, before memory is taken;
+    /// Errors   as core::open_plain_file(); file, when it was cut short meanwhile; out_of_memory, before memory is taken;
     ///          cancelled
     static Result<WholeFile> read(const std::string& path, const Progress& progress, std::size_t most = all);
 
@@ -52,7 +52,7 @@ private:
 /// Fills `to` from byte `at` of an open file on, in parallel.
 ///
 /// Errors   file: the file is shorter, or reading failed; cancelled
-Result<void> read_bytes(const PlainFile& file, const std::string& path, std::span<std::byte> to,
+Result<void> read_bytes(const core::PlainFile& file, const std::string& path, std::span<std::byte> to,
                         const Progress& progress, std::size_t at = 0);
 
 } // namespace isotet::io

@@ -10,7 +10,7 @@
 #include <fmt/core.h>
 #include <libdeflate.h>
 
-#include "base/apart.hpp"
+#include "base/system/apart.hpp"
 #include "base/errors.hpp"
 #include "io/files/byte_reader.hpp"
 

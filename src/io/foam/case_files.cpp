@@ -11,7 +11,7 @@
 #include <libdeflate.h>
 
 #include "base/buffer.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "io/files/escape.hpp"
 #include "io/files/whole_file.hpp"
 #include "io/pieces/loaded.hpp"

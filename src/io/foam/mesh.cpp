@@ -8,7 +8,7 @@
 
 #include <fmt/core.h>
 
-#include "base/block.hpp"
+#include "base/system/block.hpp"
 #include "base/parallel.hpp"
 #include "io/files/text_scanner.hpp"
 #include "io/pieces/loaded.hpp"

@@ -9,7 +9,7 @@
 
 #include <fmt/core.h>
 
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "io/files/pace.hpp"
 

@@ -14,7 +14,7 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "io/files/escape.hpp"
 #include "io/files/index_file.hpp"

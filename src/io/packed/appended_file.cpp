@@ -40,11 +40,12 @@ Result<void> AppendedFile::check_place() const {
 }
 
 Result<OpenedForAppending> AppendedFile::open(const std::string& path) {
-    if (const Result<PlainFile> there = open_plain_file(path); !there) return there.error(); // before a pipe is opened
+    if (const Result<core::PlainFile> there = core::open_plain_file(path); !there)
+        return there.error(); // before a pipe is opened
     OpenedForAppending opened{AppendedFile(), {}, {}};
     AppendedFile& file = opened.file;
     file.path_ = path;
-    file.file_ = Descriptor(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+    file.file_ = core::Descriptor(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
     if (!file.file_) return file.failed(errno);
     if (::flock(file.file_.number(), LOCK_EX | LOCK_NB) != 0) {
         if (errno != EWOULDBLOCK) return file.failed(errno);

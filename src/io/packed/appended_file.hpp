@@ -11,7 +11,7 @@
 
 #include <isotet/result.hpp>
 
-#include "io/files/file_kind.hpp"
+#include "base/system/descriptor.hpp"
 #include "io/packed/format.hpp"
 #include "io/packed/piece_reader.hpp"
 
@@ -44,7 +44,7 @@ private:
     Result<void> check_place() const;
 
     std::string path_;
-    Descriptor file_;
+    core::Descriptor file_;
     std::shared_ptr<const PackedSource> before_;
     std::uint64_t end_ = 0;
     std::vector<std::byte> buffered_;

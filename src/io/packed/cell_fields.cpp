@@ -8,7 +8,7 @@
 
 #include "base/buffer.hpp"
 #include "base/errors.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "io/files/crc32c.hpp"
 #include "io/files/first_error.hpp"

@@ -8,7 +8,7 @@
 
 #include <fmt/core.h>
 
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "io/files/first_error.hpp"
 #include "io/packed/checks.hpp"

@@ -14,7 +14,7 @@
 
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "io/files/crc32c.hpp"
 #include "io/files/text_scanner.hpp"
 #include "io/packed/boundary_piece.hpp"
@@ -123,9 +123,9 @@ Result<PackedFile> PackedFile::open(const std::string& path, const PackedFileOpt
 }
 
 bool PackedFile::is_one(const std::string& path) {
-    const Result<io::PlainFile> file = io::open_plain_file(path);
+    const Result<core::PlainFile> file = core::open_plain_file(path);
     std::string head(io::packed_magic.size(), '\0');
-    return file && file->size >= head.size() && io::read_at(*file, path, 0, std::as_writable_bytes(std::span(head))) &&
+    return file && file->size >= head.size() && core::read_at(*file, path, 0, std::as_writable_bytes(std::span(head))) &&
            head == io::packed_magic;
 }
 

@@ -39,7 +39,7 @@ Result<void> read_parts(const PackedSource& source, std::uint64_t at, std::vecto
         const ssize_t read =
             ::preadv(source.file.descriptor.number(), parts.data() + first, count, static_cast<off_t>(at));
         if (read < 0 && errno == EINTR) continue;
-        if (read < 0) return system_error(source.path, "cannot be read", errno);
+        if (read < 0) return core::system_error(source.path, "cannot be read", errno);
         if (read == 0)
             return Error{ErrorCode::file, fmt::format("{} was cut short while it was read: it had {} bytes",
                                                       source.path, source.file.size)};
@@ -144,7 +144,7 @@ Result<void> PackedSource::read(std::uint64_t at, std::span<std::byte> to) const
 Result<std::shared_ptr<const PackedSource>> PackedSource::open(const std::string& path) {
     auto source = std::make_shared<PackedSource>();
     source->path = path;
-    Result<PlainFile> file = open_plain_file(path);
+    Result<core::PlainFile> file = core::open_plain_file(path);
     if (!file) return file.error();
     source->file = *std::move(file);
     std::vector<std::byte> header(std::min<std::size_t>(packed_header_bytes, source->file.size));

@@ -14,7 +14,7 @@
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
 
-#include "io/files/plain_file.hpp"
+#include "base/system/plain_file.hpp"
 #include "io/packed/chunk_places.hpp"
 #include "io/packed/format.hpp"
 
@@ -23,7 +23,7 @@ namespace isotet::io {
 /// An open packed file.
 struct PackedSource {
     std::string path;
-    PlainFile file;
+    core::PlainFile file;
     PackedDirectory directory;
     DirectorySlot slot;         ///< that holds
     std::size_t slot_place = 0; ///< the first or the second
@@ -51,7 +51,7 @@ struct ChunkedArray {
 /// Pieces of one kind, one a chunk: parts of arrays one after another.
 struct PieceKind {
     std::vector<ChunkedArray> arrays;
-    std::vector<std::uint64_t> offsets;                     ///< in the file, a chunk
+    std::vector<std::uint64_t> offsets; ///< in the file, a chunk
     std::function<std::uint32_t(std::size_t chunk)> checksum;
     std::function<Result<void>(std::size_t chunk)> check = {}; ///< of the numbers, once they are there
     std::function<void(std::size_t chunk)> fill =

@@ -13,7 +13,7 @@
 #include <isotet/packed_file.hpp>
 
 #include "base/buffer.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "io/packed/cell_fields.hpp"
 #include "io/packed/file_grid.hpp"

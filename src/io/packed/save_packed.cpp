@@ -16,7 +16,7 @@
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
 #include "io/files/crc32c.hpp"
-#include "io/files/output_file.hpp"
+#include "base/system/output_file.hpp"
 #include "io/files/text_scanner.hpp"
 #include "io/packed/appended_file.hpp"
 #include "io/packed/boundary_piece.hpp"
@@ -119,7 +119,7 @@ public:
           packed_(std::move(packed)),
           directory_(std::move(directory)),
           places_(ChunkPlaces::compact(directory_)) {}
-    PackedOutput(OutputFile file, std::shared_ptr<const Packed> packed, std::uint32_t chunk_bytes)
+    PackedOutput(core::OutputFile file, std::shared_ptr<const Packed> packed, std::uint32_t chunk_bytes)
         : file_(std::move(file)),
           packed_(std::move(packed)),
           directory_(directory_of(*packed_, chunk_bytes)),
@@ -162,7 +162,7 @@ private:
     template <class Real>
     Result<void> write_values(const Packed& packed, FieldEntry& entry);
 
-    std::variant<OutputFile, AppendedFile> file_;
+    std::variant<core::OutputFile, AppendedFile> file_;
     std::shared_ptr<const Packed> packed_;
     PackedDirectory directory_;
     ChunkPlaces places_;
@@ -266,9 +266,10 @@ Result<void> PackedOutput::compare_cells() const {
     const Packed& packed = *packed_;
     const PackedDirectory own = directory_of(packed, most_chunk_bytes);
     const auto differs = [&](const std::string& what) {
-        return invalid_argument(fmt::format("{}, so steps of this grid do not go into the file: it must be packed in the same "
-                                            "way, with the same cells and points",
-                                            what));
+        return invalid_argument(
+            fmt::format("{}, so steps of this grid do not go into the file: it must be packed in the same "
+                        "way, with the same cells and points",
+                        what));
     };
     if (own.clusters != directory_.clusters || own.counts != directory_.counts ||
         own.user_points != directory_.user_points || own.user_cells != directory_.user_cells ||
@@ -405,11 +406,11 @@ Result<void> PackedOutput::write_values(const Packed& packed, FieldEntry& entry)
     for (std::size_t k = 0; k < directory_.chunks.size(); ++k) {
         const ChunkEntry& chunk = directory_.chunks[k];
         const std::uint64_t points = places_.of(Unit::points, k), count = chunk.count(Unit::points);
-        const auto checksum = write_piece(
-            {part_of(reals.values, points, count),
-             part_of(packed.group_ranges, places_.of(Unit::groups, k), chunk.count(Unit::groups)),
-             part_of(packed.gradients, points, count)},
-            true);
+        const auto checksum =
+            write_piece({part_of(reals.values, points, count),
+                         part_of(packed.group_ranges, places_.of(Unit::groups, k), chunk.count(Unit::groups)),
+                         part_of(packed.gradients, points, count)},
+                        true);
         if (!checksum) return checksum.error();
         entry.values_checksums.push_back(*checksum);
     }
@@ -472,7 +473,7 @@ Result<std::uint64_t> PackedOutput::finish() {
         if (auto ok = appended->commit(slot); !ok) return ok.error();
         return slot.file_bytes;
     }
-    OutputFile& file = std::get<OutputFile>(file_);
+    core::OutputFile& file = std::get<core::OutputFile>(file_);
     if (auto ok = file.overwrite(packed_slots[0], encode_slot(slot)); !ok) return ok.error();
     if (auto ok = file.commit(); !ok) return ok.error();
     return slot.file_bytes;
@@ -499,7 +500,7 @@ Result<PackedWriter> PackedWriter::create(const PackedGrid& packed, const std::s
                                                 io::most_chunk_bytes));
         const auto whole = core::whole_of(packed.shared_data(), progress);
         if (!whole) return whole.error();
-        Result<io::OutputFile> file = io::OutputFile::open(path);
+        Result<core::OutputFile> file = core::OutputFile::open(path);
         if (!file) return file.error();
         io::PackedOutput output(*std::move(file), *whole, options.chunk_bytes);
         if (auto ok = output.write_cells(progress); !ok) return ok.error();

@@ -10,7 +10,7 @@
 #include <isotet/picture.hpp>
 
 #include "base/errors.hpp"
-#include "io/files/output_file.hpp"
+#include "base/system/output_file.hpp"
 
 namespace isotet {
 
@@ -130,7 +130,7 @@ Result<std::uint64_t> Animation::finish() {
     const std::unique_ptr<WebPData, decltype(&WebPDataClear)> cleared(&data, WebPDataClear);
     if (!WebPAnimEncoderAssemble(from.pictures.get(), &data)) return from.failed();
     from.pictures.reset();
-    Result<io::OutputFile> file = io::OutputFile::open(from.path);
+    Result<core::OutputFile> file = core::OutputFile::open(from.path);
     if (!file) return file.error();
     if (Result<void> written = file->write(std::as_bytes(std::span(data.bytes, data.size))); !written)
         return written.error();

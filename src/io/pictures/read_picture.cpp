@@ -8,7 +8,7 @@
 #include <png.h>
 
 #include "base/guard.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "io/files/whole_file.hpp"
 
 namespace isotet {

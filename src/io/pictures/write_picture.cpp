@@ -15,7 +15,7 @@
 
 #include <isotet/picture.hpp>
 
-#include "io/files/output_file.hpp"
+#include "base/system/output_file.hpp"
 
 namespace isotet {
 namespace io {
@@ -30,7 +30,7 @@ void put_number(std::uint8_t* to, std::uint32_t number) {
     for (int i = 0; i < 4; ++i) to[i] = static_cast<std::uint8_t>(number >> (24 - 8 * i));
 }
 
-Result<void> write_chunk(OutputFile& file, std::string_view type, std::span<const std::uint8_t> data) {
+Result<void> write_chunk(core::OutputFile& file, std::string_view type, std::span<const std::uint8_t> data) {
     std::array<std::uint8_t, 8> head{};
     put_number(head.data(), static_cast<std::uint32_t>(data.size()));
     std::memcpy(head.data() + 4, type.data(), 4);
@@ -103,7 +103,7 @@ Bytes compressed(const Bytes& bytes) {
 
 Result<std::uint64_t> write_png(const Picture& picture, const std::string& path) {
     const bool alpha = !picture.opaque();
-    Result<OutputFile> file = OutputFile::open(path);
+    Result<core::OutputFile> file = core::OutputFile::open(path);
     if (!file) return file.error();
     const Bytes data = compressed(filtered(picture, alpha ? 4 : 3));
     if (data.empty()) return Error{ErrorCode::out_of_memory, fmt::format("no memory left to write {}", path)};

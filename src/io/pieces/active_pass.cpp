@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "grid/fixed_corners.hpp"
 #include "numbers/point_hash.hpp"

@@ -5,7 +5,7 @@
 
 #include <isotet/active_cells.hpp>
 
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 
 namespace isotet::io {

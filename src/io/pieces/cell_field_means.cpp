@@ -9,7 +9,7 @@
 
 #include <isotet/fields.hpp>
 
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "grid/cell_block.hpp"
 #include "grid/cells.hpp"
 #include "grid/values/cell_means.hpp"

@@ -18,7 +18,7 @@
 #include <fmt/core.h>
 
 #include "io/files/escape.hpp"
-#include "io/process/channel.hpp"
+#include "base/system/channel.hpp"
 
 extern char** environ;
 
@@ -28,14 +28,15 @@ namespace {
 constexpr std::size_t max_output = 4096;
 
 struct Ends {
-    Descriptor ours = Descriptor(), theirs = Descriptor();
+    core::Descriptor ours = core::Descriptor(), theirs = core::Descriptor();
     explicit operator bool() const noexcept { return ours && theirs; }
 };
 
 /// Numbers from 10 on, so that placing them at 0 to 3 in the child never overwrites one that is still to be placed.
 Ends high_ends(const int (&ends)[2]) {
-    const Descriptor low_ours(ends[0]), low_theirs(ends[1]);
-    Ends high{Descriptor(::fcntl(ends[0], F_DUPFD_CLOEXEC, 10)), Descriptor(::fcntl(ends[1], F_DUPFD_CLOEXEC, 10))};
+    const core::Descriptor low_ours(ends[0]), low_theirs(ends[1]);
+    Ends high{core::Descriptor(::fcntl(ends[0], F_DUPFD_CLOEXEC, 10)),
+              core::Descriptor(::fcntl(ends[1], F_DUPFD_CLOEXEC, 10))};
     if (high.ours) ::fcntl(high.ours.number(), F_SETFL, O_NONBLOCK);
     return high;
 }
@@ -71,8 +72,8 @@ int spawn(const std::string& program, int channel, int output, pid_t& process) {
     ::posix_spawn_file_actions_addopen(&settings.actions, 0, "/dev/null", O_RDONLY, 0);
     ::posix_spawn_file_actions_adddup2(&settings.actions, output, 1);
     ::posix_spawn_file_actions_adddup2(&settings.actions, output, 2);
-    ::posix_spawn_file_actions_adddup2(&settings.actions, channel, channel_descriptor);
-    ::posix_spawn_file_actions_addclosefrom_np(&settings.actions, channel_descriptor + 1);
+    ::posix_spawn_file_actions_adddup2(&settings.actions, channel, core::channel_descriptor);
+    ::posix_spawn_file_actions_addclosefrom_np(&settings.actions, core::channel_descriptor + 1);
     sigset_t none, all;
     sigemptyset(&none);
     sigfillset(&all);
@@ -116,7 +117,7 @@ Result<std::unique_ptr<ReaderChild>> ReaderChild::start(const std::string& progr
     return std::unique_ptr<ReaderChild>(new ReaderChild(process, std::move(channel.ours), std::move(output.ours)));
 }
 
-ReaderChild::ReaderChild(pid_t process, Descriptor channel, Descriptor output)
+ReaderChild::ReaderChild(pid_t process, core::Descriptor channel, core::Descriptor output)
     : process_(process), channel_(std::move(channel)), output_(std::move(output)) {}
 
 ReaderChild::~ReaderChild() {
@@ -129,7 +130,7 @@ void ReaderChild::abandon() { running_ = false; }
 ChildOutcome ReaderChild::ask(int request, int reply, std::chrono::steady_clock::time_point deadline,
                               const Progress& progress) {
     ChildOutcome outcome;
-    send_parcel(channel_.number(), request, reply); // where it fails the process has ended, or will
+    core::send_parcel(channel_.number(), request, reply); // where it fails the process has ended, or will
     while (true) {
         const bool over = ended(outcome, WNOHANG);
         read_output(outcome);
@@ -171,10 +172,10 @@ void ReaderChild::read_status(ChildOutcome& outcome, const Progress& progress) {
         for (const char byte : bytes) {
             const auto status = static_cast<unsigned char>(byte);
             outcome.taken = true;
-            if (status == status_replied) outcome.end = ChildOutcome::End::replied;
-            else if (status == status_memory_ran_out) outcome.memory_ran_out = true;
-            else if (status == status_time_ran_out) outcome.time_ran_out = true;
-            else if (status == status_file_limit) outcome.file_limit = true;
+            if (status == core::status_replied) outcome.end = ChildOutcome::End::replied;
+            else if (status == core::status_memory_ran_out) outcome.memory_ran_out = true;
+            else if (status == core::status_time_ran_out) outcome.time_ran_out = true;
+            else if (status == core::status_file_limit) outcome.file_limit = true;
             else if (status <= 100) progress("read", status / 100.0);
         }
     });
@@ -184,9 +185,9 @@ void ReaderChild::read_status(ChildOutcome& outcome, const Progress& progress) {
 bool ReaderChild::ended(ChildOutcome& outcome, int flags) {
     siginfo_t info{};
     const auto state = process_.state(info, WEXITED | flags);
-    if (state == ProcessHandle::State::runs) return false;
+    if (state == core::ProcessHandle::State::runs) return false;
     running_ = false;
-    if (state == ProcessHandle::State::taken) {
+    if (state == core::ProcessHandle::State::taken) {
         outcome.end = ChildOutcome::End::not_known;
         return true;
     }

@@ -10,8 +10,8 @@
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
 
-#include "io/files/file_kind.hpp"
-#include "io/process/process_handle.hpp"
+#include "base/system/descriptor.hpp"
+#include "base/system/process_handle.hpp"
 
 namespace isotet::io::confined {
 
@@ -48,7 +48,7 @@ public:
     ReaderChild& operator=(const ReaderChild&) = delete;
 
 private:
-    ReaderChild(pid_t process, Descriptor channel, Descriptor output);
+    ReaderChild(pid_t process, core::Descriptor channel, core::Descriptor output);
 
     void wait_a_little(std::chrono::steady_clock::time_point deadline, const Progress& progress);
     void read_output(ChildOutcome& outcome);
@@ -56,8 +56,8 @@ private:
     bool ended(ChildOutcome& outcome, int flags);
     void kill(ChildOutcome& outcome, ChildOutcome::End why);
 
-    ProcessHandle process_;
-    Descriptor channel_, output_;
+    core::ProcessHandle process_;
+    core::Descriptor channel_, output_;
     bool running_ = true;
 };
 

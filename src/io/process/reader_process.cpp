@@ -12,7 +12,7 @@
 #include <fmt/core.h>
 
 #include "io/files/escape.hpp"
-#include "io/files/file_kind.hpp"
+#include "base/system/descriptor.hpp"
 #include "io/process/child_pool.hpp"
 #include "io/process/find_reader.hpp"
 
@@ -21,8 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Result<Descriptor> memory_file(const char* name, std::string_view content) {
-    Descriptor file(::memfd_create(name, MFD_CLOEXEC | MFD_ALLOW_SEALING));
+Result<core::Descriptor> memory_file(const char* name, std::string_view content) {
+    core::Descriptor file(::memfd_create(name, MFD_CLOEXEC | MFD_ALLOW_SEALING));
     const bool written =
         file && ::pwrite(file.number(), content.data(), content.size(), 0) == static_cast<ssize_t>(content.size());
     if (!written)

@@ -14,11 +14,11 @@
 
 #include <fmt/core.h>
 
-#include "base/block.hpp"
-#include "base/fresh_memory.hpp"
+#include "base/system/block.hpp"
+#include "base/system/fresh_memory.hpp"
 #include "base/parallel.hpp"
 #include "io/process/messages.hpp"
-#include "io/process/sealed_mapping.hpp"
+#include "base/system/sealed_mapping.hpp"
 #include "io/process/wire.hpp"
 
 namespace isotet::io::confined {
@@ -434,7 +434,7 @@ Result<void> write_reply(int descriptor, Reply reply) {
 Result<Reply> map_reply(int descriptor) {
     core::fresh_memory().forget();
     const Error incomplete{ErrorCode::internal, "the reader process ended without a complete reply"};
-    const auto mapping = map_sealed(descriptor);
+    const auto mapping = core::map_sealed(descriptor);
     if (!mapping) return mapping.error();
     const std::span<const std::byte> bytes = mapping->bytes;
     if (bytes.size() < alignment) return incomplete;

@@ -10,7 +10,7 @@
 #include <pugixml.hpp>
 
 #include "base/errors.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "io/files/pace.hpp"
 #include "io/files/zip.hpp"
 #include "io/surfaces/surface_parts.hpp"
@@ -110,8 +110,8 @@ Result<Surface> parse_3mf(std::string_view content, std::vector<std::string>& no
         return enough.error();
     pugi::xml_document document;
     if (const auto parsed = document.load_buffer_inplace(model->data(), model->size()); !parsed)
-        return invalid_data(fmt::format("the model of the 3MF file is not XML: {} at byte {}", parsed.description(),
-                                        parsed.offset));
+        return invalid_data(
+            fmt::format("the model of the 3MF file is not XML: {} at byte {}", parsed.description(), parsed.offset));
     const pugi::xml_node root = document.document_element();
     if (local_name(root) != "model")
         return invalid_data(fmt::format("the model of the 3MF file is an element \"{}\", not \"model\"", root.name()));

@@ -12,7 +12,7 @@
 #include <fmt/core.h>
 
 #include "base/errors.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/until_cancelled.hpp"
 #include "check/triangle_groups.hpp"
 #include "io/files/zip.hpp"

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "base/block.hpp"
+#include "base/system/block.hpp"
 #include "base/errors.hpp"
 #include "base/parallel.hpp"
 #include "io/files/first_error.hpp"

@@ -10,7 +10,7 @@
 #include <fmt/core.h>
 
 #include "base/errors.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "io/files/byte_reader.hpp"
 #include "io/files/first_error.hpp"

@@ -9,7 +9,7 @@
 #include <fmt/core.h>
 
 #include "base/errors.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "io/files/scalars.hpp"
 #include "io/files/text_scanner.hpp"

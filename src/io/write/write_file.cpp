@@ -8,7 +8,8 @@
 #include <fmt/format.h>
 
 #include "base/guard.hpp"
-#include "io/files/output_file.hpp"
+#include "base/system/output_file.hpp"
+#include "base/system/unfinished_files.hpp"
 
 namespace isotet {
 
@@ -35,7 +36,8 @@ std::string in_xml_attribute(std::string_view text) {
 
 std::string relative_to_folder_of(const std::string& index, const std::string& file) {
     const std::filesystem::path folder = std::filesystem::path(index).parent_path();
-    const std::filesystem::path relative = std::filesystem::path(file).lexically_relative(folder.empty() ? "." : folder);
+    const std::filesystem::path relative =
+        std::filesystem::path(file).lexically_relative(folder.empty() ? "." : folder);
     return relative.empty() ? file : relative.string();
 }
 
@@ -71,7 +73,7 @@ bool begins_with(const std::string& path, std::string_view wanted) {
 
 Result<void> write_text(std::string_view text, const std::string& path, const Run& run) {
     return core::guarded("writing a file", [&]() -> Result<void> {
-        Result<io::OutputFile> file = io::OutputFile::open(path);
+        Result<core::OutputFile> file = core::OutputFile::open(path);
         if (!file) return file.error();
         if (Result<void> written = file->write(text); !written) return written;
         if (run.progress.cancelled()) return Error{ErrorCode::cancelled, "writing a file was cancelled"};
@@ -81,13 +83,12 @@ Result<void> write_text(std::string_view text, const std::string& path, const Ru
 
 Result<void> check_writable(const std::string& path) {
     return core::guarded("looking at a file", [&]() -> Result<void> {
-        if (const Result<io::OutputFile> file = io::OutputFile::open(path); !file) return file.error();
+        if (const Result<core::OutputFile> file = core::OutputFile::open(path); !file) return file.error();
         return {}; // not committed: the new file is removed
     });
 }
 
-Result<void> write_collection(const std::vector<CollectionEntry>& entries, const std::string& path,
-                              const Run& run) {
+Result<void> write_collection(const std::vector<CollectionEntry>& entries, const std::string& path, const Run& run) {
     return core::guarded("writing a collection", [&] {
         if (std::filesystem::path(path).extension() == ".usda")
             return write_text(usd_collection(entries, path), path, run);
@@ -102,5 +103,7 @@ Result<void> write_collection(const std::vector<CollectionEntry>& entries, const
 bool is_written_collection(const std::string& path) {
     return begins_with(path, collection_begin) || begins_with(path, usd_collection_begin);
 }
+
+void remove_unfinished_files() noexcept { core::remove_noted_files(); }
 
 } // namespace isotet

@@ -92,7 +92,7 @@ Result<void> WriteStream::finish() const {
 
 Result<WriteReport> write_file(const std::string& path, const Progress& progress, std::uint64_t expected,
                                const std::function<void(WriteStream&)>& write) {
-    auto file = OutputFile::open(path);
+    auto file = core::OutputFile::open(path);
     if (!file) return file.error();
     WriteStream stream(*file, progress, expected);
     write(stream);

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// How the writers write: columns of scalars and rows of text through one OutputFile, with progress and cancel.
+// How the writers write: columns of scalars and rows of text through one core::OutputFile, with progress and cancel.
 #pragma once
 
 #include <bit>
@@ -16,7 +16,7 @@
 #include <isotet/result.hpp>
 #include <isotet/write.hpp>
 
-#include "io/files/output_file.hpp"
+#include "base/system/output_file.hpp"
 
 namespace isotet::io {
 
@@ -40,7 +40,7 @@ using RowWriter = std::function<void(std::size_t begin, std::size_t end, std::st
 class WriteStream {
 public:
     /// `expected` bytes, for progress; about right is enough.
-    WriteStream(OutputFile& file, const Progress& progress, std::uint64_t expected)
+    WriteStream(core::OutputFile& file, const Progress& progress, std::uint64_t expected)
         : file_(file), progress_(progress), expected_(expected) {}
 
     void text(std::string_view text);
@@ -69,7 +69,7 @@ private:
     }
     bool goes_on();
 
-    OutputFile& file_;
+    core::OutputFile& file_;
     const Progress& progress_;
     std::uint64_t expected_;
     std::optional<Error> error_;

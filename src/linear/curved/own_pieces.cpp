@@ -14,7 +14,7 @@
 #include <tbb/parallel_sort.h>
 
 #include "base/errors.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "linear/curved/bernstein.hpp"
 #include "linear/curved/own_cell.hpp"

@@ -13,7 +13,7 @@
 
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "linear/curved/bisection.hpp"
 #include "linear/curved/own_pieces.hpp"

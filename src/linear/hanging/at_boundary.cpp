@@ -12,7 +12,7 @@
 
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "linear/checked_cells.hpp"
 #include "linear/hanging/covers.hpp"
 #include "linear/hanging/lone_faces.hpp"

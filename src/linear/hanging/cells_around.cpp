@@ -20,7 +20,7 @@
 
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
-#include "base/fresh_memory.hpp"
+#include "base/system/fresh_memory.hpp"
 #include "grid/cell_faces.hpp"
 #include "grid/fixed_corners.hpp"
 #include "linear/checked_cells.hpp"
@@ -260,8 +260,7 @@ void CellsAround::add(std::span<const std::uint8_t> types, const Array& corners)
 Result<bool> CellsAround::may_have_hanging_points(const Run& run) {
     return core::carry_out("looking for hanging points", run, [&](const Progress& progress) -> Result<bool> {
         if (!data_) return moved_from("the cells around active ones");
-        if (data_->out_of_memory)
-            return core::ran_out_of_memory("looking for hanging points");
+        if (data_->out_of_memory) return core::ran_out_of_memory("looking for hanging points");
         if (progress.cancelled()) return Error{ErrorCode::cancelled, "looking for hanging points was cancelled"};
         // A larger face that two cells have is none that smaller ones cover: flat cells at bent boundaries have such.
         if (data_->larger.empty()) return false;

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "base/buffer.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "linear/hanging/lone_faces.hpp"
 

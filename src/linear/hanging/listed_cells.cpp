@@ -11,7 +11,7 @@
 #include <tbb/parallel_sort.h>
 
 #include "base/buffer.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "linear/hanging/cell_loops.hpp"
 
@@ -168,8 +168,7 @@ private:
             for (std::size_t cell = begin; cell < end; ++cell) {
                 const bool listed = next != listed_.end() && next->cell == cell;
                 types[cell] = listed ? core::polyhedron_type : cells_.type(cell);
-                offsets_[cell + 1] =
-                    static_cast<Index>(listed ? next->points.size() : cells_.corners(cell));
+                offsets_[cell + 1] = static_cast<Index>(listed ? next->points.size() : cells_.corners(cell));
                 face_offsets_[cell + 1] =
                     static_cast<Index>(listed ? next->faces.size() : faces_.end(cell) - faces_.begin(cell));
                 next += listed;
@@ -236,8 +235,8 @@ bool FaceEdges::find_points(ListedCell& cell) {
     return true;
 }
 
-std::vector<ListedCell> list_cells(const core::CellReader& cells, const core::FaceReader& faces,
-                                   const OpenFaces& open, const Covers& covers, const Progress& progress) {
+std::vector<ListedCell> list_cells(const core::CellReader& cells, const core::FaceReader& faces, const OpenFaces& open,
+                                   const Covers& covers, const Progress& progress) {
     return CellLister(cells, faces, open, covers).list(progress);
 }
 

@@ -9,8 +9,8 @@
 #include <fmt/core.h>
 
 #include "base/buffer.hpp"
-#include "base/fresh_memory.hpp"
-#include "base/memory.hpp"
+#include "base/system/fresh_memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "base/radix_sort.hpp"
 

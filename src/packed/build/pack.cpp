@@ -7,9 +7,9 @@
 
 #include <fmt/core.h>
 
-#include "base/block_reuse.hpp"
+#include "base/system/block_reuse.hpp"
 #include "base/carry_out.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "base/workers.hpp"
 #include "grid/cell/native_cells.hpp"

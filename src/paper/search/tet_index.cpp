@@ -8,7 +8,7 @@
 
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
 #include "numbers/storage.hpp"

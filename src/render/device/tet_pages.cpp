@@ -9,7 +9,7 @@
 #include <fmt/core.h>
 
 #include "base/errors.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "numbers/normal_code.hpp"
 #include "render/device/send.hpp"

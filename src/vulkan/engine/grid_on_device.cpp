@@ -8,7 +8,7 @@
 #include <fmt/core.h>
 
 #include "base/errors.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 
 namespace isotet::vulkan {
 

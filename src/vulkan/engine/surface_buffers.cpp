@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 
 namespace isotet::vulkan {

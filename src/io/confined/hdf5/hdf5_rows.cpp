@@ -11,7 +11,7 @@
 #include <fmt/core.h>
 
 #include "base/buffer.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "io/confined/hdf5/hdf5_file.hpp"
 #include "io/confined/hdf5/hdf5_filters.hpp"
 #include "io/confined/hdf5/hdf5_stored_rows.hpp"

@@ -13,7 +13,7 @@
 #include <fmt/core.h>
 
 #include "base/buffer.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "io/confined/netcdf/netcdf_file.hpp"
 #include "io/files/byte_source.hpp"

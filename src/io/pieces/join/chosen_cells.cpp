@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "grid/values/values_in_ranges.hpp"
 
 namespace isotet::io {

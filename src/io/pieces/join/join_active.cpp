@@ -11,8 +11,8 @@
 #include <type_traits>
 #include <utility>
 
-#include "base/block.hpp"
-#include "base/memory.hpp"
+#include "base/system/block.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "grid/fixed_corners.hpp"
 #include "io/files/first_error.hpp"

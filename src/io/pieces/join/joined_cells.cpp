@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/buffer.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "io/pieces/join/face_streams.hpp"
 #include "io/pieces/join/piece_points.hpp"

@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 
 #include "base/buffer.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "io/files/escape.hpp"
 #include "io/pieces/common_type.hpp"

@@ -8,7 +8,7 @@
 
 #include <isotet/linear_cells.hpp>
 
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "base/radix_sort.hpp"
 #include "grid/cell_faces.hpp"

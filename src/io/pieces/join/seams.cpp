@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "base/buffer.hpp"
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "base/radix_sort.hpp"
 #include "grid/orientation.hpp"

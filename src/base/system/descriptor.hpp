@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-namespace isotet::io {
+namespace isotet::core {
 
 /// Owns an open file descriptor.
 class Descriptor {
@@ -44,4 +44,4 @@ inline std::string_view what_else_than_a_file(mode_t mode) noexcept {
     return "a device";
 }
 
-} // namespace isotet::io
+} // namespace isotet::core

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "io/files/plain_file.hpp"
+#include "base/system/plain_file.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -11,7 +11,7 @@
 
 #include <fmt/core.h>
 
-namespace isotet::io {
+namespace isotet::core {
 
 Error system_error(const std::string& path, std::string_view what, int number) {
     const bool machine = number == ENOMEM || number == EMFILE || number == ENFILE || number == EIO;
@@ -58,4 +58,4 @@ Result<void> read_at(const PlainFile& file, const std::string& path, std::size_t
     return {};
 }
 
-} // namespace isotet::io
+} // namespace isotet::core

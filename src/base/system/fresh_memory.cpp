@@ -1,10 +1,10 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "base/fresh_memory.hpp"
+#include "base/system/fresh_memory.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 
 namespace isotet::core {
 

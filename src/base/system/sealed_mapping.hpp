@@ -6,9 +6,10 @@
 #include <memory>
 #include <span>
 
+#include <isotet/export.hpp>
 #include <isotet/result.hpp>
 
-namespace isotet::io::confined {
+namespace isotet::core {
 
 struct SealedMapping {
     std::span<const std::byte> bytes;
@@ -21,6 +22,6 @@ struct SealedMapping {
 ///
 /// `descriptor`  may be closed afterwards
 /// Errors        machine: it cannot be sealed (no memory file, or mapped for writing) or mapped
-Result<SealedMapping> map_sealed(int descriptor);
+ISOTET_API Result<SealedMapping> map_sealed(int descriptor);
 
-} // namespace isotet::io::confined
+} // namespace isotet::core

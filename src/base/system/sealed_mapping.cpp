@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "io/process/sealed_mapping.hpp"
+#include "base/system/sealed_mapping.hpp"
 
 #include <cerrno>
 #include <cstring>
@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-namespace isotet::io::confined {
+namespace isotet::core {
 
 Result<SealedMapping> map_sealed(int descriptor) {
     if (::fcntl(descriptor, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL) != 0)
@@ -29,4 +29,4 @@ Result<SealedMapping> map_sealed(int descriptor) {
     return SealedMapping{{static_cast<const std::byte*>(begin), size}, std::move(owner)};
 }
 
-} // namespace isotet::io::confined
+} // namespace isotet::core

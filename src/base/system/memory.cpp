@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "base/memory.hpp"
+#include "base/system/memory.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -15,9 +15,9 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "base/block.hpp"
-#include "base/fresh_memory.hpp"
-#include "base/scratch_memory.hpp"
+#include "base/system/block.hpp"
+#include "base/system/fresh_memory.hpp"
+#include "base/system/scratch_memory.hpp"
 
 namespace isotet::core {
 

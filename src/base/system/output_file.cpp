@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Temporary file, checked writes, fsync, rename.
-#include "io/files/output_file.hpp"
+#include "base/system/output_file.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -17,9 +17,9 @@
 
 #include <fmt/core.h>
 
-#include "io/files/unfinished_files.hpp"
+#include "base/system/unfinished_files.hpp"
 
-namespace isotet::io {
+namespace isotet::core {
 namespace {
 
 constexpr std::size_t buffer_size = std::size_t{1} << 20;
@@ -27,7 +27,7 @@ constexpr std::size_t largest_write = std::size_t{1} << 30; // the kernel takes 
 constexpr int max_links = 40;                               // as many as the kernel follows
 constexpr int max_names = 10000;
 
-Error system_error(std::string_view path, std::string_view what, int number) {
+Error write_error(std::string_view path, std::string_view what, int number) {
     // Who has to act: a path that cannot be is the caller's business, all else the machine's.
     const bool path_is_wrong = number == ENOENT || number == ENOTDIR || number == ENAMETOOLONG || number == ELOOP;
     return {path_is_wrong ? ErrorCode::file : ErrorCode::cannot_write,
@@ -48,16 +48,16 @@ Result<std::string> follow_links(const std::string& path) {
         struct stat status{};
         if (::lstat(current.c_str(), &status) != 0) {
             if (errno == ENOENT) return current;
-            return system_error(path, "cannot be written", errno);
+            return write_error(path, "cannot be written", errno);
         }
         if (!S_ISLNK(status.st_mode)) return current;
         char target[PATH_MAX];
         const auto length = ::readlink(current.c_str(), target, sizeof target);
-        if (length < 0) return system_error(path, "cannot be written", errno);
+        if (length < 0) return write_error(path, "cannot be written", errno);
         const std::string next(target, static_cast<std::size_t>(length));
         current = next.starts_with('/') ? next : split_path(current).first + "/" + next;
     }
-    return system_error(path, "cannot be written", ELOOP);
+    return write_error(path, "cannot be written", ELOOP);
 }
 
 constexpr const char* own_files = "/proc/self/fd";
@@ -116,11 +116,11 @@ Result<OutputFile> OutputFile::open(const std::string& path) {
                          fmt::format("{} is {}: only a plain file can be written", path, kind)};
         }
         if (::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) != 0) {
-            return system_error(path, "cannot be overwritten", errno);
+            return write_error(path, "cannot be overwritten", errno);
         }
         out.mode_ = status.st_mode & 0777U;
     } else if (errno != ENOENT) {
-        return system_error(path, "cannot be written", errno);
+        return write_error(path, "cannot be written", errno);
     }
     auto target = follow_links(path);
     if (!target) return target.error();
@@ -133,7 +133,7 @@ Result<OutputFile> OutputFile::open(const std::string& path) {
     out.folder_ = Descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (!out.folder_ && errno == EACCES)
         out.folder_ = Descriptor(::open(folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
-    if (!out.folder_) return system_error(path, fmt::format("cannot write in the folder {}", folder), errno);
+    if (!out.folder_) return write_error(path, fmt::format("cannot write in the folder {}", folder), errno);
 
     // An old file's content may be private: the new one must not be readable by others before it has the same permissions.
     const mode_t mode = out.mode_ ? 0600 : 0666;
@@ -147,7 +147,7 @@ Result<OutputFile> OutputFile::open(const std::string& path) {
         if (out.file_) out.take_temporary_name(std::move(candidate));
         else if (errno != EEXIST) break;
     }
-    if (!out.file_) return system_error(path, fmt::format("cannot write in the folder {}", folder), errno);
+    if (!out.file_) return write_error(path, fmt::format("cannot write in the folder {}", folder), errno);
     out.buffer_ = std::make_unique_for_overwrite<std::byte[]>(buffer_size);
     return out;
 }
@@ -224,7 +224,7 @@ bool OutputFile::give_name() {
 
 Error OutputFile::fail(std::string_view what, int number) {
     discard();
-    error_ = system_error(path_, what, number);
+    error_ = write_error(path_, what, number);
     return *error_;
 }
 
@@ -244,4 +244,4 @@ void OutputFile::leave_temporary_name() noexcept {
     temporary_name_.clear();
 }
 
-} // namespace isotet::io
+} // namespace isotet::core

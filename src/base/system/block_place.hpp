@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-#include "base/block.hpp"
+#include "base/system/block.hpp"
 
 namespace isotet::core {
 

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "base/cache_folder.hpp"
+#include "base/system/cache_folder.hpp"
 
 #include <cstdlib>
 

@@ -1,12 +1,12 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "io/process/process_handle.hpp"
+#include "base/system/process_handle.hpp"
 
 #include <cerrno>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace isotet::io::confined {
+namespace isotet::core {
 
 constexpr auto by_descriptor = static_cast<idtype_t>(3); // P_PIDFD; older C libraries do not name it
 
@@ -32,4 +32,4 @@ void ProcessHandle::kill() {
     else ::kill(number_, SIGKILL);
 }
 
-} // namespace isotet::io::confined
+} // namespace isotet::core

@@ -1,12 +1,12 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "io/process/channel.hpp"
+#include "base/system/channel.hpp"
 
 #include <cerrno>
 #include <cstring>
 #include <sys/socket.h>
 #include <sys/uio.h>
 
-namespace isotet::io::confined {
+namespace isotet::core {
 namespace {
 
 /// A packet of one byte, with room for two descriptors.
@@ -55,4 +55,4 @@ std::optional<Parcel> receive_parcel(int channel) {
     return Parcel{Descriptor(files[0]), Descriptor(files[1])};
 }
 
-} // namespace isotet::io::confined
+} // namespace isotet::core

@@ -1,8 +1,8 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "base/block.hpp"
-#include "base/block_place.hpp"
-#include "base/block_reuse.hpp"
-#include "base/fresh_memory.hpp"
+#include "base/system/block.hpp"
+#include "base/system/block_place.hpp"
+#include "base/system/block_reuse.hpp"
+#include "base/system/fresh_memory.hpp"
 
 #include <algorithm>
 #include <atomic>

@@ -1,14 +1,12 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "io/files/unfinished_files.hpp"
+#include "base/system/unfinished_files.hpp"
 
 #include <array>
 #include <atomic>
 #include <cstring>
 #include <unistd.h>
 
-#include <isotet/write.hpp>
-
-namespace isotet {
+namespace isotet::core {
 namespace {
 
 constexpr int nothing = -1, changing = -2;
@@ -24,7 +22,7 @@ std::array<UnfinishedFile, 64> unfinished_files;
 
 } // namespace
 
-void io::note_unfinished_file(int folder, const std::string& name) noexcept {
+void note_unfinished_file(int folder, const std::string& name) noexcept {
     for (UnfinishedFile& file : unfinished_files) {
         int free = nothing;
         if (name.size() >= file.name.size() || !file.folder.compare_exchange_strong(free, changing)) continue;
@@ -34,7 +32,7 @@ void io::note_unfinished_file(int folder, const std::string& name) noexcept {
     }
 }
 
-void io::forget_unfinished_file(int folder, const std::string& name) noexcept {
+void forget_unfinished_file(int folder, const std::string& name) noexcept {
     for (UnfinishedFile& file : unfinished_files) {
         int own = folder;
         if (name != file.name.data()) continue;
@@ -42,9 +40,9 @@ void io::forget_unfinished_file(int folder, const std::string& name) noexcept {
     }
 }
 
-void remove_unfinished_files() noexcept {
+void remove_noted_files() noexcept {
     for (const UnfinishedFile& file : unfinished_files)
         if (const int folder = file.folder; folder >= 0) ::unlinkat(folder, file.name.data(), 0);
 }
 
-} // namespace isotet
+} // namespace isotet::core

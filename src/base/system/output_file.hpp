@@ -10,11 +10,12 @@
 #include <string>
 #include <string_view>
 
+#include <isotet/export.hpp>
 #include <isotet/result.hpp>
 
-#include "io/files/file_kind.hpp"
+#include "base/system/descriptor.hpp"
 
-namespace isotet::io {
+namespace isotet::core {
 
 /// A file that appears under its name only when it is whole.
 ///
@@ -27,7 +28,7 @@ namespace isotet::io {
 ///
 /// Errors   of all calls: invalid_argument: `path` is a folder or not a plain file; file: its folder does not exist;
 ///          machine: the disk is full, not writable and so on, with the path and the system's words
-class OutputFile {
+class ISOTET_API OutputFile {
 public:
     static Result<OutputFile> open(const std::string& path);
 
@@ -66,4 +67,4 @@ private:
     std::optional<Error> error_;
 };
 
-} // namespace isotet::io
+} // namespace isotet::core

@@ -7,9 +7,9 @@
 
 #include <isotet/export.hpp>
 
-#include "io/files/file_kind.hpp"
+#include "base/system/descriptor.hpp"
 
-namespace isotet::io::confined {
+namespace isotet::core {
 
 /// What a reader process finds open besides 0 (/dev/null), 1 and 2 (both collected); all others are closed.
 constexpr int channel_descriptor = 3;
@@ -25,9 +25,9 @@ struct Parcel {
 };
 
 /// False when the other end is closed.
-bool send_parcel(int channel, int request, int reply);
+ISOTET_API bool send_parcel(int channel, int request, int reply);
 
 /// Waits for a parcel; nothing when the other end is closed.
 ISOTET_API std::optional<Parcel> receive_parcel(int channel);
 
-} // namespace isotet::io::confined
+} // namespace isotet::core

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "base/scratch_memory.hpp"
+#include "base/system/scratch_memory.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -24,8 +24,8 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
-#include "base/block_place.hpp"
-#include "base/memory.hpp"
+#include "base/system/block_place.hpp"
+#include "base/system/memory.hpp"
 
 namespace isotet::core {
 

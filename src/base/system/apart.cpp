@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "base/apart.hpp"
+#include "base/system/apart.hpp"
 
 #ifndef __wasm__
 #include <algorithm>

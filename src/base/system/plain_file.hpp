@@ -9,9 +9,9 @@
 #include <isotet/export.hpp>
 #include <isotet/result.hpp>
 
-#include "io/files/file_kind.hpp"
+#include "base/system/descriptor.hpp"
 
-namespace isotet::io {
+namespace isotet::core {
 
 /// A plain file that is open for reading.
 struct PlainFile {
@@ -28,9 +28,9 @@ ISOTET_API Result<PlainFile> open_plain_file(const std::string& path);
 /// Fills `to` with the bytes of the file from `at` on.
 ///
 /// Errors   file: the file ends before, so it was cut short meanwhile; machine
-Result<void> read_at(const PlainFile& file, const std::string& path, std::size_t at, std::span<std::byte> to);
+ISOTET_API Result<void> read_at(const PlainFile& file, const std::string& path, std::size_t at, std::span<std::byte> to);
 
 /// "PATH: cannot be read: REASON" for an errno.
 ISOTET_API Error system_error(const std::string& path, std::string_view what, int number);
 
-} // namespace isotet::io
+} // namespace isotet::core

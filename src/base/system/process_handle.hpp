@@ -4,13 +4,13 @@
 #include <csignal>
 #include <sys/types.h>
 
-#include "io/files/file_kind.hpp"
+#include "base/system/descriptor.hpp"
 
-namespace isotet::io::confined {
+namespace isotet::core {
 
 /// A child by a descriptor, which stays its own: as soon as another part of this program has waited for the child (a handler
 /// of SIGCHLD, say), its number may be another process's. Before Linux 5.4 there is the number alone.
-class ProcessHandle {
+class ISOTET_API ProcessHandle {
 public:
     explicit ProcessHandle(pid_t number);
 
@@ -30,4 +30,4 @@ private:
     Descriptor descriptor_;
 };
 
-} // namespace isotet::io::confined
+} // namespace isotet::core
