@@ -216,18 +216,19 @@ void add_sessions(nb::module_& module) {
                std::string_view precision, std::optional<std::string_view> method, std::uint64_t surfaces,
                bool split_cells, const Frame* frame, std::optional<double> tolerance,
                std::optional<double> relative_tolerance, double geometry_tolerance, double distance,
-               bool exact_vertices, std::vector<double> expected_isovalues, bool pack_all) {
+               bool exact_vertices, bool extract_while_packing, std::vector<double> expected_isovalues, bool pack_all) {
                 new (self) ContourOptions(contour_options(
                     normals, edge_ends, source_cells, ties, precision, method, surfaces, split_cells, frame,
                     refine_options(tolerance, relative_tolerance, geometry_tolerance, distance)));
                 self->exact_vertices = exact_vertices;
+                self->extract_while_packing = extract_while_packing;
                 self->expected_isovalues = std::move(expected_isovalues);
                 self->pack_all = pack_all;
             },
             "normals"_a, "edge_ends"_a, "source_cells"_a, "ties"_a, "precision"_a, "method"_a.none(), "surfaces"_a,
             "split_cells"_a = false, "frame"_a.none() = nb::none(), "tolerance"_a.none() = nb::none(),
             "relative_tolerance"_a.none() = nb::none(), "geometry_tolerance"_a = 0.0, "distance"_a = 0.0,
-            "exact_vertices"_a = false, "expected_isovalues"_a = std::vector<double>(), "pack_all"_a = false)
+            "exact_vertices"_a = false, "extract_while_packing"_a = false, "expected_isovalues"_a = std::vector<double>(), "pack_all"_a = false)
         .def(
             "refine_for",
             [](ContourOptions& self, const FieldsIn& fields) {

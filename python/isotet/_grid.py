@@ -240,7 +240,7 @@ class Grid:
         options = _isotet.ContourOptions(normals, edge_ends, source_cells, ties, precision, method, len(values),
                                          split_cells, frame and frame._frame,
                                          *tolerances_in(tolerance, geometry_tolerance, distance),
-                                         exact_vertices, values)  # fmt: skip
+                                         exact_vertices, expected_isovalues=values)  # fmt: skip
         carried = self._carried(fields, "fields")
         if isinstance(field, _isotet.PointField):  # of a cut
             options.refine_for(carried)
@@ -629,6 +629,8 @@ class Contour:
         As for `Grid.contour`. With a tolerance curved cells are refined for each isovalue, field and step again.
     surfaces
         How many surfaces will be asked for in all; 0: not known.
+    extract_while_packing
+        `prepare`, called by another thread, packs while this one extracts directly: the first surface comes at once.
 
     >>> import isotet
     >>> grid = isotet.make("kuhn", 8, ["sphere", "gyroid"])
@@ -647,11 +649,11 @@ class Contour:
                  source_cells: bool = False, ties: str = "merge", precision: str = "float32", method: str | None = None,
                  split_cells: bool = False, surfaces: int = 0, frame: Frame | None = None,
                  tolerance: float | str | None = None, geometry_tolerance: float = 0.0, distance: float = 0.0,
-                 exact_vertices: bool = False, centre: str = "mean"):  # fmt: skip
+                 exact_vertices: bool = False, extract_while_packing: bool = False, centre: str = "mean"):  # fmt: skip
         call = call_options(0, None)
         words_in(normals=normals, ties=ties, precision=precision)
         self._centre = centre
-        self._refinement = (*tolerances_in(tolerance, geometry_tolerance, distance), exact_vertices)
+        self._refinement = (*tolerances_in(tolerance, geometry_tolerance, distance), exact_vertices, extract_while_packing)
         self._options = (normals, edge_ends, source_cells, ties, precision, method, surfaces, split_cells)
         self._remember(grid, field, fields, cell_fields, frame)
         self._session = _isotet.Contour(grid._grid, grid._field(field, call, frame is not None, centre),
@@ -698,7 +700,8 @@ class Contour:
         return Surface._of(*self._session.extract(isovalues_in(isovalues), call_options(threads, progress)))
 
     def prepare(self, *, threads: int = 0, progress: Progress | None = None) -> None:
-        """Packs now what the next surface would pack first; nothing where surfaces are extracted directly."""
+        """Packs now what the next surface would pack first; nothing where surfaces are extracted directly, unless
+        `extract_while_packing` is set."""
         self._session.prepare(call_options(threads, progress))
 
     @property

@@ -4,6 +4,7 @@
 import copy
 import pickle
 import sys
+import threading
 
 import numpy as np
 import pytest
@@ -240,6 +241,25 @@ def test_sessions_see_what_was_changed_in_place_in_the_same_grid(shape, dtype):
     if made.faces is None:
         cells[:10] = cells[10]
         differs("grid")
+
+
+def test_sessions_extract_while_another_thread_packs(sphere):
+    session = isotet.Contour(sphere, "sphere", fields=[], extract_while_packing=True)
+    meanwhile = []
+
+    def extract():
+        meanwhile.append(session.contour(0.5))
+
+    def told(step, fraction):
+        if not meanwhile:
+            thread = threading.Thread(target=extract)
+            thread.start()
+            thread.join()
+
+    session.prepare(progress=told)
+    assert meanwhile[0].method == "direct" and same(meanwhile[0], sphere.contour(0.5, "sphere", fields=[], method="direct"))
+    packed = session.contour(0.5)
+    assert packed.method == "clusters" and same(packed, sphere.contour(0.5, "sphere", fields=[], method="clusters"))
 
 
 def test_sessions_find_out_what_is_the_same(sphere):
