@@ -240,8 +240,8 @@ ISOTET_API bool is_contoured(std::uint8_t cell_type) noexcept;
 /// dimensions. It has no isosurface; its cells are what boundary_of() gives. Cost: one pass over the types
 ISOTET_API bool has_only_flat_cells(const Cells& cells);
 
-/// Points that have the coordinates of another point. Topology goes by point numbers, so surfaces are open there, until
-/// merge_points() joins them.
+/// Points that have the coordinates of another point, but for roundings. Topology goes by point numbers, so surfaces are
+/// open there, until merge_points() joins them.
 struct CoincidentPoints {
     std::uint64_t points = 0; ///< but the first at each place
     bool estimated = false;   ///< from a sample: exact up to 65,536 points
@@ -249,10 +249,10 @@ struct CoincidentPoints {
 
 /// Estimates how many points that cells use coincide with others. The grid need not have been checked.
 ///
-/// The sample is chosen by coordinates, so of the points at one place all are in it or none is.
+/// Places are one within rounding_of(), or 6e-8 of the largest coordinate where cells share next to no points.
 ///
 /// Guarantees   the same for any thread count; 0 where fewer than a thousandth of the points coincide
-/// Cost         one parallel pass over the points, about 65,000 of which are sorted; another over the connectivity only
+/// Cost         one parallel pass over the points, about 65,000 of which are looked up; two over the connectivity only
 ///              where points coincide
 ISOTET_API CoincidentPoints estimate_coincident_points(const Grid& grid, const Run& run = {});
 
@@ -260,7 +260,7 @@ ISOTET_API CoincidentPoints estimate_coincident_points(const Grid& grid, const R
 /// 0 where no coordinate but 0 is finite. Cost: one pass over the points
 ISOTET_API double rounding_of(const Array& points, const Run& run = {});
 
-/// False where estimate_coincident_points() finds none, whatever the cells are. Cost: the first of its passes
+/// False where estimate_coincident_points() finds none within rounding_of(), whatever the cells are. Cost: its first pass
 ISOTET_API bool may_have_coincident_points(const Array& points, const Run& run = {});
 
 } // namespace isotet

@@ -25,6 +25,7 @@
 #include <isotet/slice.hpp>
 
 #include "grid/orientation.hpp"
+#include "grid/points/coincident_points.hpp"
 #include "jobs/block_field.hpp"
 #include "jobs/cell_choice.hpp"
 #include "base/parallel.hpp"
@@ -74,17 +75,22 @@ FileInfo info_of(const SurfaceFile& file, const Grid& grid, const std::string& p
     return info;
 }
 
-std::string tolerance_of_rounding(const Array& points, const Run& run) {
-    const double tolerance = rounding_of(points, run);
+/// `gap`   that it must span
+std::string tolerance_of_rounding(const Array& points, double gap, const Run& run) {
+    const double spanning = gap > 0 ? std::pow(10.0, std::ceil(std::log10(gap))) : 0;
+    const double tolerance = std::max(rounding_of(points, run), spanning);
     return tolerance > 0 ? fmt::format("1e{}", std::lround(std::log10(tolerance))) : "0";
 }
 
 std::string coincident_points_note(const Grid& grid, const Run& run) {
-    const CoincidentPoints found = estimate_coincident_points(grid, run);
+    const core::DoubledPoints found = core::estimate_doubled_points(grid, run);
     if (found.points == 0) return {};
-    return fmt::format("{}{} coincide{} with other points: the surface has seams there; `merge_points` {} joins them",
-                       found.estimated ? "about " : "", counted(found.points, "point"), found.points == 1 ? "s" : "",
-                       tolerance_of_rounding(grid.points, run));
+    const char* const ending = found.points == 1 ? "s" : "";
+    return fmt::format("{}{} {} other points: the surface has seams there; `merge_points` {} joins them",
+                       found.estimated ? "about " : "", counted(found.points, "point"),
+                       found.gap > 0 ? fmt::format("lie{} up to {:.2g} beside", ending, found.gap)
+                                     : fmt::format("coincide{} with", ending),
+                       tolerance_of_rounding(grid.points, found.gap, run));
 }
 
 /// What is said of fields whose values differ at merged points; empty where none does.

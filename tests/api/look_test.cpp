@@ -38,7 +38,8 @@ TEST(Statistics, AreOfEachComponentAndOfFiniteValues) {
 
 TEST(Statistics, CanBeCancelled) {
     const std::atomic<bool> cancel = true;
-    const auto all = statistics_of(Array::own(std::vector<double>(8, 1.0)), {.progress = {.report = {}, .cancel = &cancel}});
+    const auto all =
+        statistics_of(Array::own(std::vector<double>(8, 1.0)), {.progress = {.report = {}, .cancel = &cancel}});
     ASSERT_FALSE(all);
     EXPECT_EQ(all.error().code, ErrorCode::cancelled);
 }
@@ -70,7 +71,8 @@ TEST(CellCounts, AreByType) {
     EXPECT_EQ(sum, mixed.cells.count());
 }
 
-Grid with_doubled_points(std::size_t side) {
+/// `noise`   moves each of the doubled points by up to as much along each axis
+Grid with_doubled_points(std::size_t side, double noise = 0) {
     Grid grid = make_grid({.shape = "kuhn", .side = side}).value();
     const auto old = grid.cells.connectivity;
     std::vector<std::uint64_t> numbers;
@@ -78,7 +80,8 @@ Grid with_doubled_points(std::size_t side) {
     for (std::size_t i = 0; i < old.tuples(); ++i) {
         const auto point = static_cast<std::size_t>(old.at(i));
         numbers.push_back(i);
-        for (std::size_t axis = 0; axis < 3; ++axis) points.push_back(grid.points.at(point, axis));
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            points.push_back(grid.points.at(point, axis) + noise * std::sin(static_cast<double>(3 * i + axis)));
     }
     grid.points = Array::own(std::move(points), 3);
     grid.cells.connectivity = Array::own(std::move(numbers));
@@ -95,6 +98,27 @@ TEST(CoincidentPoints, AreCountedOnSmallGridsAndEstimatedOnLargeOnes) {
     const double expected = 4.0 * 6 * 24 * 24 * 24 - 25 * 25 * 25;
     EXPECT_TRUE(many.estimated);
     EXPECT_NEAR(static_cast<double>(many.points), expected, 0.05 * expected);
+}
+
+TEST(CoincidentPoints, AreThoseApartByRoundingToo) {
+    for (const double noise : {1e-15, 1e-12, 1e-8}) {
+        const Grid grid = with_doubled_points(4, noise);
+        EXPECT_EQ(estimate_coincident_points(grid).points, 4u * 6 * 4 * 4 * 4 - 5 * 5 * 5) << noise;
+        EXPECT_TRUE(may_have_coincident_points(grid.points)) << noise;
+    }
+    const CoincidentPoints many = estimate_coincident_points(with_doubled_points(24, 1e-13));
+    const double expected = 4.0 * 6 * 24 * 24 * 24 - 25 * 25 * 25;
+    EXPECT_NEAR(static_cast<double>(many.points), expected, 0.05 * expected);
+}
+
+TEST(CoincidentPoints, AreNotTheCornersOfThinCells) {
+    Grid grid = make_grid({.shape = "kuhn", .side = 6}).value();
+    std::vector<double> points;
+    for (std::size_t i = 0; i < grid.points.tuples(); ++i)
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            points.push_back(grid.points.at(i, axis) * (axis == 2 ? 1e-12 : 1));
+    grid.points = Array::own(std::move(points), 3);
+    EXPECT_EQ(estimate_coincident_points(grid).points, 0u);
 }
 
 TEST(Looks, BeginNoThreadWhereThereIsToBeOne) {

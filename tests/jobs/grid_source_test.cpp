@@ -2,8 +2,11 @@
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
+#include <isotet/make.hpp>
 #include <isotet/write.hpp>
 
 #include "jobs/listener.hpp"
@@ -108,6 +111,39 @@ TEST(GridSource, NotesPointsThatCoincideAndMergesThem) {
     EXPECT_EQ(joined.noted[0], "3 points were merged with others");
     EXPECT_EQ(joined.noted[1], "values of merged points differ: 't' by up to 0.5; they have that of the lowest "
                                "number, `merge_values` mean takes means");
+}
+
+/// As discontinuous elements are written, each computed by itself.
+TEST(GridSource, NotesPointsApartByRoundingWhereCellsStayInTheFile) {
+    const test::TemporaryFolder folder;
+    Grid grid = make_grid({.shape = "kuhn", .side = 6}).value();
+    std::vector<double> points, values;
+    std::vector<std::int32_t> corners;
+    for (std::size_t i = 0; i < grid.cells.connectivity.tuples(); ++i) {
+        const auto point = static_cast<std::size_t>(grid.cells.connectivity.at(i));
+        corners.push_back(static_cast<std::int32_t>(i));
+        values.push_back(grid.points.at(point, 0));
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            points.push_back(grid.points.at(point, axis) + 1e-9 * std::sin(static_cast<double>(3 * i + axis)));
+    }
+    grid.points = Array::own(std::move(points), 3);
+    grid.cells.connectivity = Array::own(std::move(corners));
+    grid.point_fields = {{"u", Array::own(std::move(values))}};
+    GridOptions options;
+    options.file = folder.file("a.vtu");
+    ASSERT_TRUE(write_grid(grid, options.file));
+    Listener listener;
+    const GridSource source = open(options, listener);
+    ReadActiveCells active;
+    active.field = "u";
+    active.isovalues = {0.1};
+    const auto read =
+        source.read_active({std::vector<std::string>{"u"}, std::vector<std::string>{}}, 0, active, listener);
+    ASSERT_TRUE(read) << read.error().message;
+    ASSERT_EQ(listener.noted.size(), 1u);
+    EXPECT_EQ(
+        listener.noted[0].substr(listener.noted[0].find("points lie")),
+        "points lie up to 2.5e-09 beside other points: the surface has seams there; `merge_points` 1e-8 joins them");
 }
 
 TEST(GridSource, RefusesWhatTheGridDoesNotHave) {

@@ -6,7 +6,14 @@
 #include <isotet/fields.hpp>
 #include <isotet/grid.hpp>
 
+#include "grid/points/coincident_points.hpp"
+
 namespace isotet::io {
+
+bool may_coincide(const Array& points, std::uint64_t cells) {
+    const bool are_cells_apart = points.tuples() > 3 * cells; // so many only where they share next to none
+    return core::may_have_doubled_points(points, are_cells_apart);
+}
 
 namespace {
 
@@ -23,10 +30,11 @@ Result<PointField> active_field(const Grid& grid, const ReadActiveCells& active,
 }
 
 std::optional<ActiveCellFilter> active_filter(const Grid& grid, const std::optional<PointField>& known,
-                                              std::optional<CellType> type, const ReadOptions& options, bool numbers,
+                                              std::optional<CellType> type, std::uint64_t cells,
+                                              const ReadOptions& options, bool numbers,
                                               std::vector<double>& isovalues) {
     if (!options.active_cells || !options.displace.empty()) return std::nullopt;
-    if (may_have_coincident_points(grid.points)) return std::nullopt;
+    if (may_coincide(grid.points, cells)) return std::nullopt;
     const ReadActiveCells& active = *options.active_cells;
     const auto field = active_field(grid, active, known);
     if (!field) return std::nullopt;

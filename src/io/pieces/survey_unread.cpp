@@ -18,6 +18,7 @@
 #include "fields/cell_corners_sample.hpp"
 #include "grid/fixed_corners.hpp"
 #include "grid/patches.hpp"
+#include "io/pieces/active_filter.hpp"
 #include "io/pieces/join/piece_points.hpp"
 
 namespace isotet::io {
@@ -116,7 +117,7 @@ CellCounter::CellCounter(std::unique_ptr<Data> data) : data_(std::move(data)) {}
 CellCounter::~CellCounter() = default;
 
 std::unique_ptr<CellCounter> CellCounter::make(const Array& points, std::optional<CellType> type, std::uint64_t cells) {
-    if (may_have_coincident_points(points)) return nullptr;
+    if (may_coincide(points, cells)) return nullptr;
     return std::unique_ptr<CellCounter>(
         new CellCounter(std::unique_ptr<Data>(new Data{type, core::CellSurvey(points), {type, cells}, cells})));
 }

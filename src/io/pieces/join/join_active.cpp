@@ -172,7 +172,7 @@ private:
     /// What the cells go by for; null where all are needed.
     std::unique_ptr<CellTaker> make_taker(const Grid& grid) {
         if (counted_) return CellCounter::make(grid.points, type_, kept_cells());
-        auto filter = active_filter(grid, averaged_, type_, options_, wants_numbers(), isovalues_);
+        auto filter = active_filter(grid, averaged_, type_, kept_cells(), options_, wants_numbers(), isovalues_);
         if (!filter) return nullptr;
         auto taker = std::make_unique<ActiveTaker>(*std::move(filter));
         if (type_) taker->set_type(*type_);
