@@ -24,12 +24,27 @@ double parse_end(const std::string& option, std::string_view text);
 SolidRange parse_range(const std::string& option, const std::string& text, RangeShares& shares);
 /// The value of --keep.
 PartChoice parse_parts(const std::string& text);
+void add_info_command(const Command& program, InfoCommand& info);
+void add_extract_command(const Command& program, ExtractCommand& extract);
 void add_slice_command(const Command& program, SliceCommand& slice);
 void add_clip_command(const Command& program, ClipCommand& clip);
+void add_view_command(const Command& program, ViewCommand& view);
+void add_export_command(const Command& program, ExportCommand& exported);
+void add_page_command(const Command& program, PageCommand& page);
+void add_check_command(const Command& program, CheckCommand& check);
+void add_pack_command(const Command& program, PackCommand& pack);
 Command add_render_command(const Command& program, RenderCommand& render);
 Command add_bench_command(const Command& program, BenchCommand& bench);
 
 // Options that several commands have.
+/// Which device, which grid, and what every command has.
+void add_machine_and_input(const Command& command, DeviceChoice& device, GridOptions& grid, CommonOptions& common);
+/// An option whose value is a number of bytes, more than 0.
+void add_bytes(const Command& command, const char* name, std::optional<std::uint64_t>& bytes, const char* help);
+/// Of a packed file.
+void add_memory(const Command& command, std::optional<std::uint64_t>& memory);
+/// `what`   is made between two steps
+void add_interpolate(const Command& command, std::uint64_t& between, const std::string& what);
 void add_time(const Command& command, GridOptions& grid);
 void add_reading(const Command& command, GridOptions& grid, const std::string& format_option);
 /// `format`   the ending of files that can be packed
