@@ -10,6 +10,7 @@
 #include <isotet/jobs/grid_source.hpp>
 #include <isotet/jobs/number_text.hpp>
 #include <isotet/jobs/output_names.hpp>
+#include <isotet/text.hpp>
 #include <isotet/version.hpp>
 
 #include "browser.hpp"
@@ -19,8 +20,9 @@
 #include "output/signals.hpp"
 #include "output/standard_streams.hpp"
 #include "output/text.hpp"
-#include "view_input.hpp"
 #include "view_record.hpp"
+#include "view/first_input.hpp"
+#include "view/note_keeper.hpp"
 #include "view/viewer.hpp"
 
 namespace isotet::cli {
@@ -58,9 +60,9 @@ public:
     /// `command`   whose grid it is
     explicit OpenedFile(const ViewCommand& command) : command_(command), console_(command.common) {}
 
-    /// Errors   as GridSource::open() and check_view_fields(); of outputs and steps
+    /// Errors   as GridSource::open() and view::check_view_fields(); of outputs and steps
     Result<void> open() {
-        Result<GridSource> source = GridSource::open(command_.grid, console_);
+        Result<GridSource> source = GridSource::open(command_.grid, notes_);
         if (!source) return source.error();
         source_ = *std::move(source);
         if (auto paths = check_output_paths(source_->info().files, {command_.common.json}); !paths)
@@ -76,7 +78,7 @@ public:
     void open_beside() {
         Result<void> opened = open();
         if (!opened && source_ && !check_fields()) {
-            console_.note(command_.grid.file + ": " + opened.error().message);
+            notes_.note(command_.grid.file + ": " + opened.error().message);
             command_.field = {};
             command_.color_by.clear();
             command_.isovalues.clear();
@@ -92,20 +94,20 @@ public:
         file.reading = reading_options(command_.grid, command_.refine);
         file.read = [this](const Run& run) -> Result<view::ViewerInput> {
             if (error_) return *error_;
-            const ViewStart start{command_.grid,   command_.field,         command_.isovalues,
-                                  command_.shares, command_.color_by,      FirstCells::some,
-                                  false,           command_.decimal_comma, command_.memory};
-            return read_view_input(start, *source_, console_, run);
+            const view::ViewStart start{command_.grid,   command_.field,         command_.isovalues,
+                                        command_.shares, command_.color_by,      view::FirstCells::some,
+                                        false,           command_.decimal_comma, command_.memory};
+            return view::read_first_input(start, *source_, notes_, run);
         };
         file.read_step = [this](std::size_t step, const Run& run) -> Result<Grid> {
             const std::lock_guard lock(reading_);
-            Result<ReadResult> read = source_->read_some(all_fields(), step, console_, run);
+            Result<ReadResult> read = source_->read_some(all_fields(), step, notes_, run);
             if (!read) return read.error();
             return std::move(read->grid);
         };
         file.read_cells = [this](std::size_t step, const Run& run) {
             const std::lock_guard lock(reading_);
-            return source_->read(all_fields(), step, console_, run);
+            return source_->read(all_fields(), step, notes_, run);
         };
         file.only_cells = [this](Grid grid, const std::vector<std::string>& cells,
                                  const std::vector<RegionName>& regions) {
@@ -118,11 +120,11 @@ public:
 
 private:
     Result<void> check_fields() {
-        const ChoiceWish wish = view_wish(Steps::one, command_.field, command_.color_by);
-        return check_view_fields(*source_, wish, command_.grid, console_);
+        const ChoiceWish wish = view::view_wish(Steps::one, command_.field, command_.color_by);
+        return view::check_view_fields(*source_, wish, command_.grid, notes_);
     }
 
-    /// As read_view_input() reads them.
+    /// As read_first_input() reads them.
     static FieldsToRead all_fields() {
         FieldsToRead all;
         all.blocks = true;
@@ -131,6 +133,7 @@ private:
 
     ViewCommand command_;
     Console console_;
+    view::NoteKeeper notes_{console_};
     std::optional<GridSource> source_;
     std::optional<Error> error_; ///< of opening it
     std::mutex reading_;         ///< steps are read by several threads

@@ -11,8 +11,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <isotet/text.hpp>
+
 #include "output/json_output.hpp"
-#include "output/text.hpp"
 
 namespace isotet::cli {
 

@@ -28,4 +28,7 @@ struct Utf8Character {
 /// surrogate, a number above U+10FFFF or a sequence cut short) is one by itself, and not valid.
 ISOTET_API Utf8Character first_utf8_character(std::string_view text) noexcept;
 
+/// Valid UTF-8 as it is, every other byte as \xNN, so that different texts stay different.
+ISOTET_API std::string valid_utf8(std::string_view text);
+
 } // namespace isotet

@@ -35,6 +35,18 @@ Utf8Character first_utf8_character(std::string_view text) noexcept {
     return {code, bytes, true};
 }
 
+std::string valid_utf8(std::string_view text) {
+    std::string result;
+    result.reserve(text.size());
+    while (!text.empty()) {
+        const Utf8Character character = first_utf8_character(text);
+        if (character.valid) result += text.substr(0, character.bytes);
+        else result += fmt::format("\\x{:02x}", static_cast<std::uint8_t>(text.front()));
+        text.remove_prefix(character.bytes);
+    }
+    return result;
+}
+
 bool comes_before(std::string_view a, std::string_view b) noexcept {
     const auto number_at = [](std::string_view text) {
         return text.substr(0, std::min(text.find_first_not_of("0123456789"), text.size()));

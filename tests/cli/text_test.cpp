@@ -2,6 +2,8 @@
 // Text for terminals and JSON.
 #include <gtest/gtest.h>
 
+#include <isotet/text.hpp>
+
 #include "output/text.hpp"
 
 namespace isotet::cli {

@@ -41,7 +41,7 @@ const std::vector<FolderRule>& folder_rules() {
         {"src/solid/", {"solid/", "session/", "linear/", "grid/", "numbers/", "base/"}},
         {"src/scene/", {"scene/", "numbers/", "base/"}},
         {"src/jobs/", {"jobs/", "fields/", "grid/", "base/"}},
-        {"src/view/", {"view/", "base/threads/read_ahead.hpp"}},
+        {"src/view/", {"view/", "base/stopwatch.hpp", "base/threads/read_ahead.hpp"}},
         {"src/c/", {"grid/", "base/"}},
         {"src/web/", {"view/", "io/", "vulkan/engine/", "api/", "packed/", "numbers/", "base/"}},
         {"src/io/files/", {"io/files/", "io/reader.hpp", "base/"}},

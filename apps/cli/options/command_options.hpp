@@ -2,6 +2,7 @@
 // The options of every command, written into the option tree once.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,6 +41,7 @@ Command add_bench_command(const Command& program, BenchCommand& bench);
 /// Which device, which grid, and what every command has.
 void add_machine_and_input(const Command& command, DeviceChoice& device, GridOptions& grid, CommonOptions& common);
 /// An option whose value is a number of bytes, more than 0.
+void add_bytes(const Command& command, const char* name, std::function<void(std::uint64_t)> set, const char* help);
 void add_bytes(const Command& command, const char* name, std::optional<std::uint64_t>& bytes, const char* help);
 /// Of a packed file.
 void add_memory(const Command& command, std::optional<std::uint64_t>& memory);

@@ -29,15 +29,15 @@ Examples:
 )";
 
 Option add_range_of_surfaces(const Command& command, ExportCommand& exported) {
-    return command.add_numbers("--between", exported.range, "A,B",
+    return command.add_numbers("--between", exported.between, "A,B",
                                "The range of --surfaces: numbers, or shares such as 5%v or p95 (of the first step); "
                                "default: that of the field",
                                {[&exported](std::string_view word) {
                                     const std::optional<IsovalueShare> share = parse_share(word);
-                                    if (!share || exported.range.size() > 1) return false;
-                                    (exported.range.empty() ? exported.range_shares.lower
-                                                            : exported.range_shares.upper) = share;
-                                    exported.range.push_back(0); // until the grid is read
+                                    if (!share || exported.between.size() > 1) return false;
+                                    (exported.between.empty() ? exported.between_shares.lower
+                                                              : exported.between_shares.upper) = share;
+                                    exported.between.push_back(0); // until the grid is read
                                     return true;
                                 },
                                 "two finite numbers or shares such as 90%v or p95"});
@@ -52,19 +52,21 @@ void add_export_command(const Command& program, ExportCommand& exported) {
     add_field(command, exported.field,
               "The field to contour, or an expression such as mag(U); default: the one that info says is shown first");
     const Option isovalues = add_isovalues(command, exported.isovalues, exported.shares);
-    command.add_choice<PageContent>(
-        "--as", exported.content, {{"surfaces", PageContent::surfaces}, {"grid", PageContent::grid}},
+    command.add_choice<view::PageContent>(
+        "--as", exported.as, {{"surfaces", view::PageContent::surfaces}, {"grid", view::PageContent::grid}},
         "What is in the page: isosurfaces, or the grid, with isotet as WebAssembly: any isovalue, slices, colours by "
         "all "
         "its fields; default: the grid where it fits, but surfaces with -i, --surfaces and --between");
     command
         .add_count(
-            "--surfaces", {1, 10'000}, [&](std::uint64_t n) { exported.count = n; }, "N",
+            "--surfaces", {1, 10'000}, [&](std::uint64_t n) { exported.surfaces = n; }, "N",
             "N isosurfaces evenly inside the range, at short decimals; default: 63")
         .excludes(isovalues);
     add_range_of_surfaces(command, exported).excludes(isovalues);
     command.add_text("--color-by", exported.color_by, "FIELD", "Colour by this point or cell field");
-    add_bytes(command, "--max-size", exported.max_size, "Largest size of the file; default: 20MB");
+    add_bytes(
+        command, "--max-size", [&exported](std::uint64_t bytes) { exported.max_size = bytes; },
+        "Largest size of the file; default: 20MB");
     add_refinement(command, exported.refine);
     add_time(command, exported.grid);
     command.add_flag("--all-steps", exported.all_steps, "All time steps")

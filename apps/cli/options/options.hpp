@@ -18,6 +18,7 @@
 #include <isotet/make.hpp>
 
 #include "options/command_text.hpp"
+#include "view/export/export_page.hpp"
 
 namespace isotet::cli {
 
@@ -76,28 +77,8 @@ struct ViewCommand {
     std::string listen; ///< an address to serve at, or a path of a Unix socket; empty: 127.0.0.1
 };
 
-/// What is in a page.
-enum class PageContent : std::uint8_t {
-    fitting, ///< the grid where that fits and nothing asks for certain isosurfaces, else isosurfaces
-    surfaces,
-    grid ///< packed
-};
-
-struct ExportCommand {
+struct ExportCommand : view::ExportJob {
     CommonOptions common;
-    GridOptions grid;
-    FieldChoice field;
-    RefineChoice refine = RefineOptions{};
-    std::string out;                    ///< .html
-    std::vector<double> isovalues;      ///< these; empty: `count` of them
-    std::vector<IsovalueShare> shares;  ///< more, of the first step
-    std::optional<std::uint64_t> count; ///< nothing: 63
-    std::vector<double> range;          ///< none, or two: where they lie evenly
-    RangeShares range_shares;           ///< of the first step that is shown: in place of both ends
-    std::string color_by;
-    bool all_steps = false;
-    std::optional<std::uint64_t> max_size;
-    PageContent content = PageContent::fitting;
 };
 
 struct PageCommand {

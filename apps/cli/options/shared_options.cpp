@@ -2,7 +2,9 @@
 #include "options/command_options.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <memory>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -40,14 +42,19 @@ std::optional<double> with_decimal_comma(std::string text) {
 
 } // namespace
 
-void add_bytes(const Command& command, const char* name, std::optional<std::uint64_t>& bytes, const char* help) {
+void add_bytes(const Command& command, const char* name, std::function<void(std::uint64_t)> set, const char* help) {
     command.add_value(
         name,
-        [name, &bytes](const std::string& text) {
-            bytes = parse_bytes(text);
+        [name, set = std::move(set)](const std::string& text) {
+            const std::optional<std::uint64_t> bytes = parse_bytes(text);
             if (!bytes || *bytes == 0) refuse_value(name, text, "bytes, such as 2GB");
+            set(*bytes);
         },
         "BYTES", help);
+}
+
+void add_bytes(const Command& command, const char* name, std::optional<std::uint64_t>& bytes, const char* help) {
+    add_bytes(command, name, [&bytes](std::uint64_t given) { bytes = given; }, help);
 }
 
 void add_memory(const Command& command, std::optional<std::uint64_t>& memory) {

@@ -24,7 +24,6 @@ void Console::note(const std::string& told) {
     const std::lock_guard lock(mutex_);
     if (sentence.empty() || std::find(noted_.begin(), noted_.end(), sentence) != noted_.end()) return;
     noted_.push_back(sentence);
-    told_.push_back(told);
     if (quiet_) return;
     bar_.clear();
     write_to_stderr("isotet: note: " + printable(sentence) + "\n");

@@ -32,15 +32,11 @@ public:
 
     const std::vector<std::string>& noted() const noexcept { return noted_; }
 
-    /// The same with names of options in backquotes, as the library tells them.
-    const std::vector<std::string>& noted_as_told() const noexcept { return told_; }
-
-
 private:
     bool quiet_, verbose_, table_;
     ProgressBar bar_;
     std::mutex mutex_; ///< of what is written while working
-    std::vector<std::string> noted_, told_;
+    std::vector<std::string> noted_;
 };
 
 /// "isotet: MESSAGE" on standard error, escaped.

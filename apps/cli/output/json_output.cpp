@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 
+#include <isotet/text.hpp>
 #include <isotet/write.hpp>
 
 #include "output/standard_streams.hpp"
-#include "output/text.hpp"
 
 namespace isotet::cli {
 

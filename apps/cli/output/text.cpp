@@ -17,19 +17,6 @@ bool misleads_a_terminal(char32_t code) noexcept {
            code == 0x200E || code == 0x200F || code == 0x061C;
 }
 
-template <class Append>
-std::string rewritten(std::string_view text, const Append& append_character) {
-    std::string result;
-    result.reserve(text.size());
-    while (!text.empty()) {
-        const Utf8Character character = first_utf8_character(text);
-        if (!character.valid) result += fmt::format("\\x{:02x}", static_cast<std::uint8_t>(text.front()));
-        else append_character(result, character.code, text.substr(0, character.bytes));
-        text.remove_prefix(character.bytes);
-    }
-    return result;
-}
-
 bool is_letter_or_digit(char c) noexcept {
     return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
 }
@@ -53,17 +40,19 @@ std::size_t option_length(std::string_view text) noexcept {
 } // namespace
 
 std::string printable(std::string_view text) {
-    return rewritten(text, [](std::string& result, char32_t code, std::string_view bytes) {
-        if (code == '\n') result += "\\n";
+    std::string result;
+    result.reserve(text.size());
+    while (!text.empty()) {
+        const auto [code, bytes, valid] = first_utf8_character(text);
+        if (!valid) result += fmt::format("\\x{:02x}", static_cast<std::uint8_t>(text.front()));
+        else if (code == '\n') result += "\\n";
         else if (code == '\t') result += "\\t";
         else if (code < 0x20 || code == 0x7F) result += fmt::format("\\x{:02x}", std::uint32_t{code});
         else if (misleads_a_terminal(code)) result += fmt::format("\\u{{{:04x}}}", std::uint32_t{code});
-        else result += bytes;
-    });
-}
-
-std::string valid_utf8(std::string_view text) {
-    return rewritten(text, [](std::string& result, char32_t, std::string_view bytes) { result += bytes; });
+        else result += text.substr(0, bytes);
+        text.remove_prefix(bytes);
+    }
+    return result;
 }
 
 std::string with_options(std::string_view sentence) {

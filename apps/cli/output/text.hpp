@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Names come from files and may hold anything: here they are made fit for a terminal and for JSON.
+// Names come from files and may hold anything: here they are made fit for a terminal.
 #pragma once
 
 #include <cstddef>
@@ -11,9 +11,6 @@ namespace isotet::cli {
 /// For people: bytes that are not UTF-8 and control characters become \xNN, characters that reorder or break lines
 /// (U+0080 to U+009F, U+2028 to U+202E, U+2066 to U+2069) become \u{NNNN}, tab and newline \t and \n.
 std::string printable(std::string_view text);
-
-/// For JSON: valid UTF-8 stays as it is, every other byte becomes \xNN, so that different names stay different.
-std::string valid_utf8(std::string_view text);
 
 /// Options as the command line has them: "`merge_points` 0" becomes "--merge-points 0". Backquotes around anything but
 /// small letters and underscores stay, and so does what stands in quotes, as names of fields: "no field 'a + `b`'".

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// What a page begins with, of `isotet view` and `isotet export`.
+// What a page of a grid file begins with.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,10 @@
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
 
-#include "output/console.hpp"
+#include "view/note_keeper.hpp"
 #include "view/server/greeting.hpp"
 
-namespace isotet::cli {
+namespace isotet::view {
 
 /// Which cells ViewerInput::grid has.
 enum class FirstCells : std::uint8_t {
@@ -25,10 +25,10 @@ enum class FirstCells : std::uint8_t {
     some ///< of a packed file, which is then open in ViewerInput::packed
 };
 
-/// What the command line says of it.
+/// What the user says of it.
 struct ViewStart {
-    const GridOptions& grid;
-    const FieldChoice& field;
+    const jobs::GridOptions& grid;
+    const jobs::FieldChoice& field;
     const std::vector<double>& isovalues;
     const std::vector<IsovalueShare>& shares; ///< more, of the first step
     const std::string& color_by;
@@ -40,11 +40,13 @@ struct ViewStart {
 
 /// Names that are no field's, before anything is read: of one step, at which the source is looked at, or of all at which it
 /// was. Errors   as look_at_step_with_fields()
-Result<void> check_view_fields(GridSource& source, const ChoiceWish& wish, const GridOptions& grid, Console& console);
+Result<void> check_view_fields(jobs::GridSource& source, const jobs::ChoiceWish& wish, const jobs::GridOptions& grid,
+                               jobs::Caller& caller);
 /// What is shown, and coloured by another field.
-ChoiceWish view_wish(Steps steps, const FieldChoice& field, const std::string& color_by);
+jobs::ChoiceWish view_wish(jobs::Steps steps, const jobs::FieldChoice& field, const std::string& color_by);
 
 /// Reads all fields of the step to begin with, and finds the field. Errors   as choose_first()
-Result<view::ViewerInput> read_view_input(const ViewStart& start, GridSource& source, Console& console, const Run& run);
+Result<ViewerInput> read_first_input(const ViewStart& start, jobs::GridSource& source, NoteKeeper& caller,
+                                     const Run& run);
 
-} // namespace isotet::cli
+} // namespace isotet::view
