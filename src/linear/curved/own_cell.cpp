@@ -44,8 +44,8 @@ void OwnCells::find(std::uint64_t cell, OwnCell& out) {
         auto found = plans_.find(*what);
         if (found == plans_.end()) found = plans_.emplace(*what, plan_of(*what)).first;
         out.kind = what->kind;
-        out.functions = &own_functions(
-            {what->kind, what->degree, what->bezier ? OwnKind::Of::bezier : OwnKind::Of::lagrange});
+        out.functions =
+            &own_functions({what->kind, what->degree, what->bezier ? OwnKind::Of::bezier : OwnKind::Of::lagrange});
         const std::uint64_t first = users_.first(source);
         for (std::uint64_t i = 0; i < users_.corners(source); ++i)
             out.nodes.push_back(static_cast<Node>(users_.corner(first + i)));

@@ -183,8 +183,10 @@ OwnFunctions::OwnFunctions(const OwnKind& kind)
         for (int again = 0; again < 2; ++again) {
             for (std::size_t l = 0; l < k; ++l) {
                 double product = 0;
-                for (std::size_t i = 0; i < net_size_; ++i) product += quadratics_[i * 10 + k] * quadratics_[i * 10 + l];
-                for (std::size_t i = 0; i < net_size_; ++i) quadratics_[i * 10 + k] -= product * quadratics_[i * 10 + l];
+                for (std::size_t i = 0; i < net_size_; ++i)
+                    product += quadratics_[i * 10 + k] * quadratics_[i * 10 + l];
+                for (std::size_t i = 0; i < net_size_; ++i)
+                    quadratics_[i * 10 + k] -= product * quadratics_[i * 10 + l];
             }
             double square = 0;
             for (std::size_t i = 0; i < net_size_; ++i) square += quadratics_[i * 10 + k] * quadratics_[i * 10 + k];
@@ -291,8 +293,7 @@ std::vector<double> OwnFunctions::values_on_tet(std::size_t factor, const std::a
                 std::swap(product, next);
             }
         for (std::size_t k = 0; k < n; ++k)
-            out[i * n + k] =
-                product[(of.indices[k][1] * side + of.indices[k][2]) * side + of.indices[k][3]];
+            out[i * n + k] = product[(of.indices[k][1] * side + of.indices[k][2]) * side + of.indices[k][3]];
     }
     return out;
 }

@@ -18,10 +18,10 @@
 namespace isotet::linear {
 
 struct OwnRule {
-    double value = 0;                  ///< how far the field should be from the cell's own at most
-    double length = 0;                 ///< the same for places; 0: this share of a tet's longest edge:
-    double share = 0.005;              ///<
-    std::span<const double> isovalues; ///< ascending; tets that none can meet are dropped; empty: none is
+    double value = 0;                            ///< how far the field should be from the cell's own at most
+    double length = 0;                           ///< the same for places; 0: this share of a tet's longest edge:
+    double share = 0.005;                        ///<
+    std::span<const double> isovalues;           ///< ascending; tets that none can meet are dropped; empty: none is
     std::span<const CarriedValues> carried = {}; ///< for which tets are bisected, too, to a quarter of their edges
 };
 
@@ -43,9 +43,5 @@ struct OwnBounds {
 Result<OwnBounds> follow_own_functions(const Grid& user, LinearGrid& before, QuadraticTets& tets,
                                        const NodeValues& field, const std::array<NodeValues, 3>& points,
                                        const OwnRule& rule, const Progress& progress);
-
-/// Of the cells of some of the tets, how many have a map whose determinant has both signs, by samples.
-std::size_t folded_cells(const Grid& user, const LinearGrid& before, const QuadraticTets& tets,
-                         const std::array<NodeValues, 3>& points, std::span<const std::uint32_t> of_tets);
 
 } // namespace isotet::linear

@@ -16,6 +16,7 @@
 #include "base/system/memory.hpp"
 #include "base/parallel.hpp"
 #include "linear/curved/bisection.hpp"
+#include "linear/curved/folded_cells.hpp"
 #include "linear/curved/own_pieces.hpp"
 #include "linear/curved/refine.hpp"
 #include "linear/weld.hpp"
