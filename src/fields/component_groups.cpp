@@ -85,6 +85,28 @@ std::string_view without_separator(std::string_view name) {
     return name;
 }
 
+/// "velocity_x", "StressYZ" for "velocity:x", "Stress:yz" or "Stress:4", though others of the group are missing: where one
+/// component is asked for, it alone is read.
+std::optional<std::string> one_component(std::string_view group, std::string_view component,
+                                         const std::vector<std::string>& names) {
+    group = without_separator(group);
+    const auto scalar = core::parse_scalar(component);
+    if (group.empty() || !scalar || scalar->magnitude) return std::nullopt;
+    const bool is_axis = std::ranges::find(vector_axes, component) != vector_axes.end();
+    const auto is_of_group = [&](std::string_view name, std::string_view ending) {
+        return name.size() > ending.size() && name.ends_with(ending) &&
+               without_separator(name.substr(0, name.size() - ending.size())) == group;
+    };
+    for (const Endings endings :
+         {Endings(vector_axes), Endings(full_tensor), Endings(symmetric_xz), Endings(symmetric_zx)}) {
+        const auto place = scalar->place_in(endings.size());
+        if (!place || (is_axis && endings.size() != vector_axes.size())) continue;
+        for (const std::string& name : names)
+            if (is_of_group(name, endings[*place]) || is_of_group(name, capitals_of(endings[*place]))) return name;
+    }
+    return std::nullopt;
+}
+
 /// Copies scalar arrays of the same length into the components of one.
 template <class Scalar>
 Array interleaved(const std::vector<Array>& parts) {
@@ -175,7 +197,9 @@ std::optional<FieldName> match_component_group(std::string_view name, const std:
         if (const auto place = scalar->place_in(group.parts.size()))
             return FieldName{group.parts[*place], std::nullopt};
     }
-    return std::nullopt;
+    if (colon == std::string_view::npos) return std::nullopt;
+    auto alone = one_component(name.substr(0, colon), name.substr(colon + 1), names);
+    return alone ? std::optional(FieldName{*std::move(alone), std::nullopt}) : std::nullopt;
 }
 
 } // namespace core

@@ -13,7 +13,7 @@
 namespace isotet::core {
 
 /// "Velocity", "disp:mag", "disp_:1" where no field has that name; nothing where no group has it either. A component is
-/// given by the name of its field.
+/// given by the name of its field, and found without the others of its group.
 std::optional<FieldName> match_component_group(std::string_view name, const std::vector<std::string>& names);
 
 } // namespace isotet::core

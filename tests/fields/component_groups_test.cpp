@@ -74,6 +74,22 @@ TEST(MatchFieldName, TakesGroupsOfComponentsLast) {
     EXPECT_EQ(match_field_name("disp", {"disp", "disp_x", "disp_y", "disp_z"})->parts, Names{}) << "fields come first";
 }
 
+TEST(MatchFieldName, FindsOneComponentWithoutTheOthers) {
+    for (const auto& [name, field] : {std::pair{"disp:y", "disp_y"},
+                                      {"disp:1", "disp_y"},
+                                      {"Stress:yz", "StressYZ"},
+                                      {"Stress:YZ", "StressYZ"},
+                                      {"Stress:4", "StressYZ"},
+                                      {"S_:xx", "S_xx"}}) {
+        const auto match = match_field_name(name, {"p", field});
+        ASSERT_TRUE(match) << name;
+        EXPECT_EQ(match->field, field);
+        EXPECT_TRUE(match->parts.empty());
+    }
+    for (const char* name : {"S:x", "S:mag", "S:zz", ":xx", "Str:xx"})
+        EXPECT_FALSE(match_field_name(name, {"S_xx", "_xx", "StressX"})) << name;
+}
+
 TEST(FindField, TakesTheMagnitudeOfComponents) {
     const Grid grid = tet_with_components();
     const PointField speed = find_field(grid, "Velocity:mag").value();
