@@ -53,8 +53,8 @@ struct FirstCandidate {
 
 /// The fields that first_view() judges, in the order in which it prefers them, by what a file announces alone: first
 /// what the file marks, then names that people contour (phases and levels, temperature, concentration, speed, pressure,
-/// potentials, von Mises stress, displacement, stress, density, others), then the rest. Vectors, also those stored as
-/// components, count by their magnitude. Names of ids, ranks, owners, weights, sizes, centres, errors and numbers of
+/// potentials, von Mises stress, displacement, stress, density, others), then the rest, and tensors (6 or 9 components) where
+/// nothing else varies. Vectors and tensors, also those stored as components, count by their magnitude. Names of ids, ranks, owners, weights, sizes, centres, errors and numbers of
 /// regions are left out.
 ///
 /// The first of them that varies and is not rough is shown if its reason is `marked` or `name`: readers may stop there.

@@ -21,7 +21,7 @@ namespace isotet {
 
 namespace {
 
-/// Where it comes among the candidates: what is marked, then quantities, then the rest; points before cells.
+/// Where it comes among the candidates: what is marked, then quantities, then the rest, then tensors; points before cells.
 struct Place {
     bool unmarked = true;
     int rank = 0;
@@ -34,19 +34,25 @@ struct PlacedCandidate {
     FirstCandidate candidate;
 };
 
-constexpr int rank_of_plain_names = 1000;
+constexpr int rank_of_plain_names = 1000, rank_of_tensors = 2000;
 
 std::optional<PlacedCandidate> placed(const std::string& name, const std::vector<std::string>& arrays,
                                       std::size_t components, Association association, bool marked) {
     const core::RankedName ranked = core::rank_name(name, components);
     if (ranked.kind == core::NameKind::bookkeeping || ranked.kind == core::NameKind::region) return std::nullopt;
-    const bool plain = ranked.kind == core::NameKind::plain;
+    const bool plain = ranked.kind == core::NameKind::plain, tensor = components > 3;
     PlacedCandidate found;
-    found.place = {!marked, marked ? 0 : plain ? rank_of_plain_names : ranked.rank, association};
+    found.place = {!marked,
+                   marked   ? 0
+                   : tensor ? rank_of_tensors
+                   : plain  ? rank_of_plain_names
+                            : ranked.rank,
+                   association};
     found.candidate = {components > 1 ? name + ":mag" : name, association, arrays,
-                       marked  ? FirstReason::marked
-                       : plain ? FirstReason::variation
-                               : FirstReason::name};
+                       marked   ? FirstReason::marked
+                       : tensor ? FirstReason::only
+                       : plain  ? FirstReason::variation
+                                : FirstReason::name};
     return found;
 }
 
@@ -235,11 +241,12 @@ std::vector<FirstCandidate> first_candidates(const std::vector<FieldInfo>& field
             if (field.association == association && field.components == 1) scalars.push_back(field.name);
         for (const ComponentGroup& group : component_groups(scalars)) {
             parts.insert(parts.end(), group.parts.begin(), group.parts.end());
-            if (group.parts.size() == 3) add(placed(group.name, group.parts, 3, association, false));
+            add(placed(group.name, group.parts, group.parts.size(), association, false));
         }
         for (const FieldInfo& field : fields) {
             const bool is_part = std::ranges::find(parts, field.name) != parts.end();
-            if (field.association != association || field.components > 3 || (is_part && !field.active)) continue;
+            const bool is_one = field.components <= 3 || field.components == 6 || field.components == 9;
+            if (field.association != association || !is_one || (is_part && !field.active)) continue;
             add(placed(field.name, {field.name}, field.components, association, field.active));
         }
     }
@@ -271,6 +278,7 @@ FirstView chosen_view(const Grid& grid, const std::vector<FieldInfo>& fields, bo
     double most = 0;
     for (const FirstCandidate& candidate : candidates) {
         const bool named = candidate.reason != FirstReason::variation;
+        if (candidate.reason == FirstReason::only && (best || rough || at_walls)) break; // a tensor
         if (rough && rough->reason != FirstReason::variation && !named) break;
         const auto values = array_of(grid, candidate);
         if (!values) continue;

@@ -204,7 +204,8 @@ private:
         FieldsToRead read{std::vector<std::string>(), std::vector<std::string>()};
         std::size_t named = 0;
         for (const FirstCandidate& candidate : first_candidates(fields)) {
-            if (candidate.reason == FirstReason::variation || named == most_at_first) break;
+            const bool is_sure = candidate.reason == FirstReason::marked || candidate.reason == FirstReason::name;
+            if (!is_sure || named == most_at_first) break;
             auto& names = candidate.association == Association::point ? read.point : read.cell;
             add_names(*names, candidate.arrays);
             ++named;

@@ -64,6 +64,27 @@ TEST(FirstView, PrefersNamesThatPeopleContour) {
     EXPECT_EQ(view_of(grid).field, "alpha.water");
 }
 
+TEST(FirstView, TakesTensorsWhereNothingElseVaries) {
+    Grid grid = cube();
+    const auto scaled = [](double by) {
+        return [by](double x, double y, double z) { return 1 + by * smooth(x, y, z); };
+    };
+    double by = 1;
+    for (const char* part : {"XX", "YY", "ZZ", "XY", "YZ", "XZ"})
+        grid.point_fields.push_back({std::string("Stress") + part, of_points(grid, scaled(by++))});
+    EXPECT_EQ(view_of(grid).field, "Stress:mag");
+    EXPECT_EQ(view_of(grid).reason, FirstReason::only);
+    EXPECT_EQ(view_of(grid).draw, FirstDraw::isosurfaces);
+    grid.point_fields.push_back({"foo", of_points(grid, smooth)});
+    EXPECT_EQ(view_of(grid).field, "foo");
+    grid.point_fields = {
+        {"stress", gather_components(grid.point_fields, "stress",
+                                     {"StressXX", "StressYY", "StressZZ", "StressXY", "StressYZ", "StressXZ"})
+                       .value()
+                       .values}};
+    EXPECT_EQ(view_of(grid).field, "stress:mag");
+}
+
 TEST(FirstView, ShowsNothingOfLines) {
     Grid grid = cube();
     grid.point_fields = {{"T", of_points(grid, smooth)}};
@@ -265,11 +286,12 @@ TEST(FirstCandidates, AreInTheOrderInWhichTheyAreLookedAt) {
         {"T", Association::point, ScalarType::float32, 1},   {"S", Association::point, ScalarType::float32, 6},
         {"id", Association::point, ScalarType::int32, 1},    {"w", Association::point, ScalarType::float32, 3, true}};
     const auto candidates = first_candidates(fields);
-    ASSERT_EQ(candidates.size(), 4u) << "no tensor, no number";
+    ASSERT_EQ(candidates.size(), 5u) << "no number";
     EXPECT_EQ(candidates[0].name, "w:mag");
     EXPECT_EQ(candidates[1].association, Association::point);
     EXPECT_EQ(candidates[2].association, Association::cell);
     EXPECT_EQ(candidates[3].name, "foo");
+    EXPECT_EQ(candidates[4].name, "S:mag") << "a tensor";
 }
 
 } // namespace
