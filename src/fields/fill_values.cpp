@@ -14,9 +14,9 @@ constexpr double least_large = 1e20;
 constexpr std::size_t max_distinct = 4;
 
 bool stands_for_none(double value) noexcept {
-    static constexpr std::array<double, 15> numbers{-999.0,      -9999.0,  -99999.0,      -999999.0,     -9999999.0,
-                                                    -99999999.0, -32768.0, -2147483648.0, -2147483647.0, 9999.0,
-                                                    99999.0,     999999.0, 9999999.0,     99999999.0,    2147483647.0};
+    static constexpr std::array<double, 16> numbers{
+        -999.25,       -999.0,        -9999.0, -99999.0, -999999.0, -9999999.0, -99999999.0, -32768.0,
+        -2147483648.0, -2147483647.0, 9999.0,  99999.0,  999999.0,  9999999.0,  99999999.0,  2147483647.0};
     return std::abs(value) >= least_large || std::ranges::find(numbers, value) != numbers.end();
 }
 

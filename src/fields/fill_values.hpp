@@ -23,9 +23,10 @@ struct FillValues {
     ValueRange others;             ///< of all other finite values
 };
 
-/// Numbers that programs write where there is no value, if all others are far from them: -999, -9999 and so on, 9999 and so
-/// on, and the ends of integers, farther away than the others are from each other; and 1e20 and above, of either
-/// sign, a million times as far. None where the others are all one, or there are more than four such numbers.
+/// Numbers that programs write where there is no value, if all others are far from them: -999.25 (logs of wells), -999,
+/// -9999 and so on, 9999 and so on, and the ends of integers, farther away than the others are from each other; and 1e20
+/// and above, of either sign, a million times as far. None where the others are all one, or there are more than four such
+/// numbers.
 ///
 /// `values`   of one component, else nothing is looked for
 /// Cost       a pass over the values; where an end of their range is such a number another

@@ -42,8 +42,9 @@ void expect_fill(double fill) {
 }
 
 TEST(FillValues, AreThoseThatProgramsWrite) {
-    for (const double fill : {-999.0, -9999.0, -99999.0, 99999.0, 1e20, -1e20, 1e30, -1e30, 9.969209968386869e36,
-                              -3.4e38, 1.70141e38, 3.4028234663852886e38, -3.4028234663852886e38, -2147483648.0}) {
+    for (const double fill :
+         {-999.25, -999.0, -9999.0, -99999.0, 99999.0, 1e20, -1e20, 1e30, -1e30, 9.969209968386869e36, -3.4e38,
+          1.70141e38, 3.4028234663852886e38, -3.4028234663852886e38, -2147483648.0}) {
         expect_fill<float>(fill);
         expect_fill<double>(fill);
     }
