@@ -355,7 +355,8 @@ Result<FirstChoice> choose_first(GridSource& source, const GridOptions& options,
     }
     const std::string known = known_name(source, wish);
     if (!known.empty()) choice.view = {FirstDraw::isosurfaces, known, Association::point, FirstReason::only, false};
-    const bool needs_view = known.empty() && wish.needs_view && !source.info().fields.empty();
+    const bool may_have_fields = count > 1 || !source.info().fields.empty(); // the first step may have none
+    const bool needs_view = known.empty() && wish.needs_view && may_have_fields;
     if (!needs_view && !is_open) return choice;
     std::vector<std::size_t> steps{start.step};
     if (!is_open && wish.steps == Steps::one) steps = choice.steps;

@@ -269,6 +269,35 @@ TEST_F(SeriesFields, OfAStepCountWhereNoneIsNamed) {
     EXPECT_EQ(extract_files(job, listener)->field.name, "T") << "not the first one there, q";
 }
 
+TEST_F(SeriesFields, BeginAfterAStepWithoutAny) {
+    folder.write("none.vtu", vtu({}, 1));
+    const std::string late = folder.write("late.pvd", "<VTKFile type='Collection'><Collection>"
+                                                      "<DataSet timestep='0' file='none.vtu'/>"
+                                                      "<DataSet timestep='1' file='a.vtu'/></Collection></VTKFile>");
+    Listener listener;
+    ExtractJob job = job_of(late, "");
+    const auto extracted = extract_files(job, listener);
+    ASSERT_TRUE(extracted) << extracted.error().message;
+    EXPECT_EQ(extracted->field.name, "T");
+    EXPECT_EQ(extracted->surfaces.size(), 1u);
+    EXPECT_EQ(extracted->surfaces[0].time, 1.0);
+    job.all_steps = true;
+    job.out = folder.file("o_{step}.vtp");
+    const auto all = extract_files(job, listener);
+    ASSERT_TRUE(all) << all.error().message;
+    EXPECT_FALSE(std::filesystem::exists(folder.file("o_0.vtp")));
+    EXPECT_TRUE(std::filesystem::exists(folder.file("o_1.vtp")));
+    DrawJob draw;
+    draw.grid.file = late;
+    draw.picture.width = draw.picture.height = 16;
+    draw.plain = true;
+    draw.all_steps = true;
+    draw.out = folder.file("p-{frame}.png");
+    const auto drawn = draw_files(draw, listener);
+    ASSERT_TRUE(drawn) << drawn.error().message;
+    EXPECT_EQ(drawn->pictures.pictures, 1u);
+}
+
 TEST_F(SeriesFields, PicturesOfStepsWithoutTheFieldAreSkipped) {
     DrawJob job;
     job.grid.file = pvd;
