@@ -435,11 +435,24 @@ TEST(DrawFiles, SweepsBetweenShares) {
     EXPECT_EQ(report.input.sweep[1], 0.5);
 }
 
+TEST(DrawFiles, OfASeriesOfOnePictureMayHaveANumber) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    for (const char* out : {"p{frame}.png", "p.png", "p.webp"}) {
+        DrawJob job = small_picture("make:kuhn:4:sphere", folder.file(out));
+        job.all_steps = true;
+        const auto drawn = draw_files(job, listener);
+        EXPECT_TRUE(drawn) << drawn.error().message;
+    }
+    EXPECT_TRUE(std::filesystem::exists(folder.file("p1.png")));
+    EXPECT_TRUE(std::filesystem::exists(folder.file("p.webp")));
+}
+
 TEST(DrawFiles, RefusesNamesThatDoNotFitThePictures) {
     const test::TemporaryFolder folder;
     Listener listener;
     DrawJob job = small_picture("make:kuhn:4:sphere", folder.file("p{frame}.png"));
-    EXPECT_NE(draw_files(job, listener).error().message.find("but there is one picture: only several ones"),
+    EXPECT_NE(draw_files(job, listener).error().message.find("but there is one picture: only those of"),
               std::string::npos);
     job.out = folder.file("p.png");
     job.orbit = 4;

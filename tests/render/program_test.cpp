@@ -399,7 +399,7 @@ TEST_F(Render, RefusesFramesThatFitNoFile) {
         error("a.png", {"--orbit", "4"}).find("but 4 pictures need one that ends in .webp, or that holds {frame}"),
         std::string::npos);
     EXPECT_NE(error("a{frame}.webp", {"--orbit", "4"}).find("4 pictures need"), std::string::npos);
-    EXPECT_NE(error("a{frame}.png", {}).find("but there is one picture: only several ones, of --sweep, --orbit or --all-steps"),
+    EXPECT_NE(error("a{frame}.png", {}).find("but there is one picture: only those of --sweep, --orbit or --all-steps"),
               std::string::npos);
     EXPECT_NE(error("a.webp", {}).find("it must end in .png"), std::string::npos);
     EXPECT_NE(error("a.webp", {"--sweep", "0,1"}).find("--sweep takes three numbers, not 2"), std::string::npos);

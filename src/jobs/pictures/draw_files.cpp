@@ -123,7 +123,8 @@ Result<void> compare(const Picture& picture, const Picture& reference, const Dra
 Result<PictureFiles> open_files(const DrawJob& job, std::size_t steps) {
     const Result<std::size_t> pictures = count_frames(job, steps);
     if (!pictures) return pictures.error();
-    Result<PictureFiles> files = PictureFiles::open(name_of_picture(job), *pictures, job.frames_per_second);
+    const bool is_series = job.all_steps || job.orbit > 0 || !job.sweep.empty();
+    Result<PictureFiles> files = PictureFiles::open(name_of_picture(job), *pictures, is_series, job.frames_per_second);
     if (!files) return files;
     std::vector<std::string> outputs = files->names();
     outputs.insert(outputs.end(), job.other_outputs.begin(), job.other_outputs.end());

@@ -49,19 +49,21 @@ Result<std::vector<Frame>> frames_of(const DrawJob& job, const DrawInput& input,
     return frames;
 }
 
-Result<PictureFiles> PictureFiles::open(const std::string& out, std::size_t pictures, double pictures_per_second) {
+Result<PictureFiles> PictureFiles::open(const std::string& out, std::size_t pictures, bool is_series,
+                                        double pictures_per_second) {
     if (auto known = check_placeholders(out, {std::string(number_mark)}); !known) return known.error();
     PictureFiles files(out, pictures);
     const bool numbered = out.find(number_mark) != std::string::npos;
-    if (pictures == 1) {
+    if (pictures == 1 && is_series && out.ends_with(".png")) return files; // with a number or without
+    if (pictures == 1 && !is_series) {
         if (!out.ends_with(".png"))
             return refusal("the name of the output is '{}', but it must end in .png, or in .webp for several pictures",
                            out);
         if (numbered)
-            return refusal(
-                "the name of the output is '{}', but there is one picture: only several ones, of `sweep`, `orbit` or "
-                "`all_steps` with several steps, have numbers",
-                out);
+            return refusal("the name of the output is '{}', but there is one picture: only those of `sweep`, `orbit` "
+                           "or `all_steps` "
+                           "have numbers",
+                           out);
         return files;
     }
     if (out.ends_with(".webp") && !numbered) {

@@ -30,8 +30,10 @@ Result<std::size_t> count_frames(const DrawJob& job, std::size_t steps);
 /// OUT: a PNG file; numbered ones, where it holds {frame}; or one animated WebP file.
 class PictureFiles {
 public:
+    /// `is_series`   there may be several, though there is one this time
     /// Errors   invalid_argument when the name does not fit the number of pictures
-    static Result<PictureFiles> open(const std::string& out, std::size_t pictures, double pictures_per_second);
+    static Result<PictureFiles> open(const std::string& out, std::size_t pictures, bool is_series,
+                                     double pictures_per_second);
 
     const std::string& out() const noexcept { return out_; }
     std::vector<std::string> names() const; ///< of all files
