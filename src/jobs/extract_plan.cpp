@@ -226,10 +226,13 @@ Result<void> choose_first_of(ExtractJob& job, GridSource& source, ExtractPlan& p
     ChoiceWish wish{job.all_steps ? Steps::all : Steps::one, job.field, job.with.value_or(std::vector<std::string>())};
     wish.needs_view = !job.field.shape;
     const std::vector<FieldInfo>& fields = source.info().fields;
-    if (job.field.name.empty() && !job.field.shape && fields.size() == 1 &&
-        names_isovalues(job)) { // whatever it is, its values are asked for
+    std::string asked; // the only field: whatever it is, its values are asked for
+    if (job.field.name.empty() && !job.field.shape && fields.size() == 1 && names_isovalues(job)) {
         const std::vector<FirstCandidate> candidates = first_candidates(fields);
-        job.field.name = candidates.empty() ? fields[0].name : candidates[0].name;
+        asked = candidates.empty() ? fields[0].name : candidates[0].name;
+    }
+    if (!asked.empty() && source.info().times.size() < 2) { // later steps may have others
+        job.field.name = asked;
         wish.field = job.field;
     }
     wish.only_field_will_do = true;
@@ -239,6 +242,11 @@ Result<void> choose_first_of(ExtractJob& job, GridSource& source, ExtractPlan& p
     if (!choice) return choice.error();
     plan.steps = choice->steps;
     if (!job.field.name.empty() || job.field.shape || fields.empty()) return {};
+    const bool contours = !choice->view.field.empty() && choice->view.draw != FirstDraw::regions_on_boundary;
+    if (!asked.empty() && !contours) {
+        job.field.name = asked;
+        return {};
+    }
     if (choice->view.field.empty())
         return Error{ErrorCode::invalid_data,
                      fmt::format("no field was named, and {} does not vary, numbers something, or has more than 3 "

@@ -281,6 +281,10 @@ std::string known_name(const GridSource& source, const ChoiceWish& wish) {
     return candidates[0].name;
 }
 
+FirstView view_of_only(const std::string& field) {
+    return {FirstDraw::isosurfaces, field, Association::point, FirstReason::only, false};
+}
+
 /// Which step was taken, and why not the first.
 std::string note_of_step(const GridSource& source, const ChoiceWish& wish, const StepLook& start, std::size_t taken) {
     const std::size_t first = source.first_step();
@@ -353,8 +357,9 @@ Result<FirstChoice> choose_first(GridSource& source, const GridOptions& options,
         if (!steps) return steps.error();
         choice.steps = *std::move(steps);
     }
-    const std::string known = known_name(source, wish);
-    if (!known.empty()) choice.view = {FirstDraw::isosurfaces, known, Association::point, FirstReason::only, false};
+    const std::string only = known_name(source, wish), &named = wish.field.name;
+    const std::string known = count > 1 ? named : only; // later steps may have others
+    if (!known.empty()) choice.view = view_of_only(known);
     const bool may_have_fields = count > 1 || !source.info().fields.empty(); // the first step may have none
     const bool needs_view = known.empty() && wish.needs_view && may_have_fields;
     if (!needs_view && !is_open) return choice;
@@ -378,6 +383,7 @@ Result<FirstChoice> choose_first(GridSource& source, const GridOptions& options,
     }
     if (look.missing()) return *look.missing();
     if (needs_view) choice.view = look.view();
+    if (needs_view && choice.view.field.empty() && !only.empty()) choice.view = view_of_only(only);
     if (!is_open) return choice;
     choice.steps = {taken};
     caller.note(note_of_step(source, wish, start, taken));

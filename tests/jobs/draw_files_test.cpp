@@ -435,6 +435,27 @@ TEST(DrawFiles, SweepsBetweenShares) {
     EXPECT_EQ(report.input.sweep[1], 0.5);
 }
 
+TEST(DrawFiles, OfAllStepsChooseIsovaluesOfACellField) {
+    const test::TemporaryFolder folder;
+    Grid grid = make_grid({.shape = "kuhn", .side = 4}).value();
+    grid.point_fields.clear();
+    DrawJob job = small_picture(folder.file("s0.vtu"), folder.file("p{frame}.png"));
+    for (const int step : {0, 1}) {
+        std::vector<double> values;
+        for (std::size_t i = 0; i < grid.cells.count(); ++i) values.push_back(static_cast<double>(i / 6 % 16 + step));
+        grid.cell_fields = {{"q", Array::own(std::move(values))}};
+        const std::string name = folder.file("s" + std::to_string(step) + ".vtu");
+        ASSERT_TRUE(write_grid(grid, name));
+        if (step > 0) job.grid.more_files.push_back(name);
+    }
+    job.field.name = "q";
+    job.all_steps = true;
+    Listener listener;
+    const auto drawn = draw_files(job, listener);
+    ASSERT_TRUE(drawn) << drawn.error().message;
+    EXPECT_EQ(drawn->pictures.pictures, 2u);
+}
+
 TEST(DrawFiles, OfASeriesOfOnePictureMayHaveANumber) {
     const test::TemporaryFolder folder;
     Listener listener;

@@ -298,6 +298,20 @@ TEST_F(SeriesFields, BeginAfterAStepWithoutAny) {
     EXPECT_EQ(drawn->pictures.pictures, 1u);
 }
 
+TEST_F(SeriesFields, OfLaterStepsAreTakenWhereTheOnlyOneOfTheFirstDoesNotVary) {
+    std::string constant = vtu({"T"}, 1), varying = vtu({"T", "k"}, 1);
+    for (std::string* text : {&constant, &varying}) text->replace(text->find(">0 1 2 3<"), 9, ">3 3 3 3<");
+    folder.write("constant.vtu", constant);
+    folder.write("varying.vtu", varying);
+    const std::string late = folder.write("k.pvd", "<VTKFile type='Collection'><Collection>"
+                                                   "<DataSet timestep='0' file='constant.vtu'/>"
+                                                   "<DataSet timestep='1' file='varying.vtu'/></Collection></VTKFile>");
+    Listener listener;
+    const auto extracted = extract_files(job_of(late, ""), listener);
+    ASSERT_TRUE(extracted) << extracted.error().message;
+    EXPECT_EQ(extracted->field.name, "k");
+}
+
 TEST_F(SeriesFields, PicturesOfStepsWithoutTheFieldAreSkipped) {
     DrawJob job;
     job.grid.file = pvd;

@@ -245,8 +245,8 @@ Result<DrawInput> PictureSource::take_surface(const std::optional<Device>& devic
     return input;
 }
 
-/// A grid with what a field needs: with a sample of the cells where its points do, without cells where it has a value for
-/// each.
+/// A grid with what a field that colours needs: with a sample of the cells where its points do, without cells where it has
+/// a value for each.
 Result<Grid> PictureSource::read_for(const FoundField& field, std::size_t step, Caller& caller) {
     const FieldsToRead read{field.point, field.cell};
     const bool of_cells = colors_cells(field) && !packed_;
@@ -264,7 +264,8 @@ Result<Grid> PictureSource::read_for(const FoundField& field, std::size_t step, 
 Result<PointField> PictureSource::field_at(std::size_t step, const std::string& name, Caller& caller) {
     const Result<FoundField> found = choose_field(*source_, {name, job_.field.cell_field});
     if (!found) return found.error();
-    const Result<Grid> grid = read_for(*found, step, caller);
+    const Result<Grid> grid = needs_no_cells(*found) ? read_for(*found, step, caller)
+                                                     : source_->read({found->point, found->cell}, step, caller);
     if (!grid) return grid.error();
     return find_chosen(*grid, name, job_.field, caller);
 }
