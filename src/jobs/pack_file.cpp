@@ -49,7 +49,7 @@ private:
     std::string why_left_out(const FieldInfo& field) const;
     Result<void> take_all_fields();
     Result<void> choose_cell_fields();
-    Result<void> leave_out_fields_of_other_blocks(const Grid& grid);
+    Result<void> leave_out_fields_that_lack(const Grid& grid);
     Result<void> write_cell_fields(const Grid& grid, std::size_t step);
     std::vector<std::string> packed_names(const std::string& name) const;
     Result<void> pack_step(std::size_t step);
@@ -373,8 +373,8 @@ Result<void> PackRun::write_cell_fields(const Grid& grid, std::size_t step) {
     return {};
 }
 
-/// Where no field was named.
-Result<void> PackRun::leave_out_fields_of_other_blocks(const Grid& grid) {
+/// Where no field was named: those of other blocks or meshes, and those that could not be read.
+Result<void> PackRun::leave_out_fields_that_lack(const Grid& grid) {
     std::vector<std::string> known{"x", "y", "z"}, left_out;
     for (const auto* fields : {&grid.point_fields, &grid.cell_fields})
         for (const Field& field : *fields) known.push_back(field.name);
@@ -383,8 +383,13 @@ Result<void> PackRun::leave_out_fields_of_other_blocks(const Grid& grid) {
         if (!is_there) left_out.push_back(name);
         return !is_there;
     });
-    if (names_.empty()) return refusal("no field of the file is in the blocks that were chosen");
-    if (!left_out.empty()) caller_.note(fmt::format("not packed: {}, which other blocks have", quoted_list(left_out)));
+    const bool has_blocks = !job_.grid.blocks.empty();
+    if (names_.empty())
+        return refusal("no field of the file is in the {}",
+                       has_blocks ? "blocks that were chosen" : "grid that was read");
+    if (!left_out.empty())
+        caller_.note(fmt::format("not packed: {}, which {}", quoted_list(left_out),
+                                 has_blocks ? "other blocks have" : "the grid that was read lacks"));
     return {};
 }
 
@@ -399,10 +404,16 @@ Result<void> PackRun::pack_step(std::size_t step) {
         add_names(*read.cell, found->cell);
     }
     add_names(*read.cell, job_.cell_fields);
-    const Result<Grid> grid = source_->read(read, step, caller_);
+    const bool may_lack = job_.fields.empty() && !writer_;
+    Result<Grid> grid = source_->read(read, step, caller_);
+    const auto failed_by = [&](ErrorCode code) { return !grid && grid.error().code == code; };
+    if (may_lack && (failed_by(ErrorCode::invalid_data) || failed_by(ErrorCode::invalid_argument))) {
+        read.point.reset(); // of all fields those that are broken are left out, and noted
+        grid = source_->read(read, step, caller_);
+    }
     if (!grid) return grid.error();
-    if (job_.fields.empty() && !job_.grid.blocks.empty())
-        if (auto left = leave_out_fields_of_other_blocks(*grid); !left) return left;
+    if (may_lack)
+        if (auto left = leave_out_fields_that_lack(*grid); !left) return left;
     numbers_.cells = grid->cells.count();
     if (auto enough = check_memory(numbers_.cells, grid->points.tuples()); !enough) return enough;
     numbers_.read_seconds += reading.seconds();

@@ -410,6 +410,32 @@ TEST(PackFile, NamesNoFieldAsLeftOutThatItPacks) {
               "not packed: '" + left_out + "' (of cells); `fields` takes components, `cell_fields` fields of cells");
 }
 
+TEST(PackFile, LeavesOutBrokenFieldsThatWereNotNamed) {
+    const test::TemporaryFolder folder;
+    const std::string grid = folder.write(
+        "grid.vtu",
+        "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"4\" "
+        "NumberOfCells=\"1\"><PointData>"
+        "<DataArray type=\"Float32\" Name=\"T\" format=\"ascii\">0 1 2 3</DataArray>"
+        "<DataArray type=\"Float32\" Name=\"bad\" format=\"ascii\">0 1</DataArray></PointData><Points>"
+        "<DataArray type=\"Float32\" NumberOfComponents=\"3\">0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points><Cells>"
+        "<DataArray type=\"Int32\" Name=\"connectivity\">0 1 2 3</DataArray>"
+        "<DataArray type=\"Int32\" Name=\"offsets\">4</DataArray><DataArray type=\"UInt8\" Name=\"types\">10"
+        "</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>");
+    PackJob job;
+    job.grid.file = grid;
+    job.out = folder.file("grid.isotet");
+    Listener listener;
+    const auto numbers = pack_file(job, listener);
+    ASSERT_TRUE(numbers) << numbers.error().message;
+    ASSERT_EQ(numbers->fields.size(), 1u);
+    EXPECT_EQ(numbers->fields[0].name, "T");
+    EXPECT_NE(std::ranges::find(listener.noted, "not packed: 'bad', which the grid that was read lacks"),
+              listener.noted.end());
+    job.fields = {"T", "bad"};
+    EXPECT_FALSE(pack_file(job, listener));
+}
+
 TEST(PackFile, GivesTheSameFileWithItsArraysInScratchFiles) {
     const test::TemporaryFolder folder;
     Listener listener(2);
