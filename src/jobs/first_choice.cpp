@@ -298,6 +298,27 @@ std::string note_of_step(const GridSource& source, const ChoiceWish& wish, const
                        times.size(), why, taken, shortest(times[taken]));
 }
 
+/// Of some steps the first that can be read and where a field varies, else the first that can be read: at which `look` looked
+/// last. Errors   of the first step, where none can be read
+Result<std::size_t> step_that_varies(FirstLook& look, const std::vector<std::size_t>& steps, bool is_open,
+                                     Caller& caller) {
+    std::optional<Error> failed;
+    std::optional<std::size_t> sound;
+    for (const std::size_t step : steps) {
+        const Result<bool> varies = look.varies_at(step, is_open);
+        if (!varies && !may_look_on(varies.error())) return varies.error();
+        if (varies && !sound) sound = step;
+        if (!varies && !sound && is_open)
+            caller.note(fmt::format("step {} cannot be taken: {}", step, varies.error().message));
+        if (!varies && !failed) failed = varies.error();
+        if (varies && *varies) return step;
+    }
+    if (!sound) return *failed;
+    if (steps.back() != *sound)
+        if (const Result<bool> again = look.varies_at(*sound, is_open); !again) return again.error();
+    return *sound;
+}
+
 } // namespace
 
 std::string note_of(const FirstView& view) {
@@ -370,16 +391,10 @@ Result<FirstChoice> choose_first(GridSource& source, const GridOptions& options,
             if (step > steps.back() && step < count) steps.push_back(step);
     FirstLook look(source, wish, caller, run);
     std::size_t taken = steps.front();
-    bool varies = wish.field.shape.has_value();
-    for (std::size_t i = 0; i < steps.size() && !varies; ++i) {
-        const Result<bool> found = look.varies_at(steps[i], is_open);
-        if (!found && (i == 0 || !may_look_on(found.error()))) return found.error();
-        varies = found && *found;
-        if (varies) taken = steps[i];
-    }
-    if (!varies && steps.size() > 1) { // as the first step is
-        const Result<bool> found = look.varies_at(steps.front(), is_open);
+    if (!wish.field.shape) {
+        const Result<std::size_t> found = step_that_varies(look, steps, is_open, caller);
         if (!found) return found.error();
+        taken = *found;
     }
     if (look.missing()) return *look.missing();
     if (needs_view) choice.view = look.view();

@@ -274,7 +274,6 @@ TEST_F(SeriesFields, BeginAfterAStepWithoutAny) {
     const std::string late = folder.write("late.pvd", "<VTKFile type='Collection'><Collection>"
                                                       "<DataSet timestep='0' file='none.vtu'/>"
                                                       "<DataSet timestep='1' file='a.vtu'/></Collection></VTKFile>");
-    Listener listener;
     ExtractJob job = job_of(late, "");
     const auto extracted = extract_files(job, listener);
     ASSERT_TRUE(extracted) << extracted.error().message;
@@ -306,7 +305,6 @@ TEST_F(SeriesFields, OfLaterStepsAreTakenWhereTheOnlyOneOfTheFirstDoesNotVary) {
     const std::string late = folder.write("k.pvd", "<VTKFile type='Collection'><Collection>"
                                                    "<DataSet timestep='0' file='constant.vtu'/>"
                                                    "<DataSet timestep='1' file='varying.vtu'/></Collection></VTKFile>");
-    Listener listener;
     const auto extracted = extract_files(job_of(late, ""), listener);
     ASSERT_TRUE(extracted) << extracted.error().message;
     EXPECT_EQ(extracted->field.name, "k");
@@ -406,6 +404,20 @@ TEST_F(SeriesFields, ABrokenStepDoesNotEndTheOthers) {
         EXPECT_EQ(clipped->broken_steps.size(), 1u);
         EXPECT_EQ(clipped->steps.size(), 2u);
     }
+}
+
+TEST_F(SeriesFields, AFirstStepThatCannotBeReadIsPassedOver) {
+    std::string broken = vtu({"T", "q", "r"}, 1);
+    broken.replace(broken.find(">0 1 2 3<"), 9, ">0 1<");
+    folder.write("a.vtu", broken);
+    ExtractJob job = job_of(pvd, "T");
+    const auto extracted = extract_files(job, listener);
+    ASSERT_TRUE(extracted) << extracted.error().message;
+    EXPECT_EQ(extracted->surfaces[0].time, 0.5);
+    EXPECT_TRUE(std::ranges::any_of(
+        listener.noted, [](const std::string& note) { return note.starts_with("step 0 cannot be taken: "); }));
+    job.grid.step = 0;
+    EXPECT_FALSE(extract_files(job, listener));
 }
 
 TEST_F(SeriesFields, OfBrokenStepsAloneAreAnError) {
