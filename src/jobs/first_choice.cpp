@@ -39,7 +39,7 @@ std::vector<std::string> missing_in(const GridSource& source, const ChoiceWish& 
     return missing;
 }
 
-/// Those behind the first that are looked at.
+/// Those behind the first that are looked at before all others.
 std::vector<std::size_t> steps_to_look_at(std::size_t first, std::size_t count) {
     constexpr std::size_t most = 32;
     std::vector<std::size_t> steps;
@@ -65,6 +65,7 @@ public:
             if (*found) return first_between(lacks, step);
             lacks = step;
         }
+        if (const auto found = among_all(first, steps); !found || *found) return found;
         std::vector<std::size_t> all{first};
         all.insert(all.end(), steps.begin(), steps.end());
         if (auto looked = source_.look_at_steps(all, caller_); !looked) return looked.error();
@@ -72,6 +73,19 @@ public:
     }
 
 private:
+    /// One by one, where they are not too many for a name that is perhaps a slip.
+    Result<std::optional<std::size_t>> among_all(std::size_t first, const std::vector<std::size_t>& looked_at) {
+        constexpr std::size_t most = 1000;
+        const std::size_t count = source_.info().times.size();
+        for (std::size_t step = first + 1; step < count && count <= most; ++step) {
+            if (std::ranges::binary_search(looked_at, step)) continue;
+            const Result<bool> found = has_all(step);
+            if (!found) return found.error();
+            if (*found) return std::optional(step);
+        }
+        return std::optional<std::size_t>();
+    }
+
     /// A step that cannot be looked at has nothing.
     Result<bool> has_all(std::size_t step) {
         if (auto looked = source_.look_at_steps({step}, caller_); !looked) {

@@ -406,6 +406,18 @@ TEST_F(SeriesFields, ABrokenStepDoesNotEndTheOthers) {
     }
 }
 
+TEST_F(SeriesFields, OfAFewStepsOfManyAreFound) {
+    std::string sets;
+    for (int step = 0; step < 80; ++step)
+        sets += fmt::format("<DataSet timestep='{}' file='{}.vtu'/>", step, step == 42 ? "c" : "a");
+    const std::string many =
+        folder.write("many.pvd", "<VTKFile type='Collection'><Collection>" + sets + "</Collection></VTKFile>");
+    const auto extracted = extract_files(job_of(many, "r"), listener);
+    ASSERT_TRUE(extracted) << extracted.error().message;
+    EXPECT_EQ(extracted->surfaces[0].time, 42.0);
+    EXPECT_FALSE(extract_files(job_of(many, "s"), listener));
+}
+
 TEST_F(SeriesFields, AFirstStepThatCannotBeReadIsPassedOver) {
     std::string broken = vtu({"T", "q", "r"}, 1);
     broken.replace(broken.find(">0 1 2 3<"), 9, ">0 1<");

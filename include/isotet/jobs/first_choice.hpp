@@ -33,7 +33,8 @@ struct ChoiceWish {
 };
 
 /// Looks at the step that the options ask for, and else at the first that has all fields that are asked for: of long series
-/// at the first that has them of 32 steps, spread evenly, and back from there to where they begin. Nothing is read or noted.
+/// at the first that has them of 32 steps, spread evenly, and back from there to where they begin; of up to 1,000 steps then
+/// at the first of all others. Nothing is read or noted.
 ///
 /// Returns   the step; of Steps::all the first of all
 /// Errors    invalid_argument: a step or time that the file does not have, with those that it has; and as choose_field() of
