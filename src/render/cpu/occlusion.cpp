@@ -21,13 +21,12 @@ constexpr float widest_reach = 96;  ///< in pixels of half the picture
 constexpr float least_reach = 1.5F; ///< below which nothing can be told
 constexpr float slack = 0.05F;      ///< of a horizon's sine: curved surfaces are made of flat triangles
 constexpr float gain = 1.7F;        ///< hollows are seldom closed on all sides
-constexpr std::size_t slices = 4, steps = 4;
+constexpr std::size_t slices = 4, steps = 4, places_around = slices * steps;
 constexpr std::int64_t pattern = 4; ///< pixels after which directions repeat; they are averaged over as many
 
 /// Directions of the slices and places of the steps, other ones at each pixel of the pattern.
 struct Look {
-    std::array<std::array<float, 2>, slices> directions;
-    std::array<float, steps> places; ///< parts of the reach
+    std::array<float, places_around> cosines, sines, parts; ///< of the directions and of the reach, slice by slice
 };
 
 const std::array<Look, pattern * pattern>& looks() {
@@ -37,15 +36,15 @@ const std::array<Look, pattern * pattern>& looks() {
         std::array<Look, pattern * pattern> made{};
         const auto rounded = [](double x) { return static_cast<float>(std::round(x * 4096) / 4096); };
         for (std::size_t i = 0; i < made.size(); ++i) {
-            for (std::size_t slice = 0; slice < slices; ++slice) {
+            for (std::size_t place = 0; place < places_around; ++place) {
+                const std::size_t slice = place / steps, step = place % steps;
                 const double angle =
                     std::numbers::pi * (static_cast<double>(slice) + static_cast<double>(turns[i]) / 16) / slices;
-                made[i].directions[slice] = {rounded(std::cos(angle)), rounded(std::sin(angle))};
-            }
-            for (std::size_t step = 0; step < steps; ++step) {
+                made[i].cosines[place] = rounded(std::cos(angle));
+                made[i].sines[place] = rounded(std::sin(angle));
                 const float part = (static_cast<float>(step) + static_cast<float>(turns[(5 * i + 3) % 16] + 1) / 16) /
                                    static_cast<float>(steps);
-                made[i].places[step] = part * part; // more of them near by
+                made[i].parts[place] = part * part; // more of them near by
             }
         }
         return made;
@@ -159,32 +158,41 @@ float Occlusion::openness_at(std::int64_t x, std::int64_t y) const {
     const float square = pixels * down * pixels * down;
     const float to_right = static_cast<float>(2 * x + 1 - width_) / 2,
                 to_bottom = static_cast<float>(2 * y + 1 - height_) / 2;
-    /// The sine of how high a place beside this one stands above it, less the farther away it is; -1 where nothing is.
-    const auto height = [&](std::int64_t dx, std::int64_t dy) {
-        const std::int64_t at_x = x + dx, at_y = y + dy;
-        if (at_x < 0 || at_y < 0 || at_x >= width_ || at_y >= height_) return -1.0F;
-        const float there = distances_[place(at_x, at_y)];
-        if (!(there < INFINITY)) return -1.0F;
-        const float farther = there - distance;
-        const float across = parallel_ ? static_cast<float>(dx) * right_
-                                       : (static_cast<float>(dx) * there + to_right * farther) * right_,
-                    along = parallel_ ? static_cast<float>(dy) * down_
-                                      : (static_cast<float>(dy) * there + to_bottom * farther) * down_;
-        const float length = across * across + along * along + farther * farther;
-        if (!(length < square)) return -1.0F;
-        const float part = length / square;
-        return (1 - part * part) * (1 - farther / std::sqrt(length)) - 1;
-    };
     const Look& look = looks()[static_cast<std::size_t>(y % pattern * pattern + x % pattern)];
-    float closed = 0;
-    for (const auto& [cosine, sine] : look.directions) {
-        float highest = 0; // of opposite places: in a plane they stand as high as each other, one above and one below
-        for (const float part : look.places) {
-            const float radius = 1 + part * (pixels - 1);
-            const auto dx = static_cast<std::int64_t>(std::floor(radius * cosine + 0.5F)),
-                       dy = static_cast<std::int64_t>(std::floor(radius * sine + 0.5F));
-            highest = std::max(highest, 0.5F * (height(dx, dy) + height(-dx, -dy)) - slack);
+    using Places = std::array<float, places_around>;
+    std::array<std::int32_t, places_around> dx, dy;
+    for (std::size_t i = 0; i < places_around; ++i) {
+        const float radius = 1 + look.parts[i] * (pixels - 1);
+        dx[i] = static_cast<std::int32_t>(std::floor(radius * look.cosines[i] + 0.5F));
+        dy[i] = static_cast<std::int32_t>(std::floor(radius * look.sines[i] + 0.5F));
+    }
+    std::array<Places, 2> there; // on opposite sides
+    for (std::size_t i = 0; i < places_around; ++i)
+        for (const std::int64_t side : {1, -1}) {
+            const std::int64_t at_x = x + side * dx[i], at_y = y + side * dy[i];
+            const bool is_inside = at_x >= 0 && at_y >= 0 && at_x < width_ && at_y < height_;
+            there[side < 0][i] = is_inside ? distances_[place(at_x, at_y)] : INFINITY;
         }
+    // The sine of how high a place beside this one stands above it, less the farther away it is; -1 where nothing is.
+    const float per_x = right_, per_y = down_, narrows = parallel_ ? 0.0F : 1.0F; // no bool: for vectors
+    const auto height = [=](float right, float below, float distance_there) {
+        const float farther = distance_there - distance;
+        const float scale = narrows != 0 ? distance_there : 1, shift = narrows != 0 ? farther : 0;
+        const float across = (right * scale + to_right * shift) * per_x,
+                    along = (below * scale + to_bottom * shift) * per_y;
+        const float length = across * across + along * along + farther * farther;
+        const float part = length / square, sine = (1 - part * part) * (1 - farther / std::sqrt(length)) - 1;
+        return distance_there < INFINITY && length < square ? sine : -1.0F;
+    };
+    Places heights;
+    for (std::size_t i = 0; i < places_around; ++i) {
+        const auto right = static_cast<float>(dx[i]), below = static_cast<float>(dy[i]);
+        heights[i] = 0.5F * (height(right, below, there[0][i]) + height(-right, -below, there[1][i])) - slack;
+    }
+    float closed = 0;
+    for (std::size_t slice = 0; slice < slices; ++slice) {
+        float highest = 0; // of opposite places: in a plane they stand as high as each other, one above and one below
+        for (std::size_t step = 0; step < steps; ++step) highest = std::max(highest, heights[slice * steps + step]);
         closed += highest;
     }
     return std::max(0.0F, 1 - gain * closed / slices);

@@ -32,7 +32,6 @@ inline SampleMask first_samples(std::int64_t count) {
 /// An edge of a triangle that lies to its right: `at(x, y)` of a sample is not negative inside.
 struct FixedEdge {
     std::int64_t constant, per_x, per_y;
-    double inverse; ///< of per_x, rounded; 0 where that is 0
 
     FixedEdge() = default;
     FixedEdge(std::int64_t ax, std::int64_t ay, std::int64_t bx, std::int64_t by) {
@@ -41,7 +40,6 @@ struct FixedEdge {
         constant = dy * ax - dx * ay - (owns_samples_on_it ? 0 : 1);
         per_x = -dy * fixed_one;
         per_y = dx * fixed_one;
-        inverse = per_x == 0 ? 0 : 1 / static_cast<double>(per_x);
     }
     std::int64_t at(std::int64_t x, std::int64_t y) const { return constant + per_x * x + per_y * y; }
 };
@@ -106,7 +104,10 @@ public:
         if (first_x_ > last_x_ || first_y_ > last_y_) return;
         const std::int64_t s = frame_.samples;
         if (is_small_) return each_pixel_of_small(emit);
-        for (std::int64_t row = first_y_ / s; row <= last_y_ / s; ++row) pixel_row(row, emit);
+        std::array<double, 3> inverses{}; // of what a sample to the right adds, rounded
+        for (std::size_t e = 0; e < 3; ++e)
+            if (edges_[e].per_x != 0) inverses[e] = 1 / static_cast<double>(edges_[e].per_x);
+        for (std::int64_t row = first_y_ / s; row <= last_y_ / s; ++row) pixel_row(row, inverses, emit);
     }
 
 private:
@@ -128,13 +129,18 @@ private:
                     *offset++ = per_y * row + per_x * column;
             std::fill(offset, offsets[e].data() + (samples + 3) / 4 * 4, 0);
         }
-        for (std::int64_t row = first_y_ / s; row <= last_y_ / s; ++row)
-            for (std::int64_t x = first_x_ / s; x <= last_x_ / s; ++x) {
-                std::array<std::int32_t, 3> first;
-                for (std::size_t e = 0; e < 3; ++e) first[e] = static_cast<std::int32_t>(edges_[e].at(x * s, row * s));
+        const std::int64_t begin = first_x_ / s, end = last_x_ / s;
+        std::array<std::int32_t, 3> first, per_pixel;
+        for (std::size_t e = 0; e < 3; ++e) per_pixel[e] = static_cast<std::int32_t>(edges_[e].per_x * s);
+        for (std::int64_t row = first_y_ / s; row <= last_y_ / s; ++row) {
+            for (std::size_t e = 0; e < 3; ++e) first[e] = static_cast<std::int32_t>(edges_[e].at(begin * s, row * s));
+            for (std::int64_t x = begin; x <= end; ++x) {
                 if (const SampleMask mask = samples_inside(first, offsets, samples))
                     emit(static_cast<std::int32_t>(x), static_cast<std::int32_t>(row), mask);
+                if (x == end) break;
+                for (std::size_t e = 0; e < 3; ++e) first[e] += per_pixel[e];
             }
+        }
     }
 
     struct Span {
@@ -143,12 +149,13 @@ private:
 
     /// The samples of a row that are inside all edges. An estimate of where each edge crosses it is less than one
     /// sample off within the tile; then exact tests.
-    Span span_of(std::int64_t y) const {
+    Span span_of(std::int64_t y, const std::array<double, 3>& inverses) const {
         std::int64_t begin = first_x_, end = last_x_ + 1;
-        for (const FixedEdge& edge : edges_) {
+        for (std::size_t e = 0; e < 3; ++e) {
+            const FixedEdge& edge = edges_[e];
             const std::int64_t at_0 = edge.constant + edge.per_y * y;
             const auto is_inside = [&](std::int64_t x) { return at_0 + edge.per_x * x >= 0; };
-            const double crossing = -static_cast<double>(at_0) * edge.inverse;
+            const double crossing = -static_cast<double>(at_0) * inverses[e];
             const auto limited = [&](double x) {
                 return static_cast<std::int64_t>(
                     std::min(std::max(x, static_cast<double>(begin)), static_cast<double>(end)));
@@ -170,13 +177,13 @@ private:
     }
 
     template <class Emit>
-    void pixel_row(std::int64_t row, const Emit& emit) const {
+    void pixel_row(std::int64_t row, const std::array<double, 3>& inverses, const Emit& emit) const {
         const std::int64_t s = frame_.samples, first = std::max(row * s, first_y_),
                            last = std::min(row * s + s - 1, last_y_);
         std::array<Span, 8> spans;
         std::int64_t begin = INT64_MAX, end = 0, full_begin = 0, full_end = INT64_MAX;
         for (std::int64_t y = first; y <= last; ++y) {
-            const Span& span = spans[static_cast<std::size_t>(y - row * s)] = span_of(y);
+            const Span& span = spans[static_cast<std::size_t>(y - row * s)] = span_of(y, inverses);
             if (span.begin == span.end) {
                 full_end = 0;
                 continue;

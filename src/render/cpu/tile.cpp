@@ -59,6 +59,38 @@ Compared compare_depths(const DepthPlane& plane, float middle, const float* righ
     return found;
 }
 
+/// Gives the samples of a mask the depth of a plane, and an owner; reads, and writes as they are, as many as
+/// compare_depths() reads.
+void cover_samples(const DepthPlane& plane, float middle, const float* right, const float* down, SampleMask mask,
+                   std::uint32_t owner, float* depths, std::uint32_t* owners, std::size_t samples) {
+    const auto per_x = static_cast<float>(plane.per_x), per_y = static_cast<float>(plane.per_y);
+#if defined(__SSE2__)
+    const __m128 x = _mm_set1_ps(per_x), y = _mm_set1_ps(per_y), at_middle = _mm_set1_ps(middle);
+    const __m128 lower = _mm_set1_ps(plane.lower), upper = _mm_set1_ps(plane.upper);
+    const __m128i bits = _mm_setr_epi32(1, 2, 4, 8), new_owner = _mm_set1_epi32(static_cast<int>(owner));
+    for (std::size_t i = 0; i < samples; i += samples_together) {
+        const auto some = static_cast<int>(mask >> i & 15);
+        if (some == 0) continue;
+        const __m128 across = _mm_add_ps(at_middle, _mm_mul_ps(x, _mm_loadu_ps(right + i)));
+        const __m128 anywhere = _mm_add_ps(across, _mm_mul_ps(y, _mm_loadu_ps(down + i)));
+        const __m128 at = _mm_min_ps(_mm_max_ps(anywhere, lower), upper);
+        const __m128i chosen = _mm_cmpeq_epi32(_mm_and_si128(_mm_set1_epi32(some), bits), bits);
+        const __m128 chosen_depths = _mm_castsi128_ps(chosen);
+        _mm_storeu_ps(depths + i,
+                      _mm_or_ps(_mm_and_ps(chosen_depths, at), _mm_andnot_ps(chosen_depths, _mm_loadu_ps(depths + i))));
+        auto* const own = reinterpret_cast<__m128i*>(owners + i);
+        _mm_storeu_si128(
+            own, _mm_or_si128(_mm_and_si128(chosen, new_owner), _mm_andnot_si128(chosen, _mm_loadu_si128(own))));
+    }
+#else
+    for (std::size_t i = 0; i < samples; ++i) {
+        if (!(mask >> i & 1)) continue;
+        depths[i] = std::clamp(middle + per_x * right[i] + per_y * down[i], plane.lower, plane.upper);
+        owners[i] = owner;
+    }
+#endif
+}
+
 /// The samples that one facet has, likewise; bits behind the last may be set.
 SampleMask samples_of(std::uint32_t owner, const std::uint32_t* owners, std::size_t samples) {
     SampleMask mask = 0;
@@ -107,6 +139,7 @@ void Tile::draw_all(std::size_t number, std::span<const BinEntry> entries, Pictu
     if (volumes_) follow_rays();
     const auto s = static_cast<std::int64_t>(scene_.screen.samples);
     for (std::int32_t y = 0; y < frame_.height; ++y) {
+        shade_row(y);
         for (std::int32_t x = 0; x < frame_.width; ++x) {
             Blend sum = volumes_ ? blend_ray(x, y) : resolve(x, y);
             sum.add_behind(scene_.background, scene_.background_opacity);
@@ -175,14 +208,35 @@ bool Tile::may_be_seen(float nearest) {
     return nearest <= farthest_; // of those at the same depth the first one is seen, in the order of sheets
 }
 
+Tile::DepthRange Tile::range_of(std::span<const float> depths) {
+    DepthRange range{depths[0], depths[0]};
+    std::size_t i = 0;
+#if defined(__SSE2__)
+    if (depths.size() >= samples_together) {
+        __m128 nearest = _mm_loadu_ps(depths.data()), farthest = nearest;
+        for (i = samples_together; i + samples_together <= depths.size(); i += samples_together) {
+            const __m128 some = _mm_loadu_ps(depths.data() + i);
+            nearest = _mm_min_ps(nearest, some);
+            farthest = _mm_max_ps(farthest, some);
+        }
+        std::array<float, samples_together> low, high;
+        _mm_storeu_ps(low.data(), nearest);
+        _mm_storeu_ps(high.data(), farthest);
+        range = {std::ranges::min(low), std::ranges::max(high)};
+    }
+#endif
+    for (; i < depths.size(); ++i) range = {std::min(range.nearest, depths[i]), std::max(range.farthest, depths[i])};
+    return range;
+}
+
 /// What is translucent need not be compared sample by sample where all of it is in front of the opaque, or behind.
 void Tile::measure_opaque() {
     ranges_.resize(covered_.size());
     farthest_ = 0;
     for (std::size_t pixel = 0; pixel < ranges_.size(); ++pixel) {
-        const auto [nearest, farthest] = std::ranges::minmax(std::span(depths_).subspan(pixel * count_, count_));
-        ranges_[pixel] = {nearest, farthest};
-        farthest_ = std::max(farthest_, farthest);
+        ranges_[pixel] = covered_[pixel] ? range_of(std::span(depths_).subspan(pixel * count_, count_))
+                                         : DepthRange{INFINITY, INFINITY};
+        farthest_ = std::max(farthest_, ranges_[pixel].farthest);
     }
 }
 
@@ -214,17 +268,36 @@ void Tile::cover(std::uint32_t facet, std::size_t pixel, float depth, SampleMask
         return;
     }
     covered_[pixel] = 1;
-    const auto per_x = static_cast<float>(one.depth.per_x), per_y = static_cast<float>(one.depth.per_y);
-    for (SampleMask left = mask; left; left &= left - 1) {
-        const auto i = static_cast<std::size_t>(std::countr_zero(left));
-        depths_[pixel * count_ + i] =
-            std::clamp(depth + per_x * right_[i] + per_y * down_[i], one.depth.lower, one.depth.upper);
-        owners_[pixel * count_ + i] = facet + 1;
-    }
+    cover_samples(one.depth, depth, right_.data(), down_.data(), mask, facet + 1, depths_.data() + pixel * count_,
+                  owners_.data() + pixel * count_, count_);
 }
 
-/// At the middle of the samples that are seen, which is inside the facet.
-Shade Tile::shade_of(const Facet& facet, std::int32_t x, std::int32_t y, SampleMask mask) const {
+/// What is seen in a row of pixels, and its shades.
+void Tile::shade_row(std::int32_t y) {
+    parts_.clear();
+    places_.clear();
+    row_.clear();
+    for (std::int32_t x = 0; x < frame_.width; ++x) {
+        const std::size_t pixel = pixel_of(x, y);
+        PixelParts& here = row_.emplace_back(PixelParts{parts_.size(), 0, 0});
+        const std::uint32_t* const owners = owners_.data() + pixel * count_;
+        for (SampleMask left = covered_[pixel] ? all_ : 0; left;) {
+            const std::uint32_t owner = owners[std::countr_zero(left)];
+            const SampleMask mask = samples_of(owner, owners, count_) & all_;
+            left &= ~mask;
+            if (owner != 0) add_part(owner - 1, x, y, mask);
+        }
+        here.translucent = parts_.size();
+        for (std::uint32_t at = heads_[pixel]; at != 0; at = fragments_[at - 1].next)
+            add_part(fragments_[at - 1].facet, x, y, fragments_[at - 1].mask);
+        here.end = parts_.size();
+    }
+    shades_.resize(places_.size());
+    shade(places_, scene_.screen.sight, shades_);
+}
+
+/// Shaded at the middle of the samples that are seen, which is inside the facet.
+void Tile::add_part(std::uint32_t facet, std::int32_t x, std::int32_t y, SampleMask mask) {
     const double half = 0.5 * scene_.screen.samples;
     double right = 0, down = 0;
     if (mask != all_) {
@@ -238,13 +311,15 @@ Shade Tile::shade_of(const Facet& facet, std::int32_t x, std::int32_t y, SampleM
         right = sum_right / samples;
         down = sum_down / samples;
     }
-    return shade(*facet.sheet, facet.triangle, static_cast<double>(frame_.x + x * frame_.samples) + half + right,
-                 static_cast<double>(frame_.y + y * frame_.samples) + half + down, scene_.screen.sight);
+    parts_.push_back({facet, mask});
+    places_.push_back({facets_[facet].sheet, facets_[facet].triangle,
+                       static_cast<double>(frame_.x + x * frame_.samples) + half + right,
+                       static_cast<double>(frame_.y + y * frame_.samples) + half + down});
 }
 
 /// Darker where little of the surroundings is seen.
-Light Tile::opaque_color(const Facet& facet, std::int32_t x, std::int32_t y, SampleMask mask) const {
-    Light color = shade_of(facet, x, y, mask).color;
+Light Tile::opaque_color(const Facet& facet, const Light& shade, std::int32_t x, std::int32_t y) const {
+    Light color = shade;
     if (!scene_.occlusion || !facet.sheet->lit) return color;
     const float depth = std::clamp(depth_in_middle(facet.depth, x, y), facet.depth.lower, facet.depth.upper);
     const float open = scene_.occlusion->openness(frame_.x / frame_.samples + x, frame_.y / frame_.samples + y, depth);
@@ -253,52 +328,43 @@ Light Tile::opaque_color(const Facet& facet, std::int32_t x, std::int32_t y, Sam
 }
 
 Tile::Blend Tile::resolve(std::int32_t x, std::int32_t y) {
-    const std::size_t pixel =
-        static_cast<std::size_t>(y) * static_cast<std::size_t>(frame_.width) + static_cast<std::size_t>(x);
-    if (!covered_[pixel] && !heads_[pixel]) return {};
+    const PixelParts& here = row_[static_cast<std::size_t>(x)];
+    if (here.first == here.end) return {};
     take_opaque(x, y);
-    if (!heads_[pixel]) return mean_opaque_;
+    if (here.translucent == here.end) return mean_opaque_;
     take_layers(x, y);
     bool whole = true;
     for (std::size_t i = 0; i < layers_.size(); ++i) {
         whole = whole && layers_[i].mask == all_;
         if (i > 0) whole = whole && layers_[i - 1].depth + layers_[i - 1].reach < layers_[i].depth - layers_[i].reach;
     }
-    return whole ? blend_whole() : blend_samples();
+    if (whole) return blend_whole();
+    return have_samples_of_their_own() ? blend_apart() : blend_samples();
 }
 
 /// The colours of samples without what is translucent, and their mean.
 void Tile::take_opaque(std::int32_t x, std::int32_t y) {
-    const std::size_t pixel =
-        static_cast<std::size_t>(y) * static_cast<std::size_t>(frame_.width) + static_cast<std::size_t>(x);
     mean_opaque_ = {};
     std::ranges::fill(opaque_, Blend{});
-    if (!covered_[pixel]) return;
-    const std::uint32_t* const owners = owners_.data() + pixel * count_;
-    for (SampleMask left = all_; left;) {
-        const std::uint32_t owner = owners[std::countr_zero(left)];
-        const SampleMask mask = samples_of(owner, owners, count_) & all_;
-        left &= ~mask;
-        if (owner == 0) continue;
-        const Blend color{opaque_color(facets_[owner - 1], x, y, mask), 1};
+    const PixelParts& here = row_[static_cast<std::size_t>(x)];
+    for (std::size_t i = here.first; i < here.translucent; ++i) {
+        const SampleMask mask = parts_[i].mask;
+        const Blend color{opaque_color(facets_[parts_[i].facet], shades_[i].color, x, y), 1};
         for (SampleMask rest = mask; rest; rest &= rest - 1)
             opaque_[static_cast<std::size_t>(std::countr_zero(rest))] = color;
         const float part = static_cast<float>(std::popcount(mask)) / static_cast<float>(count_);
-        for (std::size_t i = 0; i < 3; ++i) mean_opaque_.light[i] += part * color.light[i];
+        for (std::size_t k = 0; k < 3; ++k) mean_opaque_.light[k] += part * color.light[k];
         mean_opaque_.opacity += part;
     }
 }
 
 /// The fragments of a pixel, by their depth in its middle.
 void Tile::take_layers(std::int32_t x, std::int32_t y) {
-    const std::size_t pixel =
-        static_cast<std::size_t>(y) * static_cast<std::size_t>(frame_.width) + static_cast<std::size_t>(x);
     layers_.clear();
     const double middle = 0.5 * (scene_.screen.samples - 1);
-    for (std::uint32_t at = heads_[pixel]; at != 0; at = fragments_[at - 1].next) {
-        const Fragment& fragment = fragments_[at - 1];
-        const Facet& facet = facets_[fragment.facet];
-        const DepthPlane& plane = facet.depth;
+    const PixelParts& here = row_[static_cast<std::size_t>(x)];
+    for (std::size_t i = here.translucent; i < here.end; ++i) {
+        const DepthPlane& plane = facets_[parts_[i].facet].depth;
         Layer layer;
         layer.depth = depth_in_middle(plane, x, y);
         layer.per_x = static_cast<float>(plane.per_x);
@@ -306,8 +372,8 @@ void Tile::take_layers(std::int32_t x, std::int32_t y) {
         layer.lower = plane.lower;
         layer.upper = plane.upper;
         layer.reach = (std::abs(layer.per_x) + std::abs(layer.per_y)) * static_cast<float>(middle);
-        layer.mask = fragment.mask;
-        layer.shade = shade_of(facet, x, y, fragment.mask);
+        layer.mask = parts_[i].mask;
+        layer.shade = shades_[i];
         layers_.push_back(layer);
     }
     // Where depths are equal the larger colour is in front, so that the order of drawing shows nowhere.
@@ -331,6 +397,34 @@ Tile::Blend Tile::blend_whole() const {
     return sum;
 }
 
+/// Whether no sample has two of the layers.
+bool Tile::have_samples_of_their_own() const {
+    SampleMask taken = 0;
+    for (const Layer& layer : layers_) {
+        if (taken & layer.mask) return false;
+        taken |= layer.mask;
+    }
+    return true;
+}
+
+/// Where no sample has two: blend_samples() without an order.
+Tile::Blend Tile::blend_apart() const {
+    std::array<const Shade*, 64> front{};
+    for (const Layer& layer : layers_)
+        for (SampleMask left = layer.mask; left; left &= left - 1)
+            front[static_cast<std::size_t>(std::countr_zero(left))] = &layer.shade;
+    Blend mean;
+    for (std::uint32_t i = 0; i < count_; ++i) {
+        Blend sum;
+        if (front[i]) sum.add_behind(front[i]->color, front[i]->opacity);
+        if (opaque_[i].opacity > 0) sum.add_behind(opaque_[i].light, 1);
+        for (std::size_t k = 0; k < 3; ++k) mean.light[k] += sum.light[k];
+        mean.opacity += sum.opacity;
+    }
+    mean.divide_by(count_);
+    return mean;
+}
+
 Tile::Blend Tile::blend_samples() {
     Blend mean;
     for (std::uint32_t i = 0; i < count_; ++i) {
@@ -352,9 +446,7 @@ Tile::Blend Tile::blend_samples() {
         for (std::size_t k = 0; k < 3; ++k) mean.light[k] += sum.light[k];
         mean.opacity += sum.opacity;
     }
-    const float part = 1 / static_cast<float>(count_);
-    for (float& light : mean.light) light *= part;
-    mean.opacity *= part;
+    mean.divide_by(count_);
     return mean;
 }
 

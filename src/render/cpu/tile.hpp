@@ -64,6 +64,15 @@ private:
         std::uint32_t facet, next; ///< next: 1 + the fragment, or 0
         SampleMask mask;
     };
+    /// What is seen of a facet in a pixel.
+    struct Part {
+        std::uint32_t facet;
+        SampleMask mask;
+    };
+    /// The parts in a pixel: opaque ones from `first` on, then translucent ones, as in the list of fragments.
+    struct PixelParts {
+        std::size_t first, translucent, end;
+    };
     struct DepthRange {
         float nearest, farthest;
     };
@@ -83,6 +92,11 @@ private:
             for (std::size_t i = 0; i < 3; ++i) light[i] += part * color[i];
             opacity += part;
         }
+        void divide_by(std::uint32_t samples) {
+            const float part = 1 / static_cast<float>(samples);
+            for (float& component : light) component *= part;
+            opacity *= part;
+        }
     };
 
     void draw_all(std::size_t number, std::span<const BinEntry> entries, Picture& picture);
@@ -92,10 +106,12 @@ private:
                    const FixedPoint& c);
     bool may_be_seen(float nearest);
     void measure_opaque();
+    static DepthRange range_of(std::span<const float> depths);
     void cover(std::uint32_t facet, std::size_t pixel, float depth, SampleMask mask);
     SampleMask in_front(const Facet& facet, std::size_t pixel, float depth, SampleMask mask) const;
-    Shade shade_of(const Facet& facet, std::int32_t x, std::int32_t y, SampleMask mask) const;
-    Light opaque_color(const Facet& facet, std::int32_t x, std::int32_t y, SampleMask mask) const;
+    void shade_row(std::int32_t y);
+    void add_part(std::uint32_t facet, std::int32_t x, std::int32_t y, SampleMask mask);
+    Light opaque_color(const Facet& facet, const Light& shade, std::int32_t x, std::int32_t y) const;
     Blend resolve(std::int32_t x, std::int32_t y);
     void follow_rays();
     void give_rays();
@@ -116,6 +132,8 @@ private:
     void take_opaque(std::int32_t x, std::int32_t y);
     void take_layers(std::int32_t x, std::int32_t y);
     Blend blend_whole() const;
+    bool have_samples_of_their_own() const;
+    Blend blend_apart() const;
     Blend blend_samples();
 
     const TileScene& scene_;
@@ -133,14 +151,20 @@ private:
     std::vector<std::uint32_t> heads_;  ///< 1 + the last fragment of a pixel, or 0
     std::vector<std::uint8_t> covered_; ///< whether a pixel has anything opaque
 
+    // Of the row that is resolved:
+    std::vector<Part> parts_;
+    std::vector<ShadedPlace> places_; ///< of each part
+    std::vector<Shade> shades_;
+    std::vector<PixelParts> row_;
+
     // Of the pixel that is resolved:
     std::vector<Layer> layers_;
     std::vector<std::pair<float, const Layer*>> order_;
     std::vector<Blend> opaque_; ///< a sample
     Blend mean_opaque_;
 
-    std::unique_ptr<VolumeTile> volumes_;  ///< where the scene has some
-    std::vector<float> distances_;         ///< of the sheets of a pixel
+    std::unique_ptr<VolumeTile> volumes_; ///< where the scene has some
+    std::vector<float> distances_;        ///< of the sheets of a pixel
 };
 
 } // namespace isotet::render

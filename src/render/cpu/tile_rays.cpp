@@ -78,9 +78,7 @@ Tile::Blend Tile::blend_ray(std::int32_t x, std::int32_t y) {
         for (std::size_t k = 0; k < 3; ++k) mean.light[k] += sum.light[k];
         mean.opacity += sum.opacity;
     }
-    const float part = 1 / static_cast<float>(count_);
-    for (float& light : mean.light) light *= part;
-    mean.opacity *= part;
+    mean.divide_by(count_);
     return mean;
 }
 
