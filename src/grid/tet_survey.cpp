@@ -14,6 +14,7 @@
 #include "grid/cell_survey.hpp"
 #include "grid/orientation.hpp"
 #include "numbers/bounds.hpp"
+#include "numbers/box_sign.hpp"
 
 namespace isotet::core {
 
@@ -78,6 +79,12 @@ void add_cell(const WholeCell& cell, std::uint8_t type, const Points& points, Ma
     for (std::size_t k = 0; k < corner_count(cell.kind); ++k) {
         places[k] = points[cell.corners[k]];
         if (!repeated) used.mark(cell.corners[k]);
+    }
+    if (cell.kind == CellKind::hexahedron) { // where it tells, no two corners are one
+        const int sign = sign_of_all_tets(places);
+        if (sign != 0) out.tets += positions.count;
+        if (sign < 0) out.mirrored += positions.count;
+        if (sign != 0) return;
     }
     std::array<int, 6> signs;
     std::size_t count = 0;

@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "grid/cell/splitter.hpp"
 #include "grid/orientation.hpp"
+#include "numbers/box_sign.hpp"
 
 namespace isotet::test {
 namespace {
@@ -109,6 +112,60 @@ TEST(OrientationSign, IsPositiveForAnUprightTetAtTheEndsOfTheRange) {
         EXPECT_EQ(core::orientation_sign(o, y, x, z), -1) << unit;
         EXPECT_EQ(core::orientation_sign(o, x, y, y), 0) << unit;
     }
+}
+
+/// The tets of a hexahedron, with whichever diagonals numbers of its corners choose.
+struct PositionsOfTets {
+    std::vector<std::array<std::uint8_t, 4>> tets;
+
+    void expect(int) {}
+    void add(std::uint8_t a, std::uint8_t b, std::uint8_t c, std::uint8_t d) { tets.push_back({a, b, c, d}); }
+};
+
+TEST(SignOfAllTets, IsThatOfEachWhereItTells) {
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> number(-1, 1);
+    int told = 0, negative = 0;
+    for (int i = 0; i < 20'000; ++i) {
+        std::array<core::Point, 8> corners;
+        const double aside = std::pow(10, -i % 12), flat = std::pow(10, -i % 5);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double factor = axis == 2 ? flat : 1;
+            const double origin = 10 * number(random), a = factor * number(random), b = factor * number(random),
+                         c = factor * number(random);
+            const std::array<double, 8> ideal{0, a, a + b, b, c, a + c, a + b + c, b + c};
+            for (std::size_t k = 0; k < 8; ++k)
+                corners[k][axis] = origin + ideal[k] + (k == 0 ? 0 : factor * aside * number(random));
+        }
+        const int sign = core::sign_of_all_tets(corners);
+        told += sign != 0;
+        negative += sign < 0;
+        std::array<std::uint64_t, 8> numbers{0, 1, 2, 3, 4, 5, 6, 7};
+        std::ranges::shuffle(numbers, random);
+        PositionsOfTets list;
+        core::Splitter(numbers.data(), list).split(core::CellKind::hexahedron);
+        for (const auto [a, b, c, d] : list.tets) {
+            if (sign == 0) break;
+            ASSERT_EQ(core::orientation_sign(corners[a], corners[b], corners[c], corners[d]), sign) << i;
+            ASSERT_EQ(core::six_volumes(corners[a], corners[b], corners[c], corners[d]) < 0, sign < 0) << i;
+        }
+    }
+    EXPECT_GT(told, 8'000);
+    EXPECT_GT(negative, 4'000);
+}
+
+TEST(SignOfAllTets, IsToldOfBoxesAndOfNoCellWithAFlatTet) {
+    std::array<core::Point, 8> box{
+        {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}};
+    EXPECT_EQ(core::sign_of_all_tets(box), 1);
+    std::swap(box[0], box[4]), std::swap(box[1], box[5]), std::swap(box[2], box[6]), std::swap(box[3], box[7]);
+    EXPECT_EQ(core::sign_of_all_tets(box), -1);
+    box[6] = box[7];
+    EXPECT_EQ(core::sign_of_all_tets(box), 0);
+    for (core::Point& corner : box) corner[2] = 0;
+    EXPECT_EQ(core::sign_of_all_tets(box), 0);
+    box[3][0] = NAN;
+    EXPECT_EQ(core::sign_of_all_tets(box), 0);
 }
 
 TEST(IsCollinear, EqualsIntegerArithmetic) {
