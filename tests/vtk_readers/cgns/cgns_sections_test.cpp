@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Sections of CGNS in any order, with boundary elements anywhere among those of the volume; several solutions.
+#include <map>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -101,6 +102,17 @@ struct CgnsWriter {
         int number = 0;
         cg_sol_write(file, base, zone, name, location, &number);
         if (!values.empty()) cg_field_write(file, base, zone, number, CG_RealDouble, field, values.data(), &at);
+    }
+    void discrete(const char* name, CG_GridLocation_t location,
+                  const std::vector<std::pair<const char*, std::vector<double>>>& arrays) const {
+        int number = 0;
+        cg_discrete_write(file, base, zone, name, &number);
+        cg_goto(file, base, "Zone_t", zone, "DiscreteData_t", number, "end");
+        cg_gridlocation_write(location);
+        for (const auto& [array, values] : arrays) {
+            const auto count = static_cast<cgsize_t>(values.size());
+            EXPECT_EQ(cg_array_write(array, CG_RealDouble, 1, &count, values.data()), 0) << cg_get_error();
+        }
     }
     void close_with_an_empty_zone() {
         const cgsize_t size[3] = {8, 1, 0};
@@ -279,6 +291,29 @@ TEST(CgnsSolutions, OfOneNameAreTwoFieldsAndThoseElsewhereAreTold) {
     EXPECT_EQ(result->grid.point_fields[1].values.at(8), 2);
     ASSERT_EQ(result->notes.size(), 1u);
     EXPECT_EQ(result->notes[0], "field 'flux' is left out: its values are at \"FaceCenter\" (solution \"Faces\")");
+}
+
+TEST(CgnsDiscreteData, IsReadAsFieldsAtItsLocationBehindSolutions) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("a.cgns");
+    CgnsWriter writer(path);
+    writer.mixed(1, volume, true);
+    const std::vector<double> nodal(corner_places.size(), 5), cells{4, 3, 2, 1};
+    writer.discrete("Nodes", CG_Vertex, {{"T", nodal}, {"Distance", nodal}});
+    writer.discrete("Middles", CG_CellCenter, {{"VOL", cells}});
+    writer.discrete("Elsewhere", CG_CellCenter, {{"flux", cells}});
+    writer.rename_location("/Base/Zone/Elsewhere", "FaceCenter");
+    writer.close();
+    const auto result = read(path);
+    ASSERT_TRUE(result) << result.error().message;
+    std::map<std::string, double> points, middles; // one value of each
+    for (const Field& field : result->grid.point_fields) points[field.name] = field.values.at(8);
+    for (const Field& field : result->grid.cell_fields) middles[field.name] = field.values.at(1);
+    EXPECT_EQ(points, (std::map<std::string, double>{{"T", 2}, {"Nodes/T", 5}, {"Distance", 5}}))
+        << "T of the solution, though it is written later";
+    EXPECT_EQ(middles, (std::map<std::string, double>{{"q", 1}, {"VOL", 3}}));
+    ASSERT_EQ(result->notes.size(), 1u);
+    EXPECT_NE(result->notes[0].find("'flux' is left out"), std::string::npos) << result->notes[0];
 }
 
 TEST(CgnsSolutions, AreThoseOfTheirSteps) {

@@ -37,19 +37,22 @@ bool numbers_fit(const CgnsCells& cells) {
 
 CgnsSolutions::CgnsSolutions(const CgnsTree& tree, const CgnsZone& zone, std::size_t steps, const CgnsCounts& counts)
     : tree_(tree), zone_(zone), steps_(steps), counts_(counts) {
-    for (const CgnsNode& node : zone.parts) {
-        if (node.label != "FlowSolution_t") continue;
-        Solution solution{node, tree.children(node), Association::point, {}};
-        const auto place = child_labelled(solution.parts, "GridLocation_t");
-        const std::string location = place ? tree.text(*place) : "Vertex";
-        if (location.starts_with("CellCenter")) solution.association = Association::cell;
-        else if (!location.starts_with("Vertex"))
-            solution.problem = fmt::format("its values are at \"{}\"", escaped(location));
-        if (child_named(solution.parts, "PointList") || child_named(solution.parts, "PointRange"))
-            solution.problem = "it has values of a part of the zone only";
-        solutions_.push_back(std::move(solution));
-    }
+    for (const char* label : {"FlowSolution_t", "DiscreteData_t"}) // a solution keeps its names
+        for (const CgnsNode& node : zone.parts)
+            if (node.label == label) add(node);
     read_pointers();
+}
+
+void CgnsSolutions::add(const CgnsNode& node) {
+    Solution solution{node, tree_.children(node), Association::point, {}};
+    const auto place = child_labelled(solution.parts, "GridLocation_t");
+    const std::string location = place ? tree_.text(*place) : "Vertex";
+    if (location.starts_with("CellCenter")) solution.association = Association::cell;
+    else if (!location.starts_with("Vertex"))
+        solution.problem = fmt::format("its values are at \"{}\"", escaped(location));
+    if (child_named(solution.parts, "PointList") || child_named(solution.parts, "PointRange"))
+        solution.problem = "it has values of a part of the zone only";
+    solutions_.push_back(std::move(solution));
 }
 
 void CgnsSolutions::read_pointers() {
@@ -81,7 +84,9 @@ bool CgnsSolutions::holds(const Solution& solution, std::size_t step) const {
     if (any_named) return true; // of all steps
     std::vector<std::string> alike;
     for (const Solution& other : solutions_)
-        if (other.association == solution.association && other.problem.empty()) alike.push_back(other.node.name);
+        if (other.association == solution.association && other.node.label == solution.node.label &&
+            other.problem.empty())
+            alike.push_back(other.node.name);
     return steps_ < 2 || alike.size() != steps_ || !solution.problem.empty() || alike[step] == solution.node.name;
 }
 

@@ -41,6 +41,7 @@ private:
         ScalarType type = ScalarType::float64;
         std::string problem;
     };
+    void add(const CgnsNode& node);
     void read_pointers();
     bool holds(const Solution& solution, std::size_t step) const;
     std::vector<Named> fields_at(std::size_t step) const;
