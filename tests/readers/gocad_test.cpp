@@ -100,6 +100,16 @@ TEST(ReadGocad, AnnouncesWhatItReads) {
     EXPECT_EQ(info.regions[1].name, "upper");
 }
 
+TEST(ReadGocad, NamesMayHaveBlanksWithOrWithoutQuotationMarks) {
+    const std::string text = replaced(replaced(gocad_sample, "TVOLUME lower", "TVOLUME  lower part 2\t\r"),
+                                      "TVOLUME upper", "TVOLUME \"upper part\" 1");
+    const FileInfo info = io::inspect_gocad(text, {}).value();
+    ASSERT_EQ(info.regions.size(), 2U);
+    EXPECT_EQ(info.regions[0].name, "lower part 2");
+    EXPECT_EQ(info.regions[1].name, "upper part");
+    EXPECT_EQ(values_of(find(read_text(text).grid.cell_fields, "tvolume")->values), (std::vector<double>{0, 1, 1}));
+}
+
 TEST(ReadGocad, ReadsOnlyTheFieldsThatAreWanted) {
     ReadOptions options;
     options.point_fields = {"velocity"};

@@ -147,10 +147,15 @@ private:
             at += keyword.size();
             if (!before.ends_with('\n') || at >= object.size() || !is_blank(object[at])) continue;
             const std::string_view line = object.substr(at, object.find('\n', at) - at);
-            const std::string_view name = line.substr(std::min(line.find_first_not_of(blanks), line.size()));
-            names.emplace_back(name.substr(0, name.find_first_of(" \t\r")));
+            names.emplace_back(name_of_line(line));
         }
         return names;
+    }
+
+    /// All of the line, blanks between words included, or what stands between quotation marks.
+    static std::string_view name_of_line(std::string_view line) {
+        const std::string_view name = without_blanks(line);
+        return name.starts_with('"') ? name.substr(1, name.find('"', 1) - 1) : name;
     }
 
     static bool is_content(std::string_view keyword) {
