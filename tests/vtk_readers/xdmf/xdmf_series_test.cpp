@@ -358,5 +358,31 @@ TEST_F(ReadXdmfSeries, OneBadAttributeDoesNotSpoilTheRest) {
     ASSERT_TRUE(sound) << sound.error().message;
 }
 
+TEST_F(ReadXdmfSeries, SetsAreFieldsOfOnesAndZeros) {
+    const auto set = [](const std::string& name, const std::string& type, const std::string& numbers) {
+        return "<Set Name=\"" + name + "\" SetType=\"" + type + "\">" +
+               xdmf_item("Format=\"XML\" NumberType=\"Int\"", numbers) +
+               "<Attribute Name=\"of the set\" Center=\"Node\">" + xdmf_item("Format=\"XML\"", "7 8") +
+               "</Attribute></Set>";
+    };
+    const auto result = read_domain(xdmf_grid("g", xdmf_points() + xdmf_tets() + set("inlet", "Node", "4 0") +
+                                                       set("core", "cell", "1") + set("skin", "Face", "0 1") +
+                                                       set("far", "Node", "0 5") + xdmf_field("p", "5 4 3 2 1")));
+    ASSERT_TRUE(result) << result.error().message;
+    const auto &points = result->grid.point_fields, &cells = result->grid.cell_fields;
+    ASSERT_EQ(points.size(), 2u);
+    EXPECT_EQ(points[0].name, "p");
+    EXPECT_EQ(points[1].name, "inlet");
+    EXPECT_EQ(points[1].values.type(), ScalarType::uint8);
+    for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(points[1].values.at(i), i % 4 == 0 ? 1 : 0);
+    ASSERT_EQ(cells.size(), 1u);
+    EXPECT_EQ(cells[0].name, "core");
+    EXPECT_EQ(cells[0].values.at(0), 0);
+    EXPECT_EQ(cells[0].values.at(1), 1);
+    EXPECT_EQ(result->notes, (std::vector<std::string>{
+                                 "attribute 'skin' is left out: its SetType is \"Face\", but Node and Cell are read",
+                                 "point field 'far' is left out: it has the number 5, but 0 to 4 is the rule"}));
+}
+
 } // namespace
 } // namespace isotet::test

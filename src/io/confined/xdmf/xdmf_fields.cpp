@@ -28,12 +28,32 @@ std::string without_time(std::string name, std::optional<double> time) {
     return name;
 }
 
+/// Of points or cells, by their numbers.
+bool is_set(pugi::xml_node node) { return std::string_view(node.name()) == "Set"; }
+
+const char* center_of(pugi::xml_node node) {
+    return node.attribute(is_set(node) ? "SetType" : "Center").as_string("Node");
+}
+
 std::optional<Association> association_of(pugi::xml_node attribute) {
     if (is_finite_element_function(attribute)) return association_of_function(attribute);
-    const std::string_view center = attribute.attribute("Center").as_string("Node");
+    const std::string_view center = center_of(attribute);
     if (same_word(center, "Node")) return Association::point;
     if (same_word(center, "Cell")) return Association::cell;
     return std::nullopt;
+}
+
+/// 1 for those in the set, 0 for others.
+Result<Array> marks_of(const Array& numbers, std::uint64_t count) {
+    std::vector<std::uint8_t> marks(count);
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        const double number = numbers.at(i);
+        if (!(number >= 0) || number >= static_cast<double>(count) || number != std::floor(number))
+            return Error{ErrorCode::invalid_data, fmt::format("it has the number {}, but 0 to {} is the rule", number,
+                                                              static_cast<std::int64_t>(count) - 1)};
+        marks[static_cast<std::size_t>(number)] = 1;
+    }
+    return Array::own(std::move(marks));
 }
 
 Array with_components(const Array& values, std::size_t components) {
@@ -45,12 +65,14 @@ Array with_components(const Array& values, std::size_t components) {
 
 std::vector<XdmfField> fields_of(const XdmfDocument& document, pugi::xml_node grid, std::optional<double> time) {
     std::vector<XdmfField> fields;
-    for (const pugi::xml_node stated : document.children(grid, "Attribute")) {
-        const pugi::xml_node node = document.resolve(stated);
-        std::string name = without_time((node ? node : stated).attribute("Name").as_string(), time);
-        if (name.empty()) name = fmt::format("attribute_{}", fields.size());
-        fields.push_back({node, std::move(name), association_of(node ? node : stated)});
-    }
+    for (const char* tag : {"Attribute", "Set"})
+        for (const pugi::xml_node stated : document.children(grid, tag)) {
+            const pugi::xml_node node = document.resolve(stated);
+            std::string name = without_time((node ? node : stated).attribute("Name").as_string(), time);
+            if (name.empty())
+                name = fmt::format("{}_{}", tag == std::string_view("Set") ? "set" : "attribute", fields.size());
+            fields.push_back({node, std::move(name), association_of(node ? node : stated)});
+        }
     return fields;
 }
 
@@ -73,8 +95,9 @@ Result<void> XdmfFieldReader::read(const XdmfField& field, XdmfMesh& mesh, Depth
 Result<void> XdmfFieldReader::read_values(const XdmfField& field, XdmfMesh& mesh, Depth depth, Loaded& loaded) {
     if (!field.node) return Error{ErrorCode::invalid_data, "it refers to nothing"};
     if (!field.association)
-        return Error{ErrorCode::invalid_data, fmt::format("its Center is \"{}\", but Node and Cell are read",
-                                                          escaped(field.node.attribute("Center").as_string()))};
+        return Error{ErrorCode::invalid_data,
+                     fmt::format("its {} is \"{}\", but Node and Cell are read",
+                                 is_set(field.node) ? "SetType" : "Center", escaped(center_of(field.node)))};
     const bool on_points = *field.association == Association::point;
     const bool want = depth == Depth::arrays && wanted(options_, *field.association, field.name);
     auto& fields = on_points ? mesh.grid.point_fields : mesh.grid.cell_fields;
@@ -89,6 +112,15 @@ Result<void> XdmfFieldReader::read_values(const XdmfField& field, XdmfMesh& mesh
         return {};
     }
     const std::uint64_t tuples = on_points ? mesh.points : mesh.cells;
+    if (is_set(field.node)) {
+        const auto numbers = file_.data.read_indices(file_.document.child(field.node, "DataItem"), of_field);
+        if (!numbers) return numbers.error();
+        auto marks = want ? marks_of(numbers->values, tuples) : Array();
+        if (!marks) return marks.error();
+        announce(loaded.info, {field.name, *field.association, ScalarType::uint8, 1});
+        if (want) fields.push_back({field.name, *std::move(marks)});
+        return {};
+    }
     const auto values = file_.data.read(file_.document.child(field.node, "DataItem"), of_field);
     if (!values) return values.error();
     if (tuples == 0) return {};

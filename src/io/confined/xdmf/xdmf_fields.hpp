@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Attributes of XDMF as fields.
+// Attributes and sets of XDMF as fields.
 #pragma once
 
 #include <optional>
@@ -16,14 +16,14 @@
 
 namespace isotet::io::confined {
 
-/// An Attribute of a grid, before its values are read.
+/// An Attribute or a Set of a grid, before its values are read.
 struct XdmfField {
     pugi::xml_node node; ///< null where it refers to nothing
     std::string name;
     std::optional<Association> association; ///< nothing: of the whole grid, of faces, of edges
 };
 
-/// The attributes of a grid. A time behind a slash in a name, as some versions of dolfinx write it ("u/0.5"), is not part
+/// The attributes and sets of a grid. A time behind a slash in a name, as some versions of dolfinx write it ("u/0.5"), is not part
 /// of the name.
 std::vector<XdmfField> fields_of(const XdmfDocument& document, pugi::xml_node grid, std::optional<double> time);
 
