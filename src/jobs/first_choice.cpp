@@ -39,77 +39,24 @@ std::vector<std::string> missing_in(const GridSource& source, const ChoiceWish& 
     return missing;
 }
 
-/// Those behind the first that are looked at before all others.
-std::vector<std::size_t> steps_to_look_at(std::size_t first, std::size_t count) {
-    constexpr std::size_t most = 32;
-    std::vector<std::size_t> steps;
-    const std::size_t others = count - 1 - first, some = std::min(others, most);
-    for (std::size_t i = 1; i <= some; ++i) steps.push_back(first + i * others / some);
-    return steps;
-}
-
-/// The first step with all fields: of those that are looked at, and where they begin before it.
-class FieldSearch {
-public:
-    FieldSearch(GridSource& source, const ChoiceWish& wish, Caller& caller)
-        : source_(source), wish_(wish), caller_(caller) {}
-
-    /// Nothing: none has them. The source was looked at for all that were looked at then.
-    Result<std::optional<std::size_t>> behind_the_first() {
-        const std::size_t first = source_.first_step();
-        const std::vector<std::size_t> steps = steps_to_look_at(first, source_.info().times.size());
-        std::size_t lacks = first;
-        for (const std::size_t step : steps) {
-            const Result<bool> found = has_all(step);
-            if (!found) return found.error();
-            if (*found) return first_between(lacks, step);
-            lacks = step;
-        }
-        if (const auto found = among_all(first, steps); !found || *found) return found;
-        std::vector<std::size_t> all{first};
-        all.insert(all.end(), steps.begin(), steps.end());
-        if (auto looked = source_.look_at_steps(all, caller_); !looked) return looked.error();
-        return std::optional<std::size_t>();
-    }
-
-private:
-    /// One by one, where they are not too many for a name that is perhaps a slip.
-    Result<std::optional<std::size_t>> among_all(std::size_t first, const std::vector<std::size_t>& looked_at) {
-        constexpr std::size_t most = 1000;
-        const std::size_t count = source_.info().times.size();
-        for (std::size_t step = first + 1; step < count && count <= most; ++step) {
-            if (std::ranges::binary_search(looked_at, step)) continue;
-            const Result<bool> found = has_all(step);
-            if (!found) return found.error();
-            if (*found) return std::optional(step);
-        }
-        return std::optional<std::size_t>();
-    }
-
-    /// A step that cannot be looked at has nothing.
-    Result<bool> has_all(std::size_t step) {
-        if (auto looked = source_.look_at_steps({step}, caller_); !looked) {
+/// The first step behind the first that has all fields; nothing: none has them, and the source was looked at for all that
+/// were looked at. A step that cannot be looked at has nothing.
+Result<std::optional<std::size_t>> step_with_all_fields(GridSource& source, const ChoiceWish& wish, Caller& caller) {
+    const std::size_t first = source.first_step(), count = source.info().times.size();
+    const auto has_all = [&](std::size_t step) -> Result<bool> {
+        if (auto looked = source.look_at_steps({step}, caller); !looked) {
             if (may_look_on(looked.error())) return false;
             return looked.error();
         }
-        return missing_in(source_, wish_).empty();
-    }
-
-    Result<std::optional<std::size_t>> first_between(std::size_t lacks, std::size_t has) {
-        while (has - lacks > 1) {
-            const std::size_t middle = lacks + (has - lacks) / 2;
-            const Result<bool> found = has_all(middle);
-            if (!found) return found.error();
-            (*found ? has : lacks) = middle;
-        }
-        if (const Result<bool> again = has_all(has); !again) return again.error();
-        return std::optional(has);
-    }
-
-    GridSource& source_;
-    const ChoiceWish& wish_;
-    Caller& caller_;
-};
+        return missing_in(source, wish).empty();
+    };
+    auto found = first_step_with(first, count, has_all);
+    if (!found || *found) return found;
+    std::vector<std::size_t> all = steps_to_look_at(first, count);
+    all.insert(all.begin(), first);
+    if (auto looked = source.look_at_steps(all, caller); !looked) return looked.error();
+    return found;
+}
 
 /// Why no step has all fields: the source was looked at for all of them.
 Error no_step_with(const GridSource& source, const ChoiceWish& wish) {
@@ -304,7 +251,7 @@ std::string note_of_step(const GridSource& source, const ChoiceWish& wish, const
     const std::size_t first = source.first_step();
     std::string why;
     if (!start.missing.empty()) why = fmt::format(", and step {} has no {}", first, quoted_list(start.missing));
-    else if (taken == first) why = first == 0 ? "" : ", the chosen blocks are not in those before";
+    else if (taken == first) why = first == 0 ? "" : ", what is chosen is not in those before";
     else if (wish.field.name.empty()) why = fmt::format(", and no field varies at step {}", first);
     else why = fmt::format(", and '{}' does not vary at step {}", wish.field.name, first);
     const std::vector<double>& times = source.info().times;
@@ -370,7 +317,7 @@ Result<StepLook> look_at_step_with_fields(GridSource& source, const GridOptions&
     all.others.push_back(options.displace);
     std::vector<std::string> missing = missing_in(source, all);
     if (missing.empty()) return StepLook{first, {}};
-    const auto found = FieldSearch(source, all, caller).behind_the_first();
+    const auto found = step_with_all_fields(source, all, caller);
     if (!found) return found.error();
     if (!*found) return no_step_with(source, all);
     return StepLook{**found, std::move(missing)};

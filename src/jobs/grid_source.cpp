@@ -298,8 +298,35 @@ Result<GridSource> GridSource::open(const GridOptions& options, Caller& caller) 
         error.message = "`displace` takes a point field: " + error.message;
         return error;
     }
-    if (auto taken = source.take_choices(); !taken) return taken.error();
+    if (auto taken = source.take_choices(); !taken) {
+        if (!any_step) return taken.error();
+        if (auto found = source.find_choices(caller); !found) return found.error();
+    }
     return source;
+}
+
+/// Goes on to the first step that has the fields that cells are chosen by.
+Result<void> GridSource::find_choices(Caller& caller) {
+    const std::size_t count = info_.times.size();
+    const auto has_them = [&](std::size_t step) -> Result<bool> {
+        if (caller.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
+        if (auto looked = look_at(step, caller.run()); !looked) {
+            if (looked.error().code == ErrorCode::cancelled || looked.error().code == ErrorCode::out_of_memory)
+                return looked.error();
+            return false;
+        }
+        return static_cast<bool>(take_choices());
+    };
+    const auto found = first_step_with(first_step_, count, has_them);
+    if (!found) return found.error();
+    if (*found) {
+        first_step_ = **found;
+        return {};
+    }
+    std::vector<std::size_t> all = steps_to_look_at(first_step_, count);
+    all.insert(all.begin(), first_step_);
+    if (auto looked = look_at_steps(all, caller); !looked) return looked;
+    return take_choices();
 }
 
 /// What the file holds at the first step that has the chosen blocks; `error`, that of step 0, where none has.
@@ -320,6 +347,7 @@ Result<FileInfo> GridSource::inspect_first_with_blocks(Error error, Caller& call
 }
 
 bool GridSource::lacks_blocks(std::size_t step, const Run& run) const {
+    if (options_.blocks.empty()) return false;
     ReadOptions options = read_options_;
     options.step = step;
     const Result<FileInfo> info = inspect(options_.file, options, run);
@@ -328,26 +356,40 @@ bool GridSource::lacks_blocks(std::size_t step, const Run& run) const {
     return static_cast<bool>(inspect(options_.file, options, run));
 }
 
+bool GridSource::lacks_fields_of_choices(std::size_t step, const Run& run) const {
+    if (!choices_) return false;
+    ReadOptions options = read_options_;
+    options.step = step;
+    const Result<FileInfo> info = inspect(options_.file, options, run);
+    return info && std::ranges::any_of(*choices_, [&](const CellChoice& choice) {
+               return !(knows_blocks_ && choice.field == block_field_name) &&
+                      std::ranges::none_of(info->fields, [&](const FieldInfo& field) {
+                          return field.association == Association::cell && field.name == choice.field;
+                      });
+           });
+}
+
 Result<std::vector<std::size_t>> GridSource::choose_steps(Steps steps, Caller& caller) const {
-    const std::string blocks = quoted_list(options_.blocks);
+    const std::string chosen_parts = fmt::format(
+        "{}{}{}", options_.blocks.empty() ? "" : "the blocks " + quoted_list(options_.blocks),
+        !options_.blocks.empty() && choices_ ? " and " : "", choices_ ? "the cells " + text_of(*choices_) : "");
     const std::size_t count = info_.times.size();
     if (steps == Steps::one && first_step_ > 0 && !options_.step && !options_.time) {
-        caller.note(
-            fmt::format("the file has {} time steps, and step {}, time {}, is the first with the blocks {}: it was "
-                        "taken; `time` and `step` choose another",
-                        count, first_step_, shortest(info_.times[first_step_]), blocks));
+        caller.note(fmt::format("the file has {} time steps, and step {}, time {}, is the first with {}: it was "
+                                "taken; `time` and `step` choose another",
+                                count, first_step_, shortest(info_.times[first_step_]), chosen_parts));
         return std::vector<std::size_t>{first_step_};
     }
     auto chosen = jobs::choose_steps(info_, options_, steps, caller);
-    if (!chosen || steps == Steps::one || options_.blocks.empty() || count < 2) return chosen;
+    if (!chosen || steps == Steps::one || count < 2 || chosen_parts.empty()) return chosen;
     std::vector<std::size_t> without;
     for (const std::size_t step : *chosen) {
         if (caller.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
-        if (lacks_blocks(step, caller.run())) without.push_back(step);
+        if (lacks_blocks(step, caller.run()) || lacks_fields_of_choices(step, caller.run())) without.push_back(step);
     }
     if (without.empty()) return chosen;
-    caller.note(fmt::format("{} of the {} time steps {} not have the blocks {} and {} skipped: {}", without.size(),
-                            count, without.size() == 1 ? "does" : "do", blocks, without.size() == 1 ? "is" : "are",
+    caller.note(fmt::format("{} of the {} time steps {} not have {} and {} skipped: {}", without.size(), count,
+                            without.size() == 1 ? "does" : "do", chosen_parts, without.size() == 1 ? "is" : "are",
                             fmt::join(without, ", ")));
     std::erase_if(*chosen, [&](std::size_t step) { return std::ranges::binary_search(without, step); });
     return chosen;

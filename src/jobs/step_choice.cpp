@@ -62,4 +62,12 @@ Result<std::vector<std::size_t>> choose_steps(const FileInfo& info, const GridOp
     return std::vector<std::size_t>{0};
 }
 
+std::vector<std::size_t> steps_to_look_at(std::size_t first, std::size_t count) {
+    constexpr std::size_t most = 32;
+    std::vector<std::size_t> steps;
+    const std::size_t others = count - 1 - first, some = std::min(others, most);
+    for (std::size_t i = 1; i <= some; ++i) steps.push_back(first + i * others / some);
+    return steps;
+}
+
 } // namespace isotet::jobs

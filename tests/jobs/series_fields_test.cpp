@@ -242,6 +242,41 @@ TEST_F(SeriesFields, StepsWithoutTheFieldAreSkippedWithOneNote) {
     }
 }
 
+TEST_F(SeriesFields, ThatCellsAreChosenByMayBeginLater) {
+    const auto with_cells = [](int cells) {
+        std::string text = vtu({"T"}, cells);
+        const std::string field = fmt::format(
+            "<CellData><DataArray type=\"Int32\" Name=\"mat\">1 {}</DataArray></CellData>", cells == 2 ? "2" : "");
+        return text.insert(text.find("<Points>"), field);
+    };
+    folder.write("b.vtu", with_cells(2));
+    folder.write("c.vtu", with_cells(1));
+    for (const std::string& file : files()) {
+        Listener told;
+        ExtractJob job = job_of(file, "T");
+        job.grid.cells = {"mat=1"};
+        const auto numbers = extract_files(job, told);
+        ASSERT_TRUE(numbers) << numbers.error().message;
+        EXPECT_EQ(numbers->surfaces.at(0).triangles, 2u);
+        EXPECT_EQ(std::ranges::count(told.noted,
+                                     "the file has 3 time steps, what is chosen is not in those before: step 1, "
+                                     "time 0.5, was taken; `time` and `step` choose another"),
+                  1)
+            << testing::PrintToString(told.noted);
+        job.all_steps = true;
+        job.out = folder.file("o_{step}.vtp");
+        const auto all = extract_files(job, told);
+        ASSERT_TRUE(all) << all.error().message;
+        EXPECT_EQ(all->surfaces.size(), 2u);
+        EXPECT_EQ(
+            std::ranges::count(told.noted, "1 of the 3 time steps does not have the cells mat=1 and is skipped: 0"), 1)
+            << testing::PrintToString(told.noted);
+        job.grid.cells = {"m=1"};
+        EXPECT_EQ(extract_files(job, told).error().message,
+                  "`cells` got 'm=1', but there is no cell field 'm': the grid has 'mat'");
+    }
+}
+
 TEST_F(SeriesFields, OfNoStepAreAnErrorWithThoseOfAll) {
     ExtractJob job = job_of(pvd, "s");
     job.all_steps = true;

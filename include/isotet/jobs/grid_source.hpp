@@ -98,10 +98,11 @@ public:
     /// Whether a step that was looked at has a field of this name, or a component of it is meant; coordinates all have.
     bool has_field(std::size_t step, const std::string& name) const;
 
-    /// The first step that has the chosen blocks.
+    /// The first step that has the chosen blocks and the fields that cells are chosen by.
     std::size_t first_step() const noexcept { return first_step_; }
 
-    /// Those that the options ask for, as choose_first() begins with; of all steps without those that do not have the chosen blocks, which are noted.
+    /// Those that the options ask for, as choose_first() begins with; of all steps without those that do not have the chosen
+    /// blocks or the fields that cells are chosen by, which are noted.
     Result<std::vector<std::size_t>> choose_steps(Steps steps, Caller& caller) const;
 
     /// Names of the point or the cell fields.
@@ -179,6 +180,7 @@ private:
     Result<void> open_made(const GridOptions& options);
     bool needs_all_cells(const FieldsToRead& fields) const;
     Result<void> take_choices();
+    Result<void> find_choices(Caller& caller);
     bool names_blocks(const FieldsToRead& fields) const;
     Result<void> add_blocks(ReadResult& read, const FieldsToRead& fields) const;
     bool hangs_as_a_whole(const Grid& grid, const Run& run) const;
@@ -194,6 +196,7 @@ private:
     Result<void> look_at(std::size_t step, const Run& run);
     Result<FileInfo> inspect_first_with_blocks(Error error, Caller& caller);
     bool lacks_blocks(std::size_t step, const Run& run) const;
+    bool lacks_fields_of_choices(std::size_t step, const Run& run) const;
     Result<void> require_room_once(const FieldsToRead& fields, std::size_t step, bool all_cells) const;
 
     GridOptions options_;
@@ -211,7 +214,6 @@ private:
     std::shared_ptr<std::atomic<bool>> has_room_ = std::make_shared<std::atomic<bool>>(); ///< nothing is asked any more
     std::shared_ptr<KnownClosing> closing_; ///< of the last of several steps; shared by copies
 };
-
 
 /// A time step that cannot be read, among others that can.
 struct BrokenStep {
