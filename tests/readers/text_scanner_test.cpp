@@ -111,5 +111,16 @@ TEST(TextScanner, TellsWhereItStands) {
     EXPECT_EQ(scanner.where(), "line 2 (the end)");
 }
 
+TEST(TextInQuotes, IsAsItIsButForWhatTerminalsObey) {
+    EXPECT_EQ(io::in_quotes("d\xc3\xa9"
+                            "bit \xe2\x88\x86p"),
+              "'d\xc3\xa9"
+              "bit \xe2\x88\x86p'");
+    EXPECT_EQ(io::in_quotes("a\n\x1b[1m\x7f\xc2\x9b\xe9"), "'a\\x0a\\x1b[1m\\x7f\\xc2\\x9b\\xe9'");
+    std::string many;
+    for (int i = 0; i < 41; ++i) many += "\xc3\xa9";
+    EXPECT_EQ(io::in_quotes(many), "'" + many.substr(0, 80) + "...'");
+}
+
 } // namespace
 } // namespace isotet::test

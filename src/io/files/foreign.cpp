@@ -31,6 +31,8 @@ bool looks_like_fluent_hdf5(std::string_view head) {
     return has(head, "settings\0"sv) && (has(head, "meshes\0"sv) || has(head, "results\0"sv));
 }
 bool looks_like_silo(std::string_view head) { return has(head, "_silolibinfo"); }
+/// New versions write comments before it.
+bool looks_like_netgen(std::string_view head) { return TextScanner(head, '#').word() == "mesh3d"; }
 bool looks_like_ugrid(std::string_view head) { return has(head, "UGRID"); }
 
 /// The numbers of vertices, triangles and edges, then a vertex: coordinates in 2D or 3D and a label.
@@ -70,7 +72,8 @@ bool looks_like_plot3d(std::string_view head) {
 constexpr Foreign foreign[] = {
     {"", "MFEM mesh", "is MFEM's own mesh, which is not read: MFEM's ParaViewDataCollection writes VTU"},
     {"", "MFEM NURBS mesh", "is MFEM's own mesh, which is not read: MFEM's ParaViewDataCollection writes VTU"},
-    {".vol", "mesh3d", "is Netgen's own mesh, which is not read: meshio or Netgen's export make a VTU or MSH of it"},
+    {".vol", "", "is Netgen's own mesh, which is not read: meshio or Netgen's export make a VTU or MSH of it",
+     looks_like_netgen},
     {".inp", "*", "is an input file of Abaqus or CalculiX, which is not read: meshio or ccx2paraview make a VTU of it"},
     {".unv", "", "is an I-deas universal file, which is not read: gmsh -save -format msh41 converts the mesh"},
     {".odb", "", "is an output database of Abaqus, which is not read: Abaqus itself and odb2vtk export it"},

@@ -8,6 +8,8 @@
 
 #include <fmt/core.h>
 
+#include "io/files/escape.hpp"
+
 namespace isotet::io {
 
 namespace {
@@ -98,11 +100,13 @@ std::string TextScanner::where() const {
 std::string in_quotes(std::string_view text) {
     constexpr std::size_t most = 40;
     std::string result = "'";
-    for (const char c : text.substr(0, most)) {
-        if (c < ' ' || c > '~') result += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
-        else result += c;
+    for (std::size_t i = 0; i < most && !text.empty(); ++i) {
+        const std::size_t length = printable_length(text);
+        if (length > 0) result += text.substr(0, length);
+        else result += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[0]));
+        text.remove_prefix(std::max<std::size_t>(length, 1));
     }
-    result += text.size() > most ? "...'" : "'";
+    result += text.empty() ? "'" : "...'";
     return result;
 }
 
