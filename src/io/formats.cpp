@@ -261,8 +261,7 @@ Result<const GridReader*> choose_reader(const std::string& path, const ReadOptio
             fmt::format("{} is text in UTF-16 ({}), as PowerShell's > writes it, but isotet reads UTF-8: write it "
                         "again with Out-File -Encoding utf8, or by iconv -f UTF-16 -t UTF-8",
                         path, order)};
-    const std::string_view text =
-        std::string_view(head->bytes).substr(head->bytes.starts_with(utf_8_mark) ? utf_8_mark.size() : 0);
+    const std::string_view text = without_byte_order_mark(head->bytes);
     const bool is_case = head->folder && is_openfoam_case(path);
     if (head->folder && !is_case && options.format.empty()) return not_a_case(path);
     const GridReader* best = nullptr;

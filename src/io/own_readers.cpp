@@ -86,10 +86,6 @@ Result<void> check_companion(const std::string& path, const std::string& compani
 /// Enough for what a file says before its first points.
 constexpr std::size_t head_bytes = std::size_t{16} << 20;
 
-std::string_view without_byte_order_mark(std::string_view text) {
-    return text.starts_with(utf_8_mark) ? text.substr(utf_8_mark.size()) : text;
-}
-
 template <class Value, class Parse>
 Result<Value> with_file(const std::string& path, const Result<WholeFile>& file, const Parse& parse) {
     if (!file) return file.error();

@@ -82,6 +82,29 @@ TEST(ReadSurface, SaysWhatItSawWhenNothingFits) {
     EXPECT_NE(message_of("v 0 0 0", "xyz").find("'xyz'"), std::string::npos);
 }
 
+TEST(ReadSurface, MayBeginWithAByteOrderMarkAndHaveWindowsLineEnds) {
+    const std::string mark = "\xef\xbb\xbf";
+    for (const auto& [format, text] : {
+             std::pair("stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+                              "endloop\nendfacet\nendsolid a\n"),
+             {"ts", "GOCAD TSurf 1\nTFACE\nVRTX 1 0 0 0\nVRTX 2 1 0 0\nVRTX 3 0 1 0\nTRGL 1 2 3\nEND\n"},
+             {"obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"},
+             {"ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                     "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n"
+                     "3 0 1 2\n"},
+             {"vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n0 0 0\n1 0 0\n0 1 0\n"
+                     "POLYGONS 1 4\n3 0 1 2\n"},
+         }) {
+        std::string windows = mark;
+        for (const char* c = text; *c; ++c) windows += *c == '\n' ? "\r\n" : std::string(1, *c);
+        const auto file = parse(windows);
+        ASSERT_TRUE(file) << format << ": " << file.error().message;
+        EXPECT_EQ(file->format, format);
+        EXPECT_EQ(doubles_of(file->surface.triangles), (Numbers{0, 1, 2})) << format;
+        EXPECT_EQ(doubles_of(file->surface.positions), (Numbers{0, 0, 0, 1, 0, 0, 0, 1, 0})) << format;
+    }
+}
+
 TEST(ReadPly, ReadsAsciiWithPolygonsAndOtherElements) {
     const Surface surface =
         parsed("ply\r\nformat ascii 1.0\r\ncomment made by hand\r\nelement vertex 4\r\nproperty float x\r\nproperty "

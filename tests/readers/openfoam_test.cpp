@@ -74,6 +74,18 @@ protected:
     FoamBox box_ = foam_box(3, in_the_middle);
 };
 
+TEST_F(ReadOpenfoamCase, MayHaveFilesThatAWindowsEditorSaved) {
+    const FoamFiles files = foam_case(box_, wave, {});
+    const TemporaryFolder windows;
+    write_case(folder_, files);
+    for (const auto& [name, content] : files) {
+        std::string text = "\xef\xbb\xbf";
+        for (const char c : content) text += c == '\n' ? "\r\n" : std::string(1, c);
+        windows.write(name, text);
+    }
+    expect_same_grid(read_whole(folder_.file("")), read_whole(windows.file("")));
+}
+
 TEST_F(ReadOpenfoamCase, HasThePatchesOfTheWholeAlsoWhenItIsDecomposed) {
     ReadOptions options = last_step();
     options.patches = true;

@@ -14,6 +14,10 @@ namespace isotet::io {
 
 constexpr std::string_view utf_8_mark = "\xef\xbb\xbf"; ///< the byte order mark that some programs write before text
 
+inline std::string_view without_byte_order_mark(std::string_view text) noexcept {
+    return text.starts_with(utf_8_mark) ? text.substr(utf_8_mark.size()) : text;
+}
+
 inline bool is_space(char c) noexcept { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
 /// A cursor over text. Numbers are the same in every locale; "+5", "nan", "inf", "1.0D+05" and Fortran's "1.0-105" are
@@ -147,7 +151,7 @@ bool parse_number(std::string_view word, Number& value) {
     return !word.empty() && scanner.number(value) && scanner.left() == 0;
 }
 
-/// At most 40 characters of a file's own words, in quotes and with control characters and bytes that are not ASCII as
+/// At most 40 characters of a file's own words, in quotes and with control characters and bytes that are not UTF-8 as
 /// \x.., for messages.
 ISOTET_API std::string in_quotes(std::string_view text);
 

@@ -11,7 +11,6 @@
 #include <fmt/core.h>
 
 #include "base/parallel.hpp"
-#include "io/files/text_scanner.hpp"
 #include "io/pieces/loaded.hpp"
 
 namespace isotet::io::foam {

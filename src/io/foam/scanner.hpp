@@ -13,6 +13,7 @@
 #include <isotet/export.hpp>
 #include <isotet/result.hpp>
 
+#include "io/files/text_scanner.hpp"
 #include "io/foam/case_files.hpp"
 
 namespace isotet::io::foam {
@@ -47,7 +48,7 @@ struct Faces {
 /// Guarantees   no memory is taken for a count before the bytes behind it are known to be there
 class ISOTET_API Scanner {
 public:
-    explicit Scanner(CaseText file) : file_(std::move(file)), text_(file_.text) {}
+    explicit Scanner(CaseText file) : file_(std::move(file)), text_(without_byte_order_mark(file_.text)) {}
 
     /// Reads FoamFile { ... } and applies it to what follows.
     Result<Header> header();

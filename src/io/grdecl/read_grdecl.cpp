@@ -285,7 +285,7 @@ private:
         if (!whole) return whole.error();
         if (std::ranges::find(opened_, path) == opened_.end()) opened_.push_back(path);
         auto owner = std::make_shared<const WholeFile>(std::move(*whole));
-        return DeckText{path, owner, owner->text()};
+        return DeckText{path, owner, without_byte_order_mark(owner->text())};
     }
 
     std::string path_;

@@ -42,9 +42,10 @@ bool looks_like_obj(std::string_view head) {
 
 Result<Surface> parse_as(std::string_view format, std::string_view content, SurfaceFile& file,
                          const Progress& progress) {
+    if (format == "stl") return parse_stl(content, progress); // the length of binary ones counts every byte
+    content = without_byte_order_mark(content);
     if (format == "vtp") return parse_vtp(content, file.notes, file.field_data, progress);
     if (format == "ply") return parse_ply(content, progress);
-    if (format == "stl") return parse_stl(content, progress);
     if (format == "obj") return parse_obj(content, progress);
     if (format == "vtk") return parse_legacy_vtk(content, file.field_data, progress);
     if (format == "3mf") return parse_3mf(content, file.notes, progress);
@@ -55,15 +56,15 @@ Result<Surface> parse_as(std::string_view format, std::string_view content, Surf
 
 std::string_view recognize_surface(std::string_view content, std::string_view ending) {
     const auto head = content.substr(0, head_bytes);
-    if (starts_with_word(head, "ply")) return "ply";
     if (is_zip(head)) return "3mf";
-    if (head.starts_with("# vtk DataFile")) return "vtk";
-    const auto text = without_leading_space(head.starts_with("\xEF\xBB\xBF") ? head.substr(3) : head);
+    const auto text = without_leading_space(without_byte_order_mark(head));
+    if (starts_with_word(text, "ply")) return "ply";
+    if (text.starts_with("# vtk DataFile")) return "vtk";
     if (text.starts_with("<") && text.find("<VTKFile") != std::string_view::npos) return "vtp";
     if (starts_with_word(text, "GOCAD")) return "ts";
     if (starts_with_word(text, "solid")) return "stl";
     if (const auto* known = std::ranges::find(format_names, ending); known != format_names.end()) return *known;
-    return looks_like_obj(head) ? "obj" : std::string_view();
+    return looks_like_obj(text) ? "obj" : std::string_view();
 }
 
 Result<SurfaceFile> parse_surface(std::string_view content, std::string_view ending, std::string_view format,

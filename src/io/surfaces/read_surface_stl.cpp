@@ -143,8 +143,9 @@ Result<Surface> parse_stl(std::string_view content, const Progress& progress) {
     // Binary files, too, may start with "solid": their length tells.
     const bool is_binary =
         content.size() == header_bytes + sizeof(std::uint32_t) + std::uint64_t{binary_count(content)} * facet_bytes;
-    TextScanner scanner(content.substr(0, 256));
-    if (!is_binary && is_word(scanner.word(), "solid")) return AsciiReader(content, progress).read();
+    const std::string_view text = without_byte_order_mark(content);
+    TextScanner scanner(text.substr(0, 256));
+    if (!is_binary && is_word(scanner.word(), "solid")) return AsciiReader(text, progress).read();
     return parse_binary(content, progress);
 }
 

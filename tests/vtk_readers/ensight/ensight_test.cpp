@@ -71,6 +71,30 @@ TEST_P(EnsightFiles, AreReadWhole) {
     EXPECT_EQ(result->grid.cell_fields[0].values.at(2), 9);
 }
 
+TEST(EnsightText, MayHaveByteOrderMarksAndWindowsLineEnds) {
+    const TemporaryFolder folder;
+    const auto write = [&](const std::string& name, const std::string& text) {
+        std::string windows = "\xef\xbb\xbf";
+        for (const char c : text) windows += c == '\n' ? "\r\n" : std::string(1, c);
+        return folder.write(name, windows);
+    };
+    const std::string step = "BEGIN TIME STEP\n", end = "END TIME STEP\n";
+    std::string grid = "two lines\nof text\nnode id off\nelement id off\npart\n1\nsolid\ncoordinates\n4\n";
+    for (const char* axis : {"0\n1\n0\n0\n", "0\n0\n1\n0\n", "0\n0\n0\n1\n"}) grid += axis;
+    grid += "tetra4\n1\n1 2 3 4\n";
+    write("a.geo", step + grid + end);
+    write("a.n", step + "of nodes\npart\n1\ncoordinates\n5\n6\n7\n8\n" + end);
+    write("times", "0.25\n0.5\n");
+    const auto result = read(write("a.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: a.geo\nVARIABLE\n"
+                                             "scalar per node: 1 1 n a.n\nTIME\ntime set: 1\nnumber of steps: 1\n"
+                                             "time values file: times\nFILE\nfile set: 1\nnumber of steps: 1\n"));
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(result->info.times, std::vector<double>{0.25});
+    ASSERT_EQ(result->grid.cells.count(), 1u);
+    ASSERT_EQ(result->grid.point_fields.size(), 1u);
+    EXPECT_EQ(result->grid.point_fields[0].values.at(3), 8);
+}
+
 TEST_P(EnsightFiles, MayHaveQuotesAndBlanksInNamesAndFilesThatAreMissing) {
     folder_.write("the grid.geo", geometry());
     folder_.write("t 1.scl", of_nodes(1));

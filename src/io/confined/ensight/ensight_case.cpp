@@ -119,7 +119,7 @@ std::string key_of(std::string_view line, std::size_t colon) {
 
 Words words_of_lines(std::string_view text) {
     Words words;
-    TextScanner scanner(text);
+    TextScanner scanner(without_byte_order_mark(text));
     for (auto word = scanner.word(); !word.empty(); word = scanner.word()) words.push_back(word);
     return words;
 }
@@ -308,7 +308,7 @@ auto with_id(const Sets& sets, std::int64_t id) {
 
 } // namespace
 
-EnsightCase parse_case(std::string_view text) { return CaseParser().parse(text); }
+EnsightCase parse_case(std::string_view text) { return CaseParser().parse(without_byte_order_mark(text)); }
 
 void take_file_numbers(EnsightCase::TimeSet& set, std::string_view text) {
     add_file_numbers(set, words_of_lines(text));

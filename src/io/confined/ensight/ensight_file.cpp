@@ -87,7 +87,7 @@ std::vector<std::string_view> words_of(std::string_view line) {
 EnsightFile::EnsightFile(const std::string& path, std::string_view bytes, EnsightForm form, bool big_endian,
                          std::size_t integer_width)
     : path_(path),
-      bytes_(bytes),
+      bytes_(form == EnsightForm::ascii ? without_byte_order_mark(bytes) : bytes),
       integer_width_(integer_width),
       form_(form),
       big_endian_(form == EnsightForm::fortran ? bytes[0] == 0 : big_endian) {}
