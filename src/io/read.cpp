@@ -215,14 +215,16 @@ Result<void> check_bezier(const ReadResult& result) {
     return {};
 }
 
-/// Where blocks are chosen, and regions may be meant, the field that numbers them must be read.
+/// Where blocks are chosen, and regions may be meant, the field that numbers them must be read, and the names of surfaces.
 Result<ReadOptions> with_regions(const GridReader& reader, const std::string& path, ReadOptions options,
                                  const Progress& progress) {
-    if (options.blocks.empty() || !options.cell_fields) return options;
+    if (options.blocks.empty() || !may_have_regions(reader.format.name)) return options;
     const auto info = reader.inspect(path, options, progress);
     if (!info) return info.error();
     const std::string_view field = region_field(*info);
-    if (!field.empty() && !wanted(options, Association::cell, field)) options.cell_fields->emplace_back(field);
+    if (field.empty()) return options;
+    if (!wanted(options, Association::cell, field)) options.cell_fields->emplace_back(field);
+    options.patches = true;
     return options;
 }
 

@@ -76,17 +76,36 @@ TEST_F(Regions, AreChosenByNumberOrName) {
             EXPECT_EQ(result->grid.cells.connectivity.at(i), static_cast<double>(i));
         }
         EXPECT_EQ(result->notes.back(), "1 of 4 cells are in the chosen regions");
-        ASSERT_EQ(result->info.blocks.size(), 2u) << "that of the triangle is none";
+        ASSERT_EQ(result->info.blocks.size(), 3u);
         EXPECT_EQ(result->info.blocks[0].number, 7);
         EXPECT_EQ(result->info.blocks[0].name, "");
         EXPECT_EQ(result->info.blocks[0].cells, 2u);
         EXPECT_EQ(result->info.blocks[0].kind, "region");
         EXPECT_EQ(result->info.blocks[1].name, "hot rock");
+        EXPECT_EQ(result->info.blocks[2].name, "wall");
+        EXPECT_EQ(result->info.blocks[2].kind, "surface");
     }
     const auto both = read_regions("a.msh", gmsh, {"7", "9"});
     ASSERT_TRUE(both) << both.error().message;
     EXPECT_EQ(both->grid.cells.count(), 3u);
     EXPECT_EQ(both->grid.points.tuples(), 6u);
+}
+
+TEST_F(Regions, OfSurfacesAreChosenBehindThoseOfVolumes) {
+    std::string text = gmsh;
+    for (const char* asked : {"5", "wall"}) {
+        const auto result = read_regions("a.msh", text.c_str(), {asked});
+        ASSERT_TRUE(result) << result.error().message;
+        ASSERT_EQ(result->grid.cells.count(), 1u);
+        EXPECT_EQ(result->grid.points.tuples(), 3u);
+        EXPECT_EQ(result->grid.point_fields.at(0).values.at(2), 2);
+        EXPECT_EQ(result->grid.patches.count(), 0u);
+    }
+    EXPECT_EQ(read_regions("a.msh", text.c_str(), {"wall", "hot rock"}).value().grid.cells.count(), 2u);
+    text.replace(text.find("2 5 \"wall\""), 10, "2 9 \"wall\"");
+    text.replace(text.find("2 2 5 1"), 7, "2 2 9 1");
+    EXPECT_EQ(read_regions("a.msh", text.c_str(), {"9"}).value().grid.points.tuples(), 4u) << "of volumes first";
+    EXPECT_EQ(read_regions("a.msh", text.c_str(), {"wall"}).value().grid.points.tuples(), 3u);
 }
 
 TEST_F(Regions, FieldIsThereOnlyWhereItWasAskedFor) {
@@ -101,11 +120,12 @@ TEST_F(Regions, FieldIsThereOnlyWhereItWasAskedFor) {
 }
 
 TEST_F(Regions, ThatAreNotThereAreAnErrorWithThoseThatAre) {
-    for (const char* asked : {"5", "wall", "8", "hot"}) {
+    for (const char* asked : {"8", "hot"}) {
         const auto result = read_regions("a.msh", gmsh, {asked});
         ASSERT_FALSE(result) << asked;
         EXPECT_EQ(result.error().code, ErrorCode::invalid_argument);
-        EXPECT_NE(result.error().message.find("7, 9 'hot rock'"), std::string::npos) << result.error().message;
+        EXPECT_NE(result.error().message.find("7, 9 'hot rock', 5 'wall'"), std::string::npos)
+            << result.error().message;
     }
 }
 

@@ -3,7 +3,6 @@
 #include "io/gmsh/read_gmsh.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <limits>
 #include <map>
 #include <set>
@@ -264,15 +263,18 @@ Result<BoundaryPatches> physical_surfaces(const File& file, const Grid& grid,
     return list.finish();
 }
 
-/// Physical groups of volumes by name or number.
-std::vector<std::int32_t> chosen_groups(const FileInfo& info, const std::vector<std::string>& blocks) {
-    std::vector<std::int32_t> groups;
-    for (const std::string& block : blocks) {
-        std::int32_t number = 0;
-        const auto [end, error] = std::from_chars(block.data(), block.data() + block.size(), number);
-        if (error == std::errc() && end == block.data() + block.size()) groups.push_back(number);
-        for (const RegionName& region : info.regions)
-            if (region.name == block) groups.push_back(static_cast<std::int32_t>(region.number));
+/// Physical groups of volumes and surfaces by name or number.
+std::vector<std::pair<std::int32_t, std::int32_t>> chosen_groups(const File& file,
+                                                                 const std::vector<std::string>& blocks) {
+    std::vector<std::pair<std::int32_t, std::int32_t>> groups;
+    for (const std::int32_t dimension : {3, 2}) {
+        const auto names = names_of_groups(file, dimension, physical_name); // what is wrong with them has been noted
+        for (const std::string& block : blocks) {
+            std::int32_t number = 0;
+            if (parse_number(block, number)) groups.emplace_back(dimension, number);
+            for (const RegionName& region : names ? *names : std::vector<RegionName>())
+                if (region.name == block) groups.emplace_back(dimension, static_cast<std::int32_t>(region.number));
+        }
     }
     return groups;
 }
@@ -319,7 +321,7 @@ Result<ReadResult> parse_gmsh(std::string_view bytes, const ReadOptions& options
 
     Wants wants;
     wants.all_groups = !options.blocks.empty();
-    wants.groups = chosen_groups(contents->info, options.blocks);
+    wants.groups = chosen_groups(contents->file, options.blocks);
     wants.physical = contents->tags.physical && wanted(options, Association::cell, physical_name);
     const bool wants_patches = options.patches && contents->tags.physical, wants_physical = wants.physical;
     wants.physical = wants.physical || wants_patches;

@@ -212,10 +212,13 @@ Result<void> read_nodes_from(const File& file, const Section& section, Source& s
 }
 
 /// With the first of the groups that are chosen, where the entity is in one; else with its first.
-Tags tags_for(const Entity& entity, std::int32_t dimension, const std::vector<std::int32_t>& chosen) {
+Tags tags_for(const Entity& entity, std::int32_t dimension,
+              const std::vector<std::pair<std::int32_t, std::int32_t>>& chosen) {
     Tags tags = entity.tags;
-    const auto is_chosen = [&](std::int32_t group) { return std::ranges::find(chosen, group) != chosen.end(); };
-    if (dimension != volume || chosen.empty() || is_chosen(tags.physical)) return tags;
+    const auto is_chosen = [&](std::int32_t group) {
+        return std::ranges::find(chosen, std::pair(dimension, group)) != chosen.end();
+    };
+    if (is_chosen(tags.physical)) return tags;
     const auto other = std::ranges::find_if(entity.other_groups, is_chosen);
     if (other != entity.other_groups.end()) tags.physical = *other;
     return tags;
@@ -242,8 +245,8 @@ Result<void> read_elements_from(const File& file, const Section& section, Source
                                                index + 1, block->count, most));
         }
         const auto entity = entities.find({block->dimension, block->entity});
-        const Entity own = entity == entities.end() ? Entity{{0, block->entity, 0, false}} : entity->second;
-        const Tags tags = tags_for(own, block->dimension, wants.groups);
+        const Tags tags = entity == entities.end() ? Tags{0, block->entity, 0, false}
+                                                   : tags_for(entity->second, block->dimension, wants.groups);
         for (std::int64_t i = 0; i < block->count; ++i, ++done) {
             std::int64_t number = 0, node = 0;
             bool whole = source.number(number);

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <isotet/read.hpp>
@@ -72,7 +73,8 @@ struct Wants {
     bool physical = false, geometrical = false, partition = false, element_numbers = false;
     bool element_points = false; ///< in the order of the file
     bool all_groups = false;     ///< elements once for each physical group they are in, where the file has them so
-    std::vector<std::int32_t> groups = {}; ///< that are chosen; none: all
+    /// Dimensions and numbers of those that are chosen; none: all.
+    std::vector<std::pair<std::int32_t, std::int32_t>> groups = {};
 };
 
 /// Tags of one element, or of the elements of an entity.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <compare>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -14,6 +15,7 @@
 
 #include <fmt/core.h>
 
+#include "grid/patches.hpp"
 #include "io/pieces/block_choice.hpp"
 
 namespace isotet::io {
@@ -25,48 +27,60 @@ struct Numbered {
 constexpr std::array numbered{Numbered{"gmsh", "gmsh:physical"}, Numbered{"medit", "medit:ref"},
                               Numbered{"tetgen", "region_0"}};
 
-/// Points, lines and faces: their groups have numbers of their own.
-constexpr bool has_volume(std::uint8_t type) {
-    constexpr std::array flat{1,  2,  3,  4,  5,  6,  7,  8,  9,  21, 22, 23, 28,
-                              30, 34, 35, 36, 60, 61, 62, 68, 69, 70, 75, 76, 77};
-    return std::ranges::find(flat, int{type}) == flat.end();
-}
+/// Those of surfaces have numbers of their own, and come behind those of volumes.
+struct Region {
+    bool of_surface = false;
+    std::int64_t number = std::numeric_limits<std::int64_t>::min(); ///< the lowest: none
+    auto operator<=>(const Region&) const = default;
+};
+constexpr Region no_region;
 
-/// A region of each cell; nothing for cells without volume and for numbers that are none.
-constexpr std::int64_t no_region = std::numeric_limits<std::int64_t>::min();
-
-std::vector<std::int64_t> regions_of(const Cells& cells, const Array& numbers) {
-    std::vector<std::int64_t> regions(cells.count(), no_region);
+/// A region of each cell; none of points and lines, of surfaces with the number 0, and for numbers that are none.
+std::vector<Region> regions_of(const Cells& cells, const Array& numbers) {
+    std::vector<Region> regions(cells.count());
     for (std::size_t cell = 0; cell < regions.size(); ++cell) {
         const double number = numbers.at(cell);
-        const bool volume = cells.types.empty() || has_volume(static_cast<std::uint8_t>(cells.types.at(cell)));
+        const auto type = static_cast<std::uint8_t>(cells.types.empty() ? static_cast<double>(cells.uniform_type)
+                                                                        : cells.types.at(cell));
+        const bool of_surface = core::is_flat_cell(type);
         constexpr double most = 1LL << 53;
-        if (volume && std::abs(number) <= most && number == std::floor(number))
-            regions[cell] = static_cast<std::int64_t>(number);
+        if ((of_surface ? number != 0 : core::has_a_volume(type)) && std::abs(number) <= most &&
+            number == std::floor(number))
+            regions[cell] = {of_surface, static_cast<std::int64_t>(number)};
     }
     return regions;
 }
 
-/// In the order of their numbers.
-std::vector<BlockInfo> listed(const std::vector<std::int64_t>& regions, std::string_view field, const FileInfo& info) {
-    std::map<std::int64_t, std::uint64_t> counts;
-    std::int64_t last = no_region;
+std::string name_of(const Region& region, std::string_view field, const ReadResult& result) {
+    if (region.of_surface) {
+        const auto& names = result.grid.patches.names;
+        const auto named = std::ranges::find(names, region.number, &PatchName::number);
+        return named == names.end() ? std::string() : named->name;
+    }
+    const auto& names = result.info.regions;
+    const auto named = std::ranges::find_if(
+        names, [&](const RegionName& name) { return name.field == field && name.number == region.number; });
+    return named == names.end() ? std::string() : named->name;
+}
+
+/// In their order.
+std::map<Region, std::uint64_t> counted(const std::vector<Region>& regions) {
+    std::map<Region, std::uint64_t> counts;
+    Region last;
     std::uint64_t* count = nullptr;
-    for (const std::int64_t region : regions) {
+    for (const Region& region : regions) {
         if (region == no_region) continue;
         if (!count || region != last) count = &counts[last = region];
         ++*count;
     }
-    std::vector<BlockInfo> blocks;
-    for (const auto& [number, cells] : counts) {
-        const auto named = std::ranges::find_if(
-            info.regions, [&](const RegionName& region) { return region.field == field && region.number == number; });
-        blocks.push_back({number, named == info.regions.end() ? std::string() : named->name, "region", cells});
-    }
-    return blocks;
+    return counts;
 }
 
 } // namespace
+
+bool may_have_regions(std::string_view format) {
+    return std::ranges::find(numbered, format, &Numbered::format) != numbered.end();
+}
 
 std::string_view region_field(const FileInfo& info) {
     const std::span<const Numbered> all = numbered; // an array's iterator is a pointer in some libraries only
@@ -83,20 +97,23 @@ Result<void> choose_regions(ReadResult& result, const ReadOptions& options) {
     const auto field = std::ranges::find(result.grid.cell_fields, name, &Field::name);
     if (field == result.grid.cell_fields.end())
         return Error{ErrorCode::internal, fmt::format("the field {} of regions was not read", name)};
-    const std::vector<std::int64_t> regions = regions_of(result.grid.cells, field->values);
-    result.info.blocks = listed(regions, name, result.info);
+    const std::vector<Region> regions = regions_of(result.grid.cells, field->values);
+    const std::map<Region, std::uint64_t> counts = counted(regions);
+    for (const auto& [region, cells] : counts)
+        result.info.blocks.push_back(
+            {region.number, name_of(region, name, result), region.of_surface ? "surface" : "region", cells});
     const auto chosen = chosen_blocks(result.info.blocks, options);
     if (!chosen) return chosen.error();
+    std::map<Region, bool> is_chosen{{no_region, false}};
+    for (auto at = chosen->begin(); const auto& [region, cells] : counts) is_chosen[region] = *at++;
     Piece piece;
-    piece.left_out.assign(regions.size(), 1);
-    std::map<std::int64_t, bool> is_chosen;
-    for (std::size_t i = 0; i < chosen->size(); ++i) is_chosen[result.info.blocks[i].number] = (*chosen)[i];
     std::uint64_t kept = 0;
-    for (std::size_t cell = 0; cell < regions.size(); ++cell) {
-        if (regions[cell] == no_region || !is_chosen.at(regions[cell])) continue;
-        piece.left_out[cell] = 0;
-        ++kept;
+    for (const Region& region : regions) {
+        const bool keeps = is_chosen.at(region);
+        piece.left_out.push_back(keeps ? 0 : 1);
+        kept += keeps;
     }
+    if (!options.patches) result.grid.patches = {}; // they were read for their names
     piece.grid = std::move(result.grid);
     if (auto dropped = drop_left_out_cells(piece); !dropped) return dropped;
     result.grid = std::move(piece.grid);

@@ -10,11 +10,15 @@
 
 namespace isotet::io {
 
+/// Whether files of a format may number regions.
+bool may_have_regions(std::string_view format);
+
 /// The cell field that numbers the regions of a file; empty where its format has none.
 std::string_view region_field(const FileInfo& info);
 
 /// Keeps the cells of the regions that `options.blocks` name, the points that they use and what belongs to them, and
-/// lists all regions of volumes in the file's blocks. The region field must have been read.
+/// lists all regions in the file's blocks: of volumes, then of surfaces, whose names are those of the grid's patches. The
+/// region field must have been read.
 ///
 /// Errors   invalid_argument, with a list of the regions, when what is asked for is not there
 /// Cost     one pass over the cells and a copy of what stays
