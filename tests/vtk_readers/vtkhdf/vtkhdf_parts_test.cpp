@@ -6,6 +6,7 @@
 #include <functional>
 #include <numeric>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <isotet/read.hpp>
@@ -327,6 +328,86 @@ TEST_F(ReadVtkhdfParts, LeavesUnwrittenFieldsOfImagesOut) {
     EXPECT_EQ(result->grid.point_fields[0].name, "p");
     ASSERT_EQ(result->info.left_out.size(), 1u);
     EXPECT_EQ(result->info.left_out[0].name, "q");
+}
+
+/// 2 x 3 x 4 points of such a type.
+void write_box(Hdf5Writer& file, const std::string& group, const char* type) {
+    for (const char* part : {"", "/PointData", "/CellData"}) file.group(group + part);
+    file.attribute(group, "Version", Counts{2, 7});
+    file.attribute(group, "Type", type);
+    file.attribute(group, "Dimensions", Counts{2, 3, 4});
+    file.data<float>(group + "/PointData/v", std::vector<float>(72, 3), {4, 3, 2, 3});
+    file.data<double>(group + "/CellData/c", counted(6), {3, 2, 1});
+}
+
+/// As VTK 9.7 writes them.
+TEST_F(ReadVtkhdfParts, ReadsRectilinearAndStructuredGrids) {
+    const std::string path = folder_.file("a.vtkhdf");
+    for (const bool rectilinear : {true, false}) {
+        {
+            Hdf5Writer file(path);
+            write_box(file, "/VTKHDF", rectilinear ? "RectilinearGrid" : "StructuredGrid");
+            if (rectilinear) {
+                file.data<double>("/VTKHDF/XCoordinates", {0, 0.5}, {2});
+                file.data<std::int64_t>("/VTKHDF/YCoordinates", {0, 1, 3}, {3});
+                file.data<float>("/VTKHDF/ZCoordinates", {0, 1, 2, 7}, {4});
+            } else {
+                std::vector<double> corners;
+                for (const double z : {0, 1, 2, 7})
+                    for (const double y : {0, 1, 3})
+                        for (const double x : {0.0, 0.5}) corners.insert(corners.end(), {x, y, z});
+                file.data<double>("/VTKHDF/Points", corners, {4, 3, 2, 3});
+            }
+        }
+        const auto result = read(path);
+        ASSERT_TRUE(result) << result.error().message;
+        EXPECT_EQ(result->grid.cells.count(), 6u);
+        ASSERT_EQ(result->grid.points.tuples(), 24u);
+        EXPECT_EQ(result->grid.points.at(23, 0), 0.5);
+        EXPECT_EQ(result->grid.points.at(4, 1), 3);
+        EXPECT_EQ(result->grid.points.at(23, 2), 7);
+        EXPECT_EQ(result->grid.point_fields.at(0).values.components(), 3u);
+        EXPECT_EQ(result->grid.cell_fields.at(0).values.at(5), 5);
+    }
+    {
+        Hdf5Writer file(path);
+        write_box(file, "/VTKHDF", "StructuredGrid");
+        file.data<double>("/VTKHDF/Points", counted(48), {4, 2, 2, 3});
+    }
+    EXPECT_NE(read(path).error().message.find("Points are not those of a grid of 2 x 3 x 4 points"), std::string::npos);
+    {
+        Hdf5Writer file(path);
+        write_box(file, "/VTKHDF", "RectilinearGrid");
+        for (const char* name : {"XCoordinates", "YCoordinates", "ZCoordinates"})
+            file.data<double>(std::string("/VTKHDF/") + name, {0, 1}, {2});
+    }
+    EXPECT_FALSE(read(path));
+}
+
+TEST_F(ReadVtkhdfParts, StepsNameTheirPlacesInStructuredGrids) {
+    {
+        Hdf5Writer file(folder_.file("a.vtkhdf"));
+        for (const char* name : {"/VTKHDF", "/VTKHDF/PointData", "/VTKHDF/Steps", "/VTKHDF/Steps/PointDataOffsets"})
+            file.group(name);
+        file.attribute("/VTKHDF", "Version", Counts{2, 7});
+        file.attribute("/VTKHDF", "Type", "RectilinearGrid");
+        file.attribute("/VTKHDF", "Dimensions", Counts{2, 2, 2});
+        file.data<double>("/VTKHDF/Steps/Values", {0, 1, 2}, {3});
+        file.data<std::int64_t>("/VTKHDF/Steps/XCoordinatesOffsets", {0, 0, 2}, {3});
+        file.data<std::int64_t>("/VTKHDF/Steps/PointDataOffsets/p", {0, 1, 0, 2}, {4});
+        file.data<double>("/VTKHDF/XCoordinates", {0, 1, 0, 5}, {4});
+        file.data<double>("/VTKHDF/YCoordinates", {0, 1}, {2});
+        file.data<double>("/VTKHDF/ZCoordinates", {0, 1}, {2});
+        file.data<double>("/VTKHDF/PointData/p", counted(16), {2, 2, 2, 2});
+    }
+    for (const auto& [step, x, p] : {std::tuple{0u, 1.0, 7.0}, {1u, 1.0, 15.0}, {2u, 5.0, 7.0}}) {
+        ReadOptions options;
+        options.step = step;
+        const auto result = read(folder_.file("a.vtkhdf"), options);
+        ASSERT_TRUE(result) << result.error().message;
+        EXPECT_EQ(result->grid.points.at(7, 0), x) << step;
+        EXPECT_EQ(result->grid.point_fields.at(0).values.at(7), p) << step;
+    }
 }
 
 TEST_F(ReadVtkhdfParts, ImagesOfACollectionAreBlocks) {

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// VTKHDF: unstructured grids, versions 1 and 2, alone or in collections, images, and overlapping boxes on levels.
+// VTKHDF: unstructured grids, versions 1 and 2, and structured ones, alone or in collections, and overlapping boxes on levels.
 #include <algorithm>
 #include <limits>
 #include <variant>
@@ -10,7 +10,7 @@
 #include "io/confined/hdf5/hdf5_walk.hpp"
 #include "io/confined/hdf5/vtkhdf_amr.hpp"
 #include "io/confined/hdf5/vtkhdf_grid.hpp"
-#include "io/confined/hdf5/vtkhdf_image.hpp"
+#include "io/confined/hdf5/vtkhdf_structured.hpp"
 #include "io/confined/loaders.hpp"
 #include "io/files/escape.hpp"
 #include "io/pieces/block_choice.hpp"
@@ -43,16 +43,16 @@ Result<Loaded> load_grid(const std::string& path, const ReadOptions& options, De
 /// A grid of a collection.
 struct CollectedGrid {
     std::string name;
-    std::variant<HdfGrid, HdfImage> grid;
+    std::variant<HdfGrid, HdfStructured> grid;
 
     Result<void> announce(FileInfo& info) const {
         if (const auto* unstructured = std::get_if<HdfGrid>(&grid)) return unstructured->announce_all(info);
-        std::get<HdfImage>(grid).announce(info);
+        std::get<HdfStructured>(grid).announce(info);
         return {};
     }
     Result<std::uint64_t> count_cells(std::size_t step) const {
         const auto* unstructured = std::get_if<HdfGrid>(&grid);
-        return unstructured ? unstructured->count_cells(step) : std::get<HdfImage>(grid).cells();
+        return unstructured ? unstructured->count_cells(step) : std::get<HdfStructured>(grid).cells();
     }
     LeastCounts least(std::size_t step) const {
         const auto* unstructured = std::get_if<HdfGrid>(&grid);
@@ -61,21 +61,20 @@ struct CollectedGrid {
     Result<void> load(const ReadOptions& options, Loaded& loaded) const {
         if (const auto* unstructured = std::get_if<HdfGrid>(&grid))
             return unstructured->load(options, loaded.step, name + ", ", loaded);
-        return std::get<HdfImage>(grid).load(options, name, loaded);
+        return std::get<HdfStructured>(grid).load(options, name, loaded);
     }
 };
 
-/// The unstructured grids and images of a collection, in its order.
+/// The unstructured and structured grids of a collection, in its order.
 Result<std::vector<CollectedGrid>> grids_of_collection(const std::string& path, const Hdf5Rows& rows, FileInfo& info) {
     std::vector<std::pair<std::int64_t, std::string>> found;
     for (const std::string& name : groups_of(path, "/VTKHDF")) {
         const std::string type = text_attribute(path, "/VTKHDF/" + name, "Type");
         const auto index = integer_attribute(path, "/VTKHDF/" + name, "Index");
-        if (type == "UnstructuredGrid" || type == "ImageData")
+        if (type == "UnstructuredGrid" || is_structured_kind(type))
             found.emplace_back(index.value_or(std::numeric_limits<std::int64_t>::max()), name);
         else if (!type.empty())
-            leave_out(info, {"block", name,
-                             fmt::format("it is of type {}, not UnstructuredGrid or ImageData", escaped(type))});
+            leave_out(info, {"block", name, fmt::format("it is of type {}, which is not read", escaped(type))});
     }
     std::ranges::sort(found);
     std::vector<CollectedGrid> all;
@@ -85,9 +84,9 @@ Result<std::vector<CollectedGrid>> grids_of_collection(const std::string& path, 
             all.push_back({name, HdfGrid(path, rows, group + "/")});
             continue;
         }
-        auto image = HdfImage::open(path, group);
-        if (!image) return image.error();
-        all.push_back({name, *std::move(image)});
+        auto structured = HdfStructured::open(path, group);
+        if (!structured) return structured.error();
+        all.push_back({name, *std::move(structured)});
     }
     return all;
 }
@@ -101,7 +100,7 @@ Result<Loaded> load_collection(const std::string& path, const ReadOptions& optio
     if (!grids) return grids.error();
     for (const CollectedGrid& grid : *grids)
         if (auto done = grid.announce(loaded.info); !done) return done.error();
-    if (grids->empty()) return broken(path, "it has no unstructured grid or image");
+    if (grids->empty()) return broken(path, "it has no grid that is read");
     const auto step = choose_step(loaded.info, options);
     if (!step) return step.error();
     loaded.step = *step;
@@ -124,11 +123,12 @@ Result<Loaded> load_any(const std::string& path, const ReadOptions& options, Dep
     const std::string type = text_attribute(path, "/VTKHDF", "Type");
     if (type == "PartitionedDataSetCollection" || type == "MultiBlockDataSet")
         return load_collection(path, options, depth);
-    if (type == "ImageData") return load_vtkhdf_image(path, options, depth);
+    if (is_structured_kind(type)) return load_vtkhdf_structured(path, options, depth);
     if (type == "OverlappingAMR") return load_vtkhdf_amr(path, options, depth);
     if (type == "UnstructuredGrid") return load_grid(path, options, depth);
     return broken(path, fmt::format("it is a VTKHDF file of type \"{}\": UnstructuredGrid, ImageData, "
-                                    "OverlappingAMR, PartitionedDataSetCollection and MultiBlockDataSet are read",
+                                    "RectilinearGrid, StructuredGrid, OverlappingAMR, PartitionedDataSetCollection and "
+                                    "MultiBlockDataSet are read",
                                     escaped(type)));
 }
 

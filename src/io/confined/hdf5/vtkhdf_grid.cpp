@@ -169,15 +169,9 @@ void HdfGrid::note_rows_left_over(const std::vector<HdfPartition>& parts, std::v
         notes.push_back(fmt::format("rows that belong to no part were not read: {}", fmt::join(more, ", ")));
 }
 
-/// Coordinates as integers become float64.
 Result<Array> HdfGrid::read_points(const HdfPartition& part) const {
     auto points = rows_.read(group_ + "Points", part.first_point, part.points);
-    if (!points || is_floating(points->type())) return points;
-    std::vector<double> places(points->size());
-    points->visit([&](auto from) {
-        std::ranges::transform(from, places.begin(), [](auto x) { return static_cast<double>(x); });
-    });
-    return Array::own(std::move(places), points->components());
+    return points ? as_coordinates(*std::move(points)) : points;
 }
 
 /// The faces of a step begin behind those of the parts before it. Steps has tables of it, too; VTK's writer gives them

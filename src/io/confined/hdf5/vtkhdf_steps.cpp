@@ -3,11 +3,21 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "io/confined/hdf5/hdf5_array.hpp"
 #include "io/files/time_values.hpp"
 
 namespace isotet::io::confined {
+
+Array as_coordinates(Array points) {
+    if (is_floating(points.type())) return points;
+    std::vector<double> places(points.size());
+    points.visit([&](auto from) {
+        std::ranges::transform(from, places.begin(), [](auto x) { return static_cast<double>(x); });
+    });
+    return Array::own(std::move(places), points.components());
+}
 
 HdfSteps steps_of(const std::string& path, const std::string& root) {
     constexpr std::int64_t most = 1 << 24;

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// What the kinds of grids of VTKHDF share: their time steps, and words of messages.
+// What the kinds of grids of VTKHDF share: their time steps, types of coordinates, and words of messages.
 #pragma once
 
 #include <optional>
@@ -16,6 +16,9 @@ inline const char* kind_of_field(Association association) {
 }
 
 constexpr const char* no_table_of_numbers = "it is no table of numbers of 1, 2, 4 or 8 bytes";
+
+/// Coordinates as integers become float64.
+Array as_coordinates(Array points);
 
 struct HdfSteps {
     std::vector<double> times;      ///< empty: the grid has no steps
