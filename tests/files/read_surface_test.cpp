@@ -187,8 +187,8 @@ TEST(ReadTs, ReadsAtomsPropertiesDepthAndSeveralObjects) {
     const std::string object =
         "GOCAD TSurf 1\nHEADER {\nname:a\n}\nZPOSITIVE Depth\nPROPERTIES \"two words\" v\nESIZES 1 2\n"
         "NO_DATA_VALUES -9 -9\nTFACE\nPVRTX 10 0 0 5 1 2 3\nPVRTX 20 1 0 5 -9 -9 4\nVRTX 30 1 1 5\nPATOM 40 10 7 8 9\n"
-        "TRGL 10 20 30\nTFACE\nTRGL 40 20 30\nBSTONE 10\nBORDER 3 10 20\nEND\n";
-    const Surface surface = parsed(object);
+        "# remark\nTRGL 10 20 30\nTFACE\nTRGL 40 20 30\nBSTONE 10\nBORDER 3 10 20\nEND\n# end\n";
+    const Surface surface = parsed("# begin\n" + object, "ts");
     ASSERT_EQ(surface.vertex_count(), 4U);
     EXPECT_EQ(surface.positions.at(0, 2), -5);
     EXPECT_EQ(surface.positions.at(3, 0), 0);

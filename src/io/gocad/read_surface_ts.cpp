@@ -212,7 +212,7 @@ private:
 } // namespace
 
 Result<Surface> parse_ts(std::string_view content, const Progress& progress) {
-    TextScanner scanner(content);
+    TextScanner scanner(content, '#');
     Pace pace(progress, content.size());
     std::vector<Surface> surfaces;
     while (!scanner.at_end()) {
