@@ -165,6 +165,11 @@ TEST(ReadGrdecl, FollowsIncludedFilesBelowItsFolder) {
     EXPECT_EQ(result->info.files.size(), 3u) << "files that must not be written over";
     EXPECT_EQ(inspect(folder.file("case.grdecl"))->files.size(), 3u);
 
+    folder.write("windows.grdecl", box.substr(0, zcorn) + "INCLUDE\n 'parts\\zcorn.inc' /\n");
+    EXPECT_TRUE(read(folder.file("windows.grdecl")));
+    folder.write("parts/up.grdecl", box + "INCLUDE\n '..\\case.grdecl' /\n");
+    EXPECT_NE(read(folder.file("parts/up.grdecl")).error().message.find("climbs out"), std::string::npos);
+
     const TemporaryFolder elsewhere;
     elsewhere.write("poro.inc", "PORO\n 4*0.5 /\n");
     folder.write("outside.grdecl", box + "INCLUDE\n '" + elsewhere.file("poro.inc") + "' /\n");

@@ -38,6 +38,11 @@ Result<std::string> named_file(const std::string& index, std::string_view name, 
     std::error_code error;
     const fs::path folder =
         fs::canonical(fs::path(index).parent_path().empty() ? fs::path(".") : fs::path(index).parent_path(), error);
+    if (name.find('\\') != std::string_view::npos && !fs::exists(folder / fs::path(name), error)) { // of Windows
+        std::string with_slashes(name);
+        std::ranges::replace(with_slashes, '\\', '/');
+        return named_file(index, with_slashes, allow_outside);
+    }
     const fs::path file = error ? fs::path() : fs::canonical(folder / fs::path(name), error);
     if (error || !fs::is_regular_file(file, error))
         return Error{ErrorCode::file,
