@@ -251,7 +251,7 @@ std::string note_of_step(const GridSource& source, const ChoiceWish& wish, const
     const std::size_t first = source.first_step();
     std::string why;
     if (!start.missing.empty()) why = fmt::format(", and step {} has no {}", first, quoted_list(start.missing));
-    else if (taken == first) why = first == 0 ? "" : ", what is chosen is not in those before";
+    else if (taken == first) why = first == 0 ? "" : ", " + source.why_first_step();
     else if (wish.field.name.empty()) why = fmt::format(", and no field varies at step {}", first);
     else why = fmt::format(", and '{}' does not vary at step {}", wish.field.name, first);
     const std::vector<double>& times = source.info().times;

@@ -269,8 +269,8 @@ Result<GridSource> GridSource::open(const GridOptions& options, Caller& caller) 
     }
     source.described_ = read_options.step.value_or(0);
     read_options.step.reset();
-    if (!info && !options.step && !options.time) {
-        info = source.inspect_first_with_blocks(info.error(), caller);
+    if (!info && !options.step) {
+        info = source.inspect_later(info.error(), caller);
         source.described_ = source.first_step_;
     }
     if (info && !options.heads) source.step_fields_[*source.described_] = info->fields;
@@ -320,6 +320,7 @@ Result<void> GridSource::find_choices(Caller& caller) {
     const auto found = first_step_with(first_step_, count, has_them);
     if (!found) return found.error();
     if (*found) {
+        if (**found != first_step_) why_first_ = "what is chosen is not in those before";
         first_step_ = **found;
         return {};
     }
@@ -329,21 +330,54 @@ Result<void> GridSource::find_choices(Caller& caller) {
     return take_choices();
 }
 
-/// What the file holds at the first step that has the chosen blocks; `error`, that of step 0, where none has.
-Result<FileInfo> GridSource::inspect_first_with_blocks(Error error, Caller& caller) {
+/// What the file holds at the first step that has the chosen blocks; nothing where none has.
+std::optional<FileInfo> GridSource::inspect_first_with_blocks(Caller& caller) {
     ReadOptions whole = read_options_, chosen = read_options_;
     whole.blocks.clear();
-    if (options_.blocks.empty() || error.code != ErrorCode::invalid_argument) return error;
     const Result<FileInfo> all = inspect(options_.file, whole, caller.run());
-    for (std::size_t step = 1; all && step < all->times.size(); ++step) {
-        if (caller.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
+    for (std::size_t step = 1; all && step < all->times.size() && !caller.cancelled(); ++step) {
         chosen.step = step;
         Result<FileInfo> info = inspect(options_.file, chosen, caller.run());
         if (!info) continue;
         first_step_ = step;
-        return info;
+        why_first_ = "what is chosen is not in those before";
+        return *std::move(info);
     }
-    return error;
+    return std::nullopt;
+}
+
+/// What a series holds at the first step that can be read; nothing where none can. Another step of one broken file fails
+/// for the same reason.
+std::optional<FileInfo> GridSource::inspect_first_sound(const Error& error, Caller& caller) {
+    constexpr std::size_t most = 1000;
+    ReadOptions later = read_options_;
+    std::string last = error.message;
+    for (std::size_t step = 1; step < most && !caller.cancelled(); ++step) {
+        later.step = step;
+        Result<FileInfo> info = inspect(options_.file, later, caller.run());
+        if (info) {
+            if (step >= info->times.size()) return std::nullopt; // what has no steps takes any
+            first_step_ = step;
+            why_first_ = fmt::format("step 0 cannot be read ({})", error.message);
+            return *std::move(info);
+        }
+        if (info.error().code == ErrorCode::invalid_argument || info.error().message == last) return std::nullopt;
+        last = info.error().message;
+    }
+    return std::nullopt;
+}
+
+/// What the file holds at a later step than the first, which fails.
+Result<FileInfo> GridSource::inspect_later(const Error& error, Caller& caller) {
+    std::optional<FileInfo> info;
+    std::error_code none;
+    if (!options_.blocks.empty() && error.code == ErrorCode::invalid_argument) info = inspect_first_with_blocks(caller);
+    else if ((error.code == ErrorCode::file || error.code == ErrorCode::invalid_data) &&
+             std::filesystem::is_regular_file(options_.file, none))
+        info = inspect_first_sound(error, caller);
+    if (caller.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
+    if (!info) return error;
+    return *std::move(info);
 }
 
 bool GridSource::lacks_blocks(std::size_t step, const Run& run) const {
@@ -375,9 +409,9 @@ Result<std::vector<std::size_t>> GridSource::choose_steps(Steps steps, Caller& c
         !options_.blocks.empty() && choices_ ? " and " : "", choices_ ? "the cells " + text_of(*choices_) : "");
     const std::size_t count = info_.times.size();
     if (steps == Steps::one && first_step_ > 0 && !options_.step && !options_.time) {
-        caller.note(fmt::format("the file has {} time steps, and step {}, time {}, is the first with {}: it was "
-                                "taken; `time` and `step` choose another",
-                                count, first_step_, shortest(info_.times[first_step_]), chosen_parts));
+        caller.note(fmt::format("the file has {} time steps, and {}: step {}, time {}, was taken; `time` and `step` "
+                                "choose another",
+                                count, why_first_, first_step_, shortest(info_.times[first_step_])));
         return std::vector<std::size_t>{first_step_};
     }
     auto chosen = jobs::choose_steps(info_, options_, steps, caller);

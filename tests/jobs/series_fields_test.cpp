@@ -441,6 +441,37 @@ TEST_F(SeriesFields, ABrokenStepDoesNotEndTheOthers) {
     }
 }
 
+TEST_F(SeriesFields, OfAnIndexWhoseFirstFileIsMissing) {
+    std::filesystem::remove(folder.file("a.vtu"));
+    for (const std::string& file : files()) {
+        SCOPED_TRACE(file);
+        ExtractJob job = job_of(file, "T");
+        Listener told;
+        auto extracted = extract_files(job, told);
+        ASSERT_TRUE(extracted) << extracted.error().message;
+        EXPECT_EQ(extracted->surfaces[0].time, 0.5);
+        EXPECT_TRUE(std::ranges::any_of(told.noted, [](const std::string& note) {
+            return note.find("step 0 cannot be read (") != std::string::npos &&
+                   note.find("step 1, time 0.5, was taken") != std::string::npos;
+        }));
+        job.grid.time = 1;
+        extracted = extract_files(job, told);
+        ASSERT_TRUE(extracted) << extracted.error().message;
+        EXPECT_EQ(extracted->surfaces[0].time, 1.0);
+        InfoJob info;
+        info.grid.file = file;
+        const auto summary = look_into(info, told);
+        ASSERT_TRUE(summary) << summary.error().message;
+        EXPECT_EQ(summary->step, 1u);
+        info.grid.step = 0;
+        EXPECT_FALSE(look_into(info, told));
+    }
+    for (const char* name : {"b.vtu", "c.vtu"}) std::filesystem::remove(folder.file(name));
+    const auto none = extract_files(job_of(pvd, "T"), listener);
+    ASSERT_FALSE(none);
+    EXPECT_NE(none.error().message.find("a.vtu"), std::string::npos) << none.error().message;
+}
+
 TEST_F(SeriesFields, OfAFewStepsOfManyAreFound) {
     std::string sets;
     for (int step = 0; step < 80; ++step)

@@ -98,8 +98,9 @@ public:
     /// Whether a step that was looked at has a field of this name, or a component of it is meant; coordinates all have.
     bool has_field(std::size_t step, const std::string& name) const;
 
-    /// The first step that has the chosen blocks and the fields that cells are chosen by.
+    /// The first step that can be read and has the chosen blocks and the fields that cells are chosen by.
     std::size_t first_step() const noexcept { return first_step_; }
+    const std::string& why_first_step() const noexcept { return why_first_; } ///< where that is not step 0
 
     /// Those that the options ask for, as choose_first() begins with; of all steps without those that do not have the chosen
     /// blocks or the fields that cells are chosen by, which are noted.
@@ -194,7 +195,9 @@ private:
     void choose_fields(const FieldsToRead& fields, std::size_t step, ReadOptions& options) const;
 
     Result<void> look_at(std::size_t step, const Run& run);
-    Result<FileInfo> inspect_first_with_blocks(Error error, Caller& caller);
+    Result<FileInfo> inspect_later(const Error& error, Caller& caller);
+    std::optional<FileInfo> inspect_first_with_blocks(Caller& caller);
+    std::optional<FileInfo> inspect_first_sound(const Error& error, Caller& caller);
     bool lacks_blocks(std::size_t step, const Run& run) const;
     bool lacks_fields_of_choices(std::size_t step, const Run& run) const;
     Result<void> require_room_once(const FieldsToRead& fields, std::size_t step, bool all_cells) const;
@@ -206,6 +209,7 @@ private:
     FileInfo info_;
     bool knows_blocks_ = false; ///< cell_names() has "block"
     std::size_t first_step_ = 0;
+    std::string why_first_;
     std::optional<std::size_t> described_; ///< the step whose fields info_ has; nothing: of several
     std::map<std::size_t, std::vector<FieldInfo>> step_fields_; ///< of the steps that were looked at
     ReadOptions read_options_;
