@@ -142,6 +142,10 @@ Result<std::vector<std::size_t>> steps_with_fields(GridSource& source, std::vect
                                                    const std::vector<std::string>& names, Caller& caller) {
     if (steps.size() < 2 || names.empty()) return steps;
     if (auto looked = source.look_at_steps(steps, caller); !looked) return looked.error();
+    for (const BrokenStep& broken : source.broken_steps()) {
+        caller.note(fmt::format("step {} cannot be read and is left out: {}", broken.step, broken.error.message));
+        std::erase(steps, broken.step);
+    }
     for (const std::string& name : names) {
         if (const auto found = choose_field(source, {name, false}); !found) return found.error();
         std::vector<std::size_t> skipped;

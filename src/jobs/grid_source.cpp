@@ -459,11 +459,11 @@ Result<void> GridSource::look_at_steps(const std::vector<std::size_t>& steps, Ca
     if (steps.size() > 1) closing_ = std::make_shared<KnownClosing>();
     std::vector<FieldInfo> fields;
     std::vector<LeftOut> left_out;
-    std::vector<BrokenStep> broken;
+    broken_.clear();
     for (const std::size_t step : steps) {
         if (caller.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
         if (auto looked = look_at(step, caller.run()); !looked) { // it may have all fields: reading it tells
-            if (auto kept = keep_broken(step, looked.error(), steps.size(), broken); !kept) return kept;
+            if (auto kept = keep_broken(step, looked.error(), steps.size(), broken_); !kept) return kept;
             continue;
         }
         for (const FieldInfo& field : info_.fields)

@@ -361,6 +361,35 @@ TEST_F(SeriesFields, PicturesOfStepsWithoutTheFieldAreSkipped) {
               listener.noted.end());
 }
 
+TEST_F(SeriesFields, PicturesAndPackedFilesLeaveOutBrokenSteps) {
+    std::filesystem::remove(folder.file("b.vtu"));
+    for (const std::string& file : files()) {
+        SCOPED_TRACE(file);
+        DrawJob draw;
+        draw.grid.file = file;
+        draw.field.name = "T";
+        draw.isovalues = {1.5};
+        draw.all_steps = true;
+        draw.out = folder.file("p-{frame}.png");
+        draw.picture.width = draw.picture.height = 16;
+        draw.plain = true;
+        Listener told;
+        const auto drawn = draw_files(draw, told);
+        ASSERT_TRUE(drawn) << drawn.error().message;
+        EXPECT_EQ(drawn->pictures.pictures, 2u);
+        EXPECT_TRUE(std::ranges::any_of(told.noted, [](const std::string& note) {
+            return note.starts_with("step 1 cannot be read and is left out: ");
+        }));
+        PackJob pack;
+        pack.grid.file = file;
+        pack.all_steps = true;
+        pack.out = folder.file("s.isotet");
+        const auto packed = pack_file(pack, told);
+        ASSERT_TRUE(packed) << packed.error().message;
+        EXPECT_EQ(packed->steps, 2u);
+    }
+}
+
 TEST_F(SeriesFields, ClipsOfStepsWithoutTheFieldAreSkipped) {
     for (const std::string& file : files()) {
         Listener told;

@@ -75,6 +75,12 @@ struct BesideGrid {
 /// How many time steps; which they are says choose_first().
 enum class Steps { one, all };
 
+/// A time step that cannot be read, among others that can.
+struct BrokenStep {
+    std::size_t step = 0;
+    Error error;
+};
+
 class GridSource {
 public:
     /// Finds out what the file holds, or what the grid to make will hold: of several steps the one that the options ask
@@ -94,6 +100,8 @@ public:
     /// From now on info() has the fields of all these steps. Reading one of them passes over those that it does not have, and
     /// looks for hanging points only where cells or points are not those of the step that was read before.
     Result<void> look_at_steps(const std::vector<std::size_t>& steps, Caller& caller);
+    /// Of these steps those that could not be looked at.
+    const std::vector<BrokenStep>& broken_steps() const noexcept { return broken_; }
 
     /// Whether a step that was looked at has a field of this name, or a component of it is meant; coordinates all have.
     bool has_field(std::size_t step, const std::string& name) const;
@@ -210,6 +218,7 @@ private:
     bool knows_blocks_ = false; ///< cell_names() has "block"
     std::size_t first_step_ = 0;
     std::string why_first_;
+    std::vector<BrokenStep> broken_;
     std::optional<std::size_t> described_; ///< the step whose fields info_ has; nothing: of several
     std::map<std::size_t, std::vector<FieldInfo>> step_fields_; ///< of the steps that were looked at
     ReadOptions read_options_;
@@ -217,12 +226,6 @@ private:
     BesideGrid beside_;
     std::shared_ptr<std::atomic<bool>> has_room_ = std::make_shared<std::atomic<bool>>(); ///< nothing is asked any more
     std::shared_ptr<KnownClosing> closing_; ///< of the last of several steps; shared by copies
-};
-
-/// A time step that cannot be read, among others that can.
-struct BrokenStep {
-    std::size_t step = 0;
-    Error error;
 };
 
 /// Keeps a step whose file, or what is in it, is wrong, so that the other steps are done; other errors come back, and those of
