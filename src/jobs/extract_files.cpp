@@ -25,6 +25,7 @@
 #include "jobs/pictures/packed_picture.hpp"
 #include "jobs/part_table.hpp"
 #include "jobs/surface_record.hpp"
+#include "jobs/streamed_steps.hpp"
 #include "jobs/refuse.hpp"
 #include "jobs/vertex_colors.hpp"
 #include "jobs/way_out.hpp"
@@ -105,6 +106,7 @@ private:
     PointField field_;                             ///< that is contoured there
     core::FillValues fill_;                        ///< of the whole field, where isovalues follow from its range
     std::optional<PointField> averaged_;           ///< ReadResult::field
+    StreamedSteps streamed_;                       ///< where not all cells are read
     std::vector<double> share_isovalues_;          ///< of ExtractJob::shares
     SolidChoice solid_;                            ///< of ExtractJob::solid, with the shares of its range
     std::vector<double> isovalues_;                ///< of the step at hand: levels follow its range
@@ -242,7 +244,7 @@ std::optional<GridPart> ExtractRun::part_in_file(const ReadResult& read, std::si
 /// Reads one step. Returns how many cells there are where only active ones were kept.
 Result<std::optional<std::uint64_t>> ExtractRun::read_grid(std::size_t step) {
     if (plan_.active_cells && !device_) {
-        Result<ReadResult> read = source_->read_active(plan_.read, step, *plan_.active_cells, caller_);
+        Result<ReadResult> read = streamed_.read(*source_, plan_.read, step, *plan_.active_cells, caller_);
         if (!read) return read.error();
         part_ = part_in_file(*read, step);
         grid_ = std::move(read->grid);
@@ -292,6 +294,7 @@ Result<std::optional<std::uint64_t>> ExtractRun::read_field_of(std::size_t step,
     if (!cells_in_file) return cells_in_file;
     found = has_arrays_of(plan_.field, grid_);
     if (found) return cells_in_file;
+    streamed_.forget();
     if (auto looked = source_->look_at_steps({step}, caller_); !looked) return looked.error();
     if (const auto chosen = choose_fields(job_, *source_, plan_); !chosen) {
         if (plan_.steps.size() == 1 || chosen.error().code != ErrorCode::invalid_argument) return chosen.error();
@@ -819,6 +822,8 @@ Result<void> ExtractRun::extract_step(std::size_t step) {
     const std::size_t before = numbers_.surfaces.size();
     std::size_t at_once = solids_ || contour_->engine() == "vulkan" ? 1 : isovalues_together(isovalues_.size());
     std::vector<Surface> joined;
+    if (const auto next = std::ranges::upper_bound(plan_.steps, step); next != plan_.steps.end())
+        streamed_.read_ahead(*next);
     for (std::span<const double> left = isovalues_; !left.empty();) {
         const std::span<const double> pass = left.first(std::min(at_once, left.size()));
         Result<std::vector<Surface>> surfaces = solids_ ? extract_solid(pass[0], step) : extract_pass(pass, step);

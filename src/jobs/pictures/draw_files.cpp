@@ -69,6 +69,7 @@ Result<Picture> draw_frames(const std::vector<Frame>& frames, const DrawJob& job
         if (frames.size() > 1) caller.detail(fmt::format("picture {} of {}", i + 1, frames.size()));
         const bool next_step = i > 0 && frames[i].step != frames[i - 1].step;
         if (next_step) {
+            input.scene.reset(); // the step behind is read ahead now
             Result<DrawInput> next = source.read(frames[i].step, drawer.device(), caller);
             if (!next) return Error{next.error().code, fmt::format("picture {}: {}", i + 1, next.error().message)};
             next->read_seconds += input.read_seconds;

@@ -87,6 +87,7 @@ struct PictureSource::Contents {
     std::optional<ColorField> volume_colors;
     bool model = false;                     ///< the boundary is what is shown: opaque, coloured where there are colours
     std::uint64_t cells = 0;                ///< of the grid in the file
+    bool streamed = false;                  ///< its cells went by
     std::optional<GridPart> part = {};      ///< where the grid has only the active cells
     Box bounds = {};                        ///< then; or of `packed`
     std::optional<Surface> boundary = {};   ///< then, where it is drawn
@@ -422,13 +423,14 @@ Result<void> PictureSource::read_cells(const FieldsToRead& fields, std::size_t s
                                        Caller& caller) {
     core::ReadAhead<Grid>& steps = grids(fields, caller);
     if (active) {
-        Result<ReadResult> some = source_->read_active(fields, step, *active, caller);
+        Result<ReadResult> some = streamed_.read(*source_, fields, step, *active, caller);
         if (!some) return some.error();
         contents.grid = std::move(some->grid);
         contents.field = std::move(some->field);
         contents.digests = std::move(some->digests);
         contents.cells = some->cells_in_file.value_or(contents.grid.cells.count());
-        needs_all_cells_ = !some->cells_in_file; // of the next steps, too, most likely
+        contents.streamed = some->cells_in_file.has_value();
+        needs_all_cells_ = !contents.streamed; // of the next steps, too, most likely
         if (needs_all_cells_) return {};
         const auto all = [source = *source_, fields, step](const Run& run) {
             return source.read_the_rest(fields, step, run);
@@ -780,8 +782,8 @@ Result<DrawInput> PictureSource::read(std::size_t which, const std::optional<Dev
     if (auto found = find_sweep(*contents, caller); !found) return found.error();
     input.sweep = job_.sweep;
     const bool is_last = which + 1 == steps();
-    if (!is_last && caller.run().threads != 1 && !contents->part && !contents->packed)
-        grids_->read_ahead(steps_[which + 1]);
+    if (!is_last && caller.run().threads != 1 && !contents->packed)
+        contents->streamed ? streamed_.read_ahead(steps_[which + 1]) : grids_->read_ahead(steps_[which + 1]);
     if (!is_last && contents->packed && fraction_ == 0) {
         const std::size_t next = steps_[which / each + 1];
         for (const std::string& name : {job_.field.name, job_.color_by, job_.boundary_color_by})

@@ -15,6 +15,7 @@
 #include <isotet/packed_file.hpp>
 
 #include "base/threads/read_ahead.hpp"
+#include "jobs/streamed_steps.hpp"
 
 namespace isotet::jobs {
 
@@ -102,6 +103,7 @@ private:
     bool needs_all_cells_ = false;                        ///< a step that was to do with some needed all
     std::unique_ptr<core::ReadAhead<Grid>> grids_;        ///< of the steps, with these fields
     FieldsToRead last_read_;
+    StreamedSteps streamed_; ///< where not all cells are read
 };
 
 } // namespace isotet::jobs
