@@ -13,7 +13,7 @@ namespace isotet::core {
 
 namespace {
 
-constexpr std::size_t cells_per_task = 1 << 12, most_parts = 4; // each part looks at all cells
+constexpr std::size_t cells_per_task = 1 << 12;
 
 /// Cells without a volume count, all alike, where no other is.
 void add_to_mean(RunningMean& mean, double value, double volume) {
@@ -45,26 +45,38 @@ CellMeans::CellMeans(const Array& points)
 }
 
 void CellMeans::add(const CellReader& cells, const Array& values, Scalar scalar, std::size_t first) {
-    if (volumes_.size() < cells.count()) volumes_ = Buffer<double>(cells.count());
-    parallel_each(cells.count(), cells_per_task,
-                  [&](std::size_t cell) { volumes_[cell] = six_volumes_of(cells, points_, cell); });
-    const auto add_to = [&](std::uint64_t lowest, std::uint64_t count) { // points from the lowest on
-        for (std::size_t cell = 0; cell < cells.count(); ++cell) {
-            const double value = scalar_at(values, scalar, first + cell);
-            if (volumes_[cell] < 0 || std::isnan(value)) continue;
-            const std::uint64_t begin = cells.first(cell), end = begin + cells.corners(cell);
-            for (std::uint64_t i = begin; i < end; ++i) {
+    const auto each_share = [&](std::size_t begin, std::size_t end, const auto& visit) { // of cells
+        for (std::size_t cell = begin; cell < end; ++cell) {
+            const double value = scalar_at(values, scalar, first + cell), volume = six_volumes_of(cells, points_, cell);
+            if (volume < 0 || std::isnan(value)) continue;
+            const std::uint64_t from = cells.first(cell), to = from + cells.corners(cell);
+            for (std::uint64_t i = from; i < to; ++i) {
                 const std::uint64_t point = cells.corner(i);
-                if (point - lowest >= count) continue;
                 bool is_new = true; // a collapsed cell has a point twice, but weighs once
-                for (std::uint64_t j = begin; j < i; ++j) is_new &= cells.corner(j) != point;
-                if (is_new) add_to_mean(means_[point], value, volumes_[cell]);
+                for (std::uint64_t j = from; j < i; ++j) is_new &= cells.corner(j) != point;
+                if (is_new) visit(Share{point, value, volume});
             }
         }
     };
-    const std::size_t parts = std::min<std::size_t>(static_cast<std::size_t>(threads_here()), most_parts);
+    const auto add_share = [&](const Share& share) { add_to_mean(means_[share.point], share.value, share.volume); };
+    const auto parts = static_cast<std::size_t>(threads_here());
+    if (parts == 1) return each_share(0, cells.count(), add_share);
     const std::uint64_t of_part = means_.size() / parts + 1;
-    parallel_each(parts, 1, [&](std::size_t part) { add_to(part * of_part, of_part); });
+    const std::size_t tasks = (cells.count() + cells_per_task - 1) / cells_per_task;
+    shares_.resize(std::max(shares_.size(), tasks * parts));
+    parallel_each(tasks, 1, [&](std::size_t task) {
+        std::vector<Share>* const by_part = &shares_[task * parts];
+        const std::size_t begin = task * cells_per_task;
+        each_share(begin, std::min(begin + cells_per_task, cells.count()),
+                   [&](const Share& share) { by_part[share.point / of_part].push_back(share); });
+    });
+    parallel_each(parts, 1, [&](std::size_t part) {
+        for (std::size_t task = 0; task < tasks; ++task) {
+            std::vector<Share>& shares = shares_[task * parts + part];
+            std::ranges::for_each(shares, add_share);
+            shares.clear();
+        }
+    });
 }
 
 std::optional<Scalar> CellMeans::scalar_called(std::string_view text) { return parse_scalar(text); }

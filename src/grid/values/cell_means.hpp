@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include <isotet/array.hpp>
 #include <isotet/export.hpp>
@@ -21,7 +22,7 @@ namespace isotet::core {
 
 /// Means of cell values at points, of linear cells that go by once, in their order.
 ///
-/// Memory   16 bytes a point
+/// Memory   16 bytes a point, 24 a corner of the cells at hand
 class ISOTET_API CellMeans {
 public:
     /// `points`   of the whole grid
@@ -42,10 +43,15 @@ public:
     static std::uint64_t bytes(std::uint64_t points) { return points * sizeof(RunningMean); }
 
 private:
+    struct Share { ///< of a cell in the mean at a point
+        std::uint64_t point;
+        double value, volume;
+    };
+
     PointReader points_;
     bool sound_;
-    Buffer<RunningMean> means_; ///< `weights` below 0: so many cells, none of which has a volume
-    Buffer<double> volumes_;    ///< of the cells at hand
+    Buffer<RunningMean> means_;              ///< `weights` below 0: so many cells, none of which has a volume
+    std::vector<std::vector<Share>> shares_; ///< of the cells at hand, by task and by part of the points
 };
 
 } // namespace isotet::core
