@@ -102,6 +102,10 @@ ISOTET_API Result<ContourSpectrum> contour_spectrum(const Grid& grid, const Poin
 /// `steps`   1 to 65,535
 ISOTET_API Result<ContourSpectrum> contour_spectrum_over_range(const Grid& grid, const PointField& field,
                                                                std::uint64_t steps, const Run& run = {});
+/// Of a range that is known.
+ISOTET_API Result<ContourSpectrum> contour_spectrum_over_range(const Grid& grid, const PointField& field,
+                                                               std::uint64_t steps, const ValueRange& range,
+                                                               const Run& run = {});
 
 /// Isovalues that follow from the values of a field: levels in the range that they mostly lie in (typical_range()), or in
 /// that of all finite ones. As ReadActiveCells::choose it goes to the reader processes, too; of any other function these

@@ -34,12 +34,16 @@ Result<void> check_spectrum_isovalues(std::span<const double> isovalues) {
     return {};
 }
 
+Result<void> check_steps(std::uint64_t steps) {
+    if (steps >= 1 && steps < max_spectrum_isovalues) return {};
+    return invalid_argument(fmt::format("{} steps, but there must be 1 to {}", steps, max_spectrum_isovalues - 1));
+}
+
 Result<ContourSpectrum> spectrum_by(const Grid& grid, const PointField& field, std::span<const double> isovalues,
                                     api::SpectrumBy engine, const Run& run) {
     return core::carry_out("measuring", run, [&](const Progress& progress) -> Result<ContourSpectrum> {
         if (auto ok = check_spectrum_isovalues(isovalues); !ok) return ok.error();
-        const auto source =
-            api::SpectrumSource::open(grid, field, {isovalues.front(), isovalues.back()}, progress);
+        const auto source = api::SpectrumSource::open(grid, field, {isovalues.front(), isovalues.back()}, progress);
         if (!source) return source.error();
         return source->at(isovalues, engine, progress);
     });
@@ -54,12 +58,17 @@ Result<ContourSpectrum> contour_spectrum(const Grid& grid, const PointField& fie
 
 Result<ContourSpectrum> contour_spectrum_over_range(const Grid& grid, const PointField& field, std::uint64_t steps,
                                                     const Run& run) {
-    if (steps < 1 || steps >= max_spectrum_isovalues)
-        return invalid_argument(fmt::format("{} steps, but there must be 1 to {}", steps, max_spectrum_isovalues - 1));
+    if (auto ok = check_steps(steps); !ok) return ok.error();
     const auto statistics = statistics_of(field.values, run);
     if (!statistics) return statistics.error();
     if (statistics->size() != 1) return contour_spectrum(grid, field, std::array{0.0}, run); // which says what is wrong
-    const auto [lower, upper, no_data, infinite] = statistics->front();
+    return contour_spectrum_over_range(grid, field, steps, {statistics->front().lower, statistics->front().upper}, run);
+}
+
+Result<ContourSpectrum> contour_spectrum_over_range(const Grid& grid, const PointField& field, std::uint64_t steps,
+                                                    const ValueRange& range, const Run& run) {
+    if (auto ok = check_steps(steps); !ok) return ok.error();
+    const auto [lower, upper] = range;
     if (!(lower <= upper)) return ContourSpectrum{};
     std::vector<double> isovalues{lower};
     if (lower < upper) {

@@ -246,17 +246,13 @@ FirstView view_of_only(const std::string& field) {
     return {FirstDraw::isosurfaces, field, Association::point, FirstReason::only, false};
 }
 
-/// Which step was taken, and why not the first.
-std::string note_of_step(const GridSource& source, const ChoiceWish& wish, const StepLook& start, std::size_t taken) {
+/// Why a step was taken, and not the first.
+std::string why_taken(const GridSource& source, const ChoiceWish& wish, const StepLook& start, std::size_t taken) {
     const std::size_t first = source.first_step();
-    std::string why;
-    if (!start.missing.empty()) why = fmt::format(", and step {} has no {}", first, quoted_list(start.missing));
-    else if (taken == first) why = first == 0 ? "" : ", " + source.why_first_step();
-    else if (wish.field.name.empty()) why = fmt::format(", and no field varies at step {}", first);
-    else why = fmt::format(", and '{}' does not vary at step {}", wish.field.name, first);
-    const std::vector<double>& times = source.info().times;
-    return fmt::format("the file has {} time steps{}: step {}, time {}, was taken; `time` and `step` choose another",
-                       times.size(), why, taken, shortest(times[taken]));
+    if (!start.missing.empty()) return fmt::format(", and step {} has no {}", first, quoted_list(start.missing));
+    if (taken == first) return source.why_first_step();
+    if (wish.field.name.empty()) return fmt::format(", and no field varies at step {}", first);
+    return fmt::format(", and '{}' does not vary at step {}", wish.field.name, first);
 }
 
 /// Of some steps the first that can be read and where a field varies, else the first that can be read: at which `look` looked
@@ -362,7 +358,7 @@ Result<FirstChoice> choose_first(GridSource& source, const GridOptions& options,
     if (needs_view && choice.view.field.empty() && !only.empty()) choice.view = view_of_only(only);
     if (!is_open) return choice;
     choice.steps = {taken};
-    caller.note(note_of_step(source, wish, start, taken));
+    caller.note(note_of_step(source.info().times, taken, why_taken(source, wish, start, taken)));
     return choice;
 }
 

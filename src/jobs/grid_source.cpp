@@ -320,7 +320,7 @@ Result<void> GridSource::find_choices(Caller& caller) {
     const auto found = first_step_with(first_step_, count, has_them);
     if (!found) return found.error();
     if (*found) {
-        if (**found != first_step_) why_first_ = "what is chosen is not in those before";
+        if (**found != first_step_) why_first_ = ", what is chosen is not in those before";
         first_step_ = **found;
         return {};
     }
@@ -340,7 +340,7 @@ std::optional<FileInfo> GridSource::inspect_first_with_blocks(Caller& caller) {
         Result<FileInfo> info = inspect(options_.file, chosen, caller.run());
         if (!info) continue;
         first_step_ = step;
-        why_first_ = "what is chosen is not in those before";
+        why_first_ = ", what is chosen is not in those before";
         return *std::move(info);
     }
     return std::nullopt;
@@ -358,7 +358,7 @@ std::optional<FileInfo> GridSource::inspect_first_sound(const Error& error, Call
         if (info) {
             if (step >= info->times.size()) return std::nullopt; // what has no steps takes any
             first_step_ = step;
-            why_first_ = fmt::format("step 0 cannot be read ({})", error.message);
+            why_first_ = fmt::format(", step 0 cannot be read ({})", error.message);
             return *std::move(info);
         }
         if (info.error().code == ErrorCode::invalid_argument || info.error().message == last) return std::nullopt;
@@ -409,9 +409,7 @@ Result<std::vector<std::size_t>> GridSource::choose_steps(Steps steps, Caller& c
         !options_.blocks.empty() && choices_ ? " and " : "", choices_ ? "the cells " + text_of(*choices_) : "");
     const std::size_t count = info_.times.size();
     if (steps == Steps::one && first_step_ > 0 && !options_.step && !options_.time) {
-        caller.note(fmt::format("the file has {} time steps, and {}: step {}, time {}, was taken; `time` and `step` "
-                                "choose another",
-                                count, why_first_, first_step_, shortest(info_.times[first_step_])));
+        caller.note(note_of_step(info_.times, first_step_, why_first_));
         return std::vector<std::size_t>{first_step_};
     }
     auto chosen = jobs::choose_steps(info_, options_, steps, caller);

@@ -185,12 +185,7 @@ Result<CurvedSummary> look_at_curved_cells(const std::optional<LinearGrid>& line
 Result<ContourSpectrum> spectrum_of(const Grid& cells, const PointField& field, std::uint64_t steps, Caller& caller) {
     const Result<core::FillValues> fill = core::find_fill_values(field.values, caller.run());
     if (!fill) return fill.error();
-    if (fill->values.empty()) return contour_spectrum_over_range(cells, field, steps, caller.run());
-    const auto [lower, upper] = fill->others;
-    std::vector<double> isovalues = evenly_spaced_levels(lower, upper, steps - 1);
-    isovalues.insert(isovalues.begin(), lower);
-    isovalues.push_back(upper);
-    return contour_spectrum(cells, field, isovalues, caller.run());
+    return contour_spectrum_over_range(cells, field, steps, fill->others, caller.run());
 }
 
 void note_fill_values(const std::vector<Field>& fields, const char* of, const FieldSummary* summaries, Caller& caller) {

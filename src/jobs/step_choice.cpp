@@ -36,6 +36,11 @@ Result<std::size_t> step_at(const std::vector<double>& times, double time) {
                    times.size(), list_of(times), shortest(times[nearest]));
 }
 
+std::string note_of_step(const std::vector<double>& times, std::size_t taken, std::string_view why) {
+    return fmt::format("the file has {} time steps{}: step {}, time {}, was taken; `time` and `step` choose another",
+                       times.size(), why, taken, shortest(times[taken]));
+}
+
 Result<std::vector<std::size_t>> choose_steps(const FileInfo& info, const GridOptions& options, Steps steps,
                                               Caller& caller) {
     const std::size_t count = std::max<std::size_t>(info.times.size(), 1);
@@ -54,11 +59,7 @@ Result<std::vector<std::size_t>> choose_steps(const FileInfo& info, const GridOp
         return refusal("step {} was asked for, but the file has {} time step{}, numbered from 0", *options.step, count,
                        count == 1 ? "" : "s");
     }
-    if (count > 1) {
-        caller.note(
-            fmt::format("the file has {} time steps: step 0, time {}, was taken; `time` and `step` choose another",
-                        count, shortest(info.times[0])));
-    }
+    if (count > 1) caller.note(note_of_step(info.times, 0, {}));
     return std::vector<std::size_t>{0};
 }
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <isotet/jobs/grid_source.hpp>
@@ -19,6 +20,9 @@ std::string list_of(const std::vector<double>& times);
 /// The step of a time; of steps of the same time, as restarted runs append them, the last.
 /// Errors   invalid_argument: there is none, with those that there are
 Result<std::size_t> step_at(const std::vector<double>& times, double time);
+
+/// Which step was taken where none was asked for. `why`   that one: ", and ..."; empty: it is the first
+std::string note_of_step(const std::vector<double>& times, std::size_t taken, std::string_view why);
 
 /// The steps that --time, --step or --all-steps ask for; the first, with a note, when none does and there are several.
 /// Errors   invalid_argument: a step or time that the file does not have, with those that it has

@@ -108,7 +108,9 @@ public:
 
     /// The first step that can be read and has the chosen blocks and the fields that cells are chosen by.
     std::size_t first_step() const noexcept { return first_step_; }
-    const std::string& why_first_step() const noexcept { return why_first_; } ///< where that is not step 0
+    const std::string& why_first_step() const noexcept {
+        return why_first_;
+    } ///< ", ..." where that is not step 0; else empty
 
     /// Those that the options ask for, as choose_first() begins with; of all steps without those that do not have the chosen
     /// blocks or the fields that cells are chosen by, which are noted.
