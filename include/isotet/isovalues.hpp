@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -56,6 +57,19 @@ struct IsovalueShare {
 ///              value, no volume, and as contour_spectrum(); out_of_memory; cancelled
 ISOTET_API Result<std::vector<double>> isovalues_at(const Grid& grid, const PointField& field,
                                                     std::span<const IsovalueShare> shares, const Run& run = {});
+
+/// Cells that go by. `each` hands over all of them in their order, some at a time: the number of the first, and a grid of
+/// these and of all points.
+struct CellsInTurn {
+    std::uint64_t count = 0;
+    std::function<Result<void>(const std::function<void(std::uint64_t first, const Grid& some)>& take)> each;
+};
+
+/// The same numbers of linear cells that go by as often as needed: five to eight times.
+/// Errors   those of `each`, too
+ISOTET_API Result<std::vector<double>> isovalues_at(const Array& points, const CellsInTurn& cells,
+                                                    const PointField& field, std::span<const IsovalueShare> shares,
+                                                    const Run& run = {});
 
 // Area and volume against the isovalue, without a surface of any.
 

@@ -13,6 +13,7 @@
 #include <isotet/export.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/grid.hpp>
+#include <isotet/isovalues.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
 #include <isotet/slice.hpp>
@@ -104,12 +105,14 @@ struct ReadActiveCells {
     bool bounds = false;                  ///< ReadResult::bounds are wanted
     /// Gets the boundary, if it is wanted.
     std::shared_ptr<StreamedBoundary> boundary = {};
+    /// Active cells of these isovalues, too: ReadResult::share_isovalues. Of the volume only of a file that is one piece.
+    std::vector<IsovalueShare> shares = {};
     /// Where there are no isovalues: gives them once the values of all points are known. VTKHDF and Exodus read all cells
     /// unless it is a RangeLevels (isovalues.hpp).
     std::function<Result<std::vector<double>>(const PointField& field)> choose = {};
     /// Of these only those for which all conditions hold, by fields that are read; points of no such cell have no value, of
     /// integers they keep it. All cells are read where some have no volume, or a range has no value; not with `bounds`,
-    /// `boundary` and `choose`.
+    /// `boundary`, `shares` and `choose`.
     std::vector<CellCondition> conditions = {};
     bool averages = false; ///< `field` is one of cells: ReadResult::field; only of a file that is one piece
     bool digests = false;  ///< ReadResult::digests are wanted; all cells are read where some have no volume
@@ -165,6 +168,7 @@ struct ReadResult {
     std::optional<std::uint64_t> chosen_cells =
         {}; ///< of active cells: for how many of all the conditions hold; nothing: they were not looked at
     std::optional<PointField> field = {}; ///< of active cells, with `averages`: as find_field() has it for all cells
+    std::vector<double> share_isovalues = {}; ///< of active cells, in the order of `shares`
     std::vector<Field> digests = {}; ///< of active cells, where they are wanted: a few values of each cell field of one
         ///< component, as float64, by which colours are those of all (ColorOptions::all_values)
 };

@@ -43,7 +43,7 @@ Result<ContourSpectrum> spectrum_by(const Grid& grid, const PointField& field, s
                                     api::SpectrumBy engine, const Run& run) {
     return core::carry_out("measuring", run, [&](const Progress& progress) -> Result<ContourSpectrum> {
         if (auto ok = check_spectrum_isovalues(isovalues); !ok) return ok.error();
-        const auto source = api::SpectrumSource::open(grid, field, {isovalues.front(), isovalues.back()}, progress);
+        auto source = api::SpectrumSource::open(grid, field, {isovalues.front(), isovalues.back()}, progress);
         if (!source) return source.error();
         return source->at(isovalues, engine, progress);
     });

@@ -85,9 +85,9 @@ private:
     bool looked_ = false, done_ = false;
 };
 
-Result<std::vector<double>> isovalues_of_volume(const Grid& grid, const PointField& field,
+/// `source`   an error where the grid is broken
+Result<std::vector<double>> isovalues_of_volume(Result<api::SpectrumSource> source, const PointField& field,
                                                 const std::vector<double>& percents, const Progress& progress) {
-    const auto source = api::SpectrumSource::open(grid, field, {}, progress);
     if (!source) return source.error();
     const ValueRange range = source->range();
     if (!(range.lower <= range.upper))
@@ -147,10 +147,10 @@ Result<void> check_percents(std::span<const IsovalueShare> shares) {
     return {};
 }
 
-} // namespace
-
-Result<std::vector<double>> isovalues_at(const Grid& grid, const PointField& field,
-                                         std::span<const IsovalueShare> shares, const Run& run) {
+/// `open`   gives the cells as a SpectrumSource, where they are needed
+template <class Open>
+Result<std::vector<double>> isovalues_of_shares(const Open& open, const PointField& field,
+                                                std::span<const IsovalueShare> shares, const Run& run) {
     return core::carry_out("measuring", run, [&](const Progress& progress) -> Result<std::vector<double>> {
         if (auto ok = check_percents(shares); !ok) return ok.error();
         std::vector<double> isovalues(shares.size());
@@ -163,13 +163,28 @@ Result<std::vector<double>> isovalues_at(const Grid& grid, const PointField& fie
                 percents.push_back(shares[i].percent);
             }
             if (places.empty()) continue;
-            const auto found = of == IsovalueShare::Of::volume ? isovalues_of_volume(grid, field, percents, progress)
-                                                               : isovalues_of_points(field, percents, progress);
+            const auto found = of == IsovalueShare::Of::volume
+                                   ? isovalues_of_volume(open(progress), field, percents, progress)
+                                   : isovalues_of_points(field, percents, progress);
             if (!found) return found.error();
             for (std::size_t k = 0; k < places.size(); ++k) isovalues[places[k]] = (*found)[k];
         }
         return isovalues;
     });
+}
+
+} // namespace
+
+Result<std::vector<double>> isovalues_at(const Grid& grid, const PointField& field,
+                                         std::span<const IsovalueShare> shares, const Run& run) {
+    const auto open = [&](const Progress& progress) { return api::SpectrumSource::open(grid, field, {}, progress); };
+    return isovalues_of_shares(open, field, shares, run);
+}
+
+Result<std::vector<double>> isovalues_at(const Array& points, const CellsInTurn& cells, const PointField& field,
+                                         std::span<const IsovalueShare> shares, const Run& run) {
+    const auto open = [&](const Progress&) { return api::SpectrumSource::open(points, cells, field); };
+    return isovalues_of_shares(open, field, shares, run);
 }
 
 } // namespace isotet

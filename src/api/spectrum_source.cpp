@@ -51,36 +51,75 @@ Result<SpectrumSource> SpectrumSource::open(const Grid& grid, const PointField& 
     const auto cells = core::CellReader::open(grid);
     if (!cells) return cells.error();
     if (auto ok = core::check_cells(grid, *cells, progress); !ok) return ok.error();
-    const auto statistics = statistics_of(field.values);
-    if (!statistics) return statistics.error();
-    SpectrumSource source(grid, *cells);
-    double most = std::max(std::abs(around.lower), std::abs(around.upper));
-    for (const ComponentStatistics& component : *statistics) { // one, or none of an empty field
-        source.range_ = {component.lower, component.upper};
-        if (component.lower <= component.upper)
-            most = std::max({most, std::abs(component.lower), std::abs(component.upper)});
-    }
-    if (most > 0) std::frexp(most, &source.exponent_);
-    source.values_ = core::Buffer<double>(field.values.size());
-    field.values.visit([&](auto scalars) {
-        const std::size_t grain = std::size_t{1} << 16;
-        core::parallel_pieces(scalars.size(), grain, progress, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                source.values_[i] = source.in_units(static_cast<double>(scalars[i]));
-        });
-    });
-    if (progress.cancelled()) return measuring_was_cancelled();
+    SpectrumSource source(grid);
+    source.cells_ = *cells;
+    const double most = std::max(std::abs(around.lower), std::abs(around.upper));
+    if (auto taken = source.take_values(field, most, progress); !taken) return taken.error();
     return source;
 }
 
+Result<SpectrumSource> SpectrumSource::open(const Array& points, const CellsInTurn& cells, const PointField& field) {
+    SpectrumSource source(Grid{points, {}, {}, {}});
+    if (auto ok = check_measured_field(source.grid_, field); !ok) return ok.error();
+    source.in_turn_ = cells;
+    if (auto taken = source.take_values(field, 0, {}); !taken) return taken.error();
+    return source;
+}
+
+Result<void> SpectrumSource::take_values(const PointField& field, double most, const Progress& progress) {
+    const auto statistics = statistics_of(field.values);
+    if (!statistics) return statistics.error();
+    for (const ComponentStatistics& component : *statistics) { // one, or none of an empty field
+        range_ = {component.lower, component.upper};
+        if (component.lower <= component.upper)
+            most = std::max({most, std::abs(component.lower), std::abs(component.upper)});
+    }
+    if (most > 0) std::frexp(most, &exponent_);
+    values_ = core::Buffer<double>(field.values.size());
+    field.values.visit([&](auto scalars) {
+        const std::size_t grain = std::size_t{1} << 16;
+        core::parallel_pieces(scalars.size(), grain, progress, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) values_[i] = in_units(static_cast<double>(scalars[i]));
+        });
+    });
+    if (progress.cancelled()) return measuring_was_cancelled();
+    return {};
+}
+
+Result<ops::Spectrum> SpectrumSource::measure(std::span<const double> levels, SpectrumBy engine,
+                                              const Progress& progress) {
+    if (!cells_) return measure_in_turn(levels, progress);
+    const ops::SpectrumInput input{*cells_, core::PointReader(grid_.points), {values_.data(), values_.size()}, levels};
+    return engine == SpectrumBy::reference ? reference::contour_spectrum(input)
+                                           : cpu::contour_spectrum(input, progress);
+}
+
+/// Cells are checked when they go by for the first time.
+Result<ops::Spectrum> SpectrumSource::measure_in_turn(std::span<const double> levels, const Progress& progress) {
+    cpu::SpectrumPass pass(core::PointReader(grid_.points), {values_.data(), values_.size()}, levels, in_turn_.count);
+    Result<void> sound;
+    const auto done = in_turn_.each([&](std::uint64_t first, const Grid& some) {
+        if (!sound || progress.cancelled()) return;
+        const auto cells = core::CellReader::open(some);
+        sound = !cells         ? Result<void>(cells.error())
+                : are_checked_ ? Result<void>()
+                               : core::check_cells(some, *cells, progress);
+        if (sound) pass.add(*cells, first, progress);
+    });
+    if (!done) return done.error();
+    if (!sound) return sound.error();
+    are_checked_ = true;
+    return pass.finish();
+}
+
 Result<ContourSpectrum> SpectrumSource::at(std::span<const double> isovalues, SpectrumBy engine,
-                                           const Progress& progress) const {
+                                           const Progress& progress) {
     std::vector<double> levels;
     for (const double isovalue : isovalues) levels.push_back(in_units(isovalue));
-    const ops::SpectrumInput input{cells_, core::PointReader(grid_.points), {values_.data(), values_.size()}, levels};
-    ops::Spectrum spectrum =
-        engine == SpectrumBy::reference ? reference::contour_spectrum(input) : cpu::contour_spectrum(input, progress);
+    auto measured = measure(levels, engine, progress);
     if (progress.cancelled()) return measuring_was_cancelled();
+    if (!measured) return measured.error();
+    ops::Spectrum& spectrum = *measured;
     ContourSpectrum out;
     out.isovalues.assign(isovalues.begin(), isovalues.end());
     out.area = std::move(spectrum.area);

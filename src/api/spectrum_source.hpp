@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include <isotet/fields.hpp>
@@ -11,6 +12,7 @@
 #include "base/buffer.hpp"
 #include "grid/cells.hpp"
 #include "grid/orientation.hpp"
+#include "ops/spectrum.hpp"
 
 namespace isotet::api {
 
@@ -24,22 +26,32 @@ public:
     static Result<SpectrumSource> open(const Grid& grid, const PointField& field, const ValueRange& around,
                                        const Progress& progress);
 
+    /// The same of linear cells that go by.
+    static Result<SpectrumSource> open(const Array& points, const CellsInTurn& cells, const PointField& field);
+
     /// Of the field's finite values; lower > upper: there is none.
     const ValueRange& range() const noexcept { return range_; }
 
     /// `isovalues`   ascending
-    /// Errors        cancelled
-    Result<ContourSpectrum> at(std::span<const double> isovalues, SpectrumBy engine, const Progress& progress) const;
+    /// Errors        cancelled; those of cells that go by
+    Result<ContourSpectrum> at(std::span<const double> isovalues, SpectrumBy engine, const Progress& progress);
 
 private:
-    SpectrumSource(Grid grid, const core::CellReader& cells) : grid_(std::move(grid)), cells_(cells) {}
+    explicit SpectrumSource(Grid grid) : grid_(std::move(grid)) {}
+
+    /// `most`   in magnitude of the isovalues
+    Result<void> take_values(const PointField& field, double most, const Progress& progress);
+    Result<ops::Spectrum> measure(std::span<const double> levels, SpectrumBy engine, const Progress& progress);
+    Result<ops::Spectrum> measure_in_turn(std::span<const double> levels, const Progress& progress);
 
     /// Values as the engines take them: multiplied by a power of two until none is above 1, so that no difference is
     /// infinite. What is below 2^-500 then counts as 0, so that no difference is too small to divide by.
     double in_units(double value) const;
 
     Grid grid_; ///< keeps what the reader borrows
-    core::CellReader cells_;
+    std::optional<core::CellReader> cells_;
+    CellsInTurn in_turn_; ///< where there are none
+    bool are_checked_ = false;
     core::Buffer<double> values_; ///< in units
     ValueRange range_;
     int exponent_ = 0;

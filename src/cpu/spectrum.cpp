@@ -86,20 +86,26 @@ void sort_four(std::array<double, 4>& v) {
     order(1, 2);
 }
 
+/// What all cells have in common.
+struct SpectrumField {
+    core::PointReader points;
+    std::span<const double> values, isovalues;
+};
+
 class SpectrumAdder {
 public:
-    SpectrumAdder(const ops::SpectrumInput& input, const IsovalueFinder& finder, SpectrumSums& sums)
-        : input_(input), finder_(finder), sums_(sums) {}
+    SpectrumAdder(const SpectrumField& field, const IsovalueFinder& finder, SpectrumSums& sums)
+        : field_(field), finder_(finder), sums_(sums) {}
 
     void add(const core::Tet& corners) {
         std::array<double, 4> values;
-        for (std::size_t k = 0; k < 4; ++k) values[k] = input_.values[corners[k]];
+        for (std::size_t k = 0; k < 4; ++k) values[k] = field_.values[corners[k]];
         if (std::isnan(values[0] + values[1] + values[2] + values[3])) {
             ++sums_.no_data_tets;
             return;
         }
         std::array<core::Point, 4> places;
-        for (std::size_t k = 0; k < 4; ++k) places[k] = input_.points[corners[k]];
+        for (std::size_t k = 0; k < 4; ++k) places[k] = field_.points[corners[k]];
         const TetMeasures measures = measures_of(places, values);
         const double volume = measures.six_volumes / 6;
         ++sums_.tets;
@@ -113,7 +119,7 @@ private:
     /// times the gradient's length that is the area. All terms are positive: nothing cancels. Returns the first isovalue
     /// above all corners.
     std::size_t add_cuts(const std::array<double, 4>& v, double volume, double slope) {
-        const std::span<const double> t = input_.isovalues;
+        const std::span<const double> t = field_.isovalues;
         const std::size_t count = t.size();
         std::size_t i = finder_.first_above(v[0]);
         if (i == count || t[i] > v[3]) return i;
@@ -140,7 +146,7 @@ private:
         return i;
     }
 
-    const ops::SpectrumInput& input_;
+    const SpectrumField& field_;
     const IsovalueFinder& finder_;
     SpectrumSums& sums_;
 };
@@ -172,23 +178,46 @@ ops::Spectrum total_of(const std::vector<SpectrumSums>& blocks, std::size_t coun
 
 } // namespace
 
-ops::Spectrum contour_spectrum(const ops::SpectrumInput& input, const Progress& progress) {
-    const std::size_t cells = input.cells.count(), count = input.isovalues.size();
-    const std::size_t blocks = block_count(cells, count);
-    const IsovalueFinder finder(input.isovalues);
-    std::vector<SpectrumSums> sums(blocks, SpectrumSums(count));
-    std::atomic<std::size_t> done{0};
-    core::parallel_pieces(blocks, 1, progress, [&](std::size_t first, std::size_t last) {
-        for (std::size_t block = first; block < last; ++block) {
-            SpectrumAdder adder(input, finder, sums[block]);
-            input.cells.for_cells(cells * block / blocks, cells * (block + 1) / blocks,
-                                  [&](std::size_t, const core::CellTets& tets) {
-                                      for (const core::Tet& tet : tets) adder.add(tet);
-                                  });
+struct SpectrumPass::Data {
+    SpectrumField field;
+    std::size_t cells;
+    IsovalueFinder finder;
+    std::vector<SpectrumSums> blocks;
+};
+
+SpectrumPass::SpectrumPass(const core::PointReader& points, std::span<const double> values,
+                           std::span<const double> isovalues, std::size_t cells)
+    : data_(new Data{{points, values, isovalues}, cells, IsovalueFinder(isovalues), {}}) {
+    data_->blocks.assign(block_count(cells, isovalues.size()), SpectrumSums(isovalues.size()));
+}
+
+SpectrumPass::~SpectrumPass() = default;
+
+void SpectrumPass::add(const core::CellReader& cells, std::size_t first, const Progress& progress) {
+    const std::size_t blocks = data_->blocks.size(), last = first + cells.count();
+    const auto begin_of = [&](std::size_t block) { return data_->cells * block / blocks; };
+    std::size_t begin = 0, end = blocks; // the blocks that these cells are in
+    while (begin + 1 < blocks && begin_of(begin + 1) <= first) ++begin;
+    while (end > begin + 1 && begin_of(end - 1) >= last) --end;
+    std::atomic<std::size_t> done{begin};
+    core::parallel_pieces(end - begin, 1, progress, [&](std::size_t from, std::size_t to) {
+        for (std::size_t block = begin + from; block < begin + to; ++block) {
+            SpectrumAdder adder(data_->field, data_->finder, data_->blocks[block]);
+            cells.for_cells(std::max(begin_of(block), first) - first, std::min(begin_of(block + 1), last) - first,
+                            [&](std::size_t, const core::CellTets& tets) {
+                                for (const core::Tet& tet : tets) adder.add(tet);
+                            });
             progress("measure", static_cast<double>(++done) / static_cast<double>(blocks));
         }
     });
-    return total_of(sums, count);
+}
+
+ops::Spectrum SpectrumPass::finish() const { return total_of(data_->blocks, data_->field.isovalues.size()); }
+
+ops::Spectrum contour_spectrum(const ops::SpectrumInput& input, const Progress& progress) {
+    SpectrumPass pass(input.points, input.values, input.isovalues, input.cells.count());
+    pass.add(input.cells, 0, progress);
+    return pass.finish();
 }
 
 } // namespace isotet::cpu

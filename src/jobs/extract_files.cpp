@@ -249,6 +249,7 @@ Result<std::optional<std::uint64_t>> ExtractRun::read_grid(std::size_t step) {
         part_ = part_in_file(*read, step);
         grid_ = std::move(read->grid);
         averaged_ = std::move(read->field);
+        if (read->cells_in_file) share_isovalues_ = std::move(read->share_isovalues);
         return read->cells_in_file;
     }
     Result<ReadResult> read = source_->read_numbered(plan_.read, step, caller_);
@@ -314,6 +315,7 @@ Result<bool> ExtractRun::load(std::size_t step) {
     caller_.detail(fmt::format("reading step {}", step));
     grid_ = {};
     averaged_.reset();
+    share_isovalues_.clear();
     if (plan_.contour.refine) plan_.contour.refine->carried = {};
     bool found = false;
     Result<std::optional<std::uint64_t>> cells_in_file = read_field_of(step, found);
@@ -346,6 +348,11 @@ Result<bool> ExtractRun::load(std::size_t step) {
     if (plan_.active_cells && plan_.active_cells->choose)
         if (auto chosen = plan_.active_cells->choose(input.field)) // else the field has no value, which is told later
             plan_.contour.expected_isovalues = *std::move(chosen);
+    if (plan_.active_cells && !job_.shares.empty()) {
+        plan_.contour.expected_isovalues = share_isovalues_;
+        plan_.contour.expected_isovalues.insert(plan_.contour.expected_isovalues.end(), job_.isovalues.begin(),
+                                                job_.isovalues.end());
+    }
     if (*cells_in_file)
         caller_.detail(fmt::format("{} of {} cells were kept: the isovalues meet no others", grid_.cells.count(),
                                    **cells_in_file));
@@ -533,7 +540,7 @@ Result<void> ExtractRun::find_shares() {
             solid_.range = *range;
         }
     }
-    if (job_.shares.empty()) return {};
+    if (job_.shares.empty() || !share_isovalues_.empty()) return {};
     const core::Stopwatch looking;
     caller_.detail("looking for the isovalues of shares");
     Result<std::vector<double>> found = isovalues_at(grid_, field_, job_.shares, caller_.run());

@@ -13,7 +13,6 @@
 #include <isotet/grid_file.hpp>
 #include <isotet/jobs/first_choice.hpp>
 #include <isotet/jobs/number_text.hpp>
-#include <isotet/jobs/range_shares.hpp>
 #include <isotet/isovalues.hpp>
 #include <isotet/linear_cells.hpp>
 #include <isotet/write.hpp>
@@ -98,7 +97,7 @@ std::optional<ReadActiveCells> plan_active_cells(const ExtractJob& job, const Ex
     ContourOptions options = plan.contour;
     if (chosen) options.expected_isovalues.resize(count);
     const bool averages = is_averaged_while_read(plan.field, job.field);
-    const bool needs_all = (looks_around(plan.field) && !averages) || job.snap || !are_of_points(job.shares) ||
+    const bool needs_all = (looks_around(plan.field) && !averages) || job.snap ||
                            (chosen && (plan.steps.size() > 1 || !job.grid.cells.empty())) || job.piece || job.solid ||
                            job.volumes || job.grid.merge_points;
     if (needs_all || looks_around_others) return std::nullopt;
@@ -107,9 +106,9 @@ std::optional<ReadActiveCells> plan_active_cells(const ExtractJob& job, const Ex
     active->shape = job.field.shape;
     active->averages = averages;
     active->isovalues = {};
-    if (!chosen) active->isovalues = job.isovalues;
-    else if (job.shares.empty()) active->choose = RangeLevels{.count = count, .whole_range = true};
-    else active->choose = isovalues_by_values(job.isovalues, job.shares);
+    if (named > 0) active->isovalues = job.isovalues;
+    else active->choose = RangeLevels{.count = count, .whole_range = true};
+    active->shares = job.shares;
     return active;
 }
 

@@ -781,8 +781,8 @@ Result<SurveyedGrid> GridSource::read_surveyed(const FieldsToRead& fields, std::
 
 /// Whether readers can choose the cells.
 bool GridSource::chooses_while_reading(const FieldsToRead& fields, const ReadActiveCells& active) const {
-    return !choices_ || (!is_packed_file() && !(fields.blocks && knows_blocks_) && !active.choose && !active.bounds &&
-                         !active.boundary);
+    return !choices_ || (!is_packed_file() && !(fields.blocks && knows_blocks_) && !active.choose &&
+                         active.shares.empty() && !active.bounds && !active.boundary);
 }
 
 Result<ReadResult> GridSource::read_active(const FieldsToRead& fields, std::size_t step, const ReadActiveCells& active,

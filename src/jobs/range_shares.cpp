@@ -24,18 +24,4 @@ Result<SolidRange> with_shares(SolidRange range, const RangeShares& shares, cons
                              shortest(range.lower), shortest(range.upper))};
 }
 
-bool are_of_points(const std::vector<IsovalueShare>& shares) {
-    return std::ranges::all_of(shares,
-                               [](const IsovalueShare& share) { return share.of == IsovalueShare::Of::points; });
-}
-
-std::function<Result<std::vector<double>>(const PointField& field)>
-isovalues_by_values(std::vector<double> isovalues, std::vector<IsovalueShare> shares) {
-    return [others = std::move(isovalues), shares = std::move(shares)](const PointField& field) {
-        Result<std::vector<double>> all = isovalues_at({}, field, shares);
-        if (all) all->insert(all->end(), others.begin(), others.end());
-        return all;
-    };
-}
-
 } // namespace isotet::jobs

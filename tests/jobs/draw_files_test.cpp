@@ -181,7 +181,7 @@ std::vector<Field> fields_of_cells(std::size_t cells) {
 /// Pictures that are coloured by a cell field, or show the boundary alone.
 std::vector<DrawJob> jobs_without_all_cells(const std::string& file, const std::string& out) {
     const DrawJob plain = small_picture(file, out);
-    std::vector<DrawJob> jobs(8, plain);
+    std::vector<DrawJob> jobs(9, plain);
     for (DrawJob* job : {&jobs[0], &jobs[1], &jobs[2], &jobs[3]}) {
         job->field.name = "gyroid";
         job->isovalues = {0.1};
@@ -195,6 +195,8 @@ std::vector<DrawJob> jobs_without_all_cells(const std::string& file, const std::
     jobs[5].clips = {{{1, 0, 0}, 0.1}};
     jobs[6].boundary_color_by = "plane";
     jobs[7].field.name = "part"; // averaged to the points
+    jobs[8].field.name = "gyroid";
+    jobs[8].shares = {{IsovalueShare::Of::volume, 60}};
     return jobs;
 }
 

@@ -2,7 +2,6 @@
 // Ranges of values whose ends may be shares of the grid's volume or of its points.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -21,12 +20,4 @@ struct RangeShares {
 /// Errors   as isovalues_at(); invalid_data where its ends do not ascend
 Result<SolidRange> with_shares(SolidRange range, const RangeShares& shares, const Grid& grid, const PointField& field,
                                const Run& run = {});
-
-/// Whether shares follow from the values alone: those of the points.
-bool are_of_points(const std::vector<IsovalueShare>& shares);
-
-/// Gives these isovalues, and those of shares of the points, as ReadActiveCells::choose does.
-std::function<Result<std::vector<double>>(const PointField& field)>
-isovalues_by_values(std::vector<double> isovalues, std::vector<IsovalueShare> shares);
-
 } // namespace isotet::jobs

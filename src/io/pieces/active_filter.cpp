@@ -41,7 +41,8 @@ std::optional<ActiveCellFilter> active_filter(const Grid& grid, const std::optio
     DirectOptions direct = active.options;
     direct.extract.point_fields = grid.point_fields;
     direct.extract.source_cells = numbers;
-    isovalues = extracts_none(active) ? std::vector<double>{1} : active.isovalues; // which its zeros do not meet
+    if (extracts_none(active)) isovalues = {1}; // which its zeros do not meet
+    else isovalues.insert(isovalues.end(), active.isovalues.begin(), active.isovalues.end());
     if (isovalues.empty() && active.choose) {
         auto chosen = active.choose(*field);
         if (!chosen) return std::nullopt;

@@ -27,7 +27,7 @@ Result<PointField> active_field(const Grid& grid, const ReadActiveCells& active,
 /// `type`   of all cells; nothing where they have types of their own
 /// `cells`   how many there are
 /// `numbers`   of the cells that are kept are wanted
-/// `isovalues`   get those for which cells are kept
+/// `isovalues`   those of ReadActiveCells::shares; get all for which cells are kept
 std::optional<ActiveCellFilter> active_filter(const Grid& grid, const std::optional<PointField>& known,
                                               std::optional<CellType> type, std::uint64_t cells,
                                               const ReadOptions& options, bool numbers, std::vector<double>& isovalues);

@@ -10,7 +10,6 @@
 #include <isotet/fields.hpp>
 
 #include "base/system/memory.hpp"
-#include "grid/cell_block.hpp"
 #include "grid/cells.hpp"
 #include "grid/values/cell_means.hpp"
 #include "io/pieces/cells_in_order.hpp"
@@ -45,7 +44,6 @@ Result<std::optional<PointField>> means_of_cells(const Piece& piece, const std::
     const Array& points = piece.grid.points;
     const CellPlaces& places = piece.unread->places();
     const auto found = find_unread(piece, name);
-    const Grid bare{points, {}, {}, {}};
     if (!found || !places.all_have_volumes()) return nothing;
     const auto values = found->field->values->read();
     if (!values && values.error().code == ErrorCode::invalid_data) return nothing;
@@ -56,13 +54,11 @@ Result<std::optional<PointField>> means_of_cells(const Piece& piece, const std::
     core::CellMeans means(points);
     bool broken = !means.are_sound();
     if (broken) return nothing;
-    const auto done = each_in_order(*piece.unread, [&](std::uint64_t first, std::uint64_t count, const Array& corners) {
+    const auto done = cells_in_turn(*piece.unread, points).each([&](std::uint64_t first, const Grid& some) {
         if (broken || progress.cancelled()) return;
-        const Grid block = places.are_uniform() ? core::block_of(bare, static_cast<CellType>(places.type(0)), corners)
-                                                : core::block_of(bare, places.types(first, count), corners);
-        const auto cells = core::CellReader::open(block);
+        const auto cells = core::CellReader::open(some);
         const auto is_there = [&](std::uint64_t corner) { return corner < points.tuples(); };
-        broken = !cells || !std::ranges::all_of(corners.as<std::uint64_t>(), is_there);
+        broken = !cells || !std::ranges::all_of(some.cells.connectivity.as<std::uint64_t>(), is_there);
         if (!broken) means.add(*cells, *values, found->scalar, first);
     });
     if (!done) return done.error();

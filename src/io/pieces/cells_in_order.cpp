@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/parallel.hpp"
+#include "grid/cell_block.hpp"
 #include "grid/fixed_corners.hpp"
 
 namespace isotet::io {
@@ -80,6 +81,17 @@ Result<void> each_in_order(const CellSource& cells, const VisitInOrder& visit) {
     });
     if (done) in_order.finish();
     return done;
+}
+
+CellsInTurn cells_in_turn(const CellSource& cells, const Array& points) {
+    const auto each = [&cells, bare = Grid{points, {}, {}, {}}](const auto& take) {
+        const CellPlaces& places = cells.places();
+        return each_in_order(cells, [&](std::uint64_t first, std::uint64_t count, const Array& corners) {
+            take(first, places.are_uniform() ? core::block_of(bare, static_cast<CellType>(places.type(0)), corners)
+                                             : core::block_of(bare, places.types(first, count), corners));
+        });
+    };
+    return {cells.places().cells(), each};
 }
 
 } // namespace isotet::io

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include <isotet/array.hpp>
+#include <isotet/isovalues.hpp>
 #include <isotet/result.hpp>
 
 #include "io/pieces/cell_source.hpp"
@@ -20,5 +21,8 @@ using VisitInOrder = std::function<void(std::uint64_t first, std::uint64_t count
 ///
 /// Errors   as CellSource::each_block()
 Result<void> each_in_order(const CellSource& cells, const VisitInOrder& visit);
+
+/// The same, of a grid with these points.
+CellsInTurn cells_in_turn(const CellSource& cells, const Array& points);
 
 } // namespace isotet::io

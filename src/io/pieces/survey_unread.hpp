@@ -21,7 +21,8 @@ inline ReadOptions to_be_counted(ReadOptions options) {
     return options;
 }
 inline bool are_counted(const ReadOptions& options) {
-    return options.active_cells && options.active_cells->isovalues.empty() && !options.active_cells->choose;
+    const auto& active = options.active_cells;
+    return active && active->isovalues.empty() && active->shares.empty() && !active->choose;
 }
 
 /// Counts cells that go by, and keeps a sample of them.

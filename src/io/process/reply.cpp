@@ -136,7 +136,7 @@ public:
     }
     void describe(ReadResult& result) {
         [[maybe_unused]] const auto& [whole, info, step, cells_in_file, bounds, notes, cell_numbers, chosen_cells,
-                                      field, digests] = result;
+                                      field, share_isovalues, digests] = result;
         [[maybe_unused]] const auto& [points, cells, point_fields, cell_fields, point_numbers, patches] = result.grid;
         describe(result.info);
         out_.number<std::uint64_t>(result.step);
@@ -166,6 +166,7 @@ public:
             out_.text(result.field->name);
             array(result.field->values);
         }
+        out_.list(result.share_isovalues, [&](double isovalue) { out_.number(isovalue); });
         fields(result.digests);
     }
     void describe(Cells& cells) {
@@ -321,6 +322,7 @@ public:
             if (result.field->values.tuples() != grid.points.tuples() || result.field->values.components() != 1)
                 in_.fail();
         }
+        in_.list([&] { result.share_isovalues.push_back(in_.number<double>()); });
         result.digests = fields();
         return result;
     }

@@ -14,7 +14,7 @@
 namespace isotet::io::confined {
 namespace {
 
-constexpr std::uint32_t request_version = 0x6973000d;
+constexpr std::uint32_t request_version = 0x6973000e;
 
 using Names = std::optional<std::vector<std::string>>;
 
@@ -121,6 +121,10 @@ void encode_active(Encoder& out, const std::optional<ReadActiveCells>& active) {
     encode_shape(out, active->shape);
     encode_boundary(out, active->boundary);
     encode_choice(out, levels);
+    out.list(active->shares, [&](const IsovalueShare& share) {
+        out.number(share.of);
+        out.number(share.percent);
+    });
     out.list(active->conditions, [&](const CellCondition& condition) {
         out.text(condition.field);
         out.list(condition.ranges, [&](const std::array<double, 2>& range) {
@@ -145,6 +149,11 @@ std::optional<ReadActiveCells> decode_active(Decoder& in) {
     active.shape = decode_shape(in);
     active.boundary = decode_boundary(in);
     decode_choice(in, active);
+    in.list([&] {
+        IsovalueShare& share = active.shares.emplace_back();
+        share.of = in.enumerator(IsovalueShare::Of::points);
+        share.percent = in.number<double>();
+    });
     in.list([&] {
         CellCondition& condition = active.conditions.emplace_back();
         condition.field = in.text();

@@ -17,7 +17,6 @@
 #include <isotet/jobs/first_choice.hpp>
 #include <isotet/jobs/number_text.hpp>
 #include <isotet/jobs/output_names.hpp>
-#include <isotet/jobs/range_shares.hpp>
 #include <isotet/isovalues.hpp>
 
 #include "base/stopwatch.hpp"
@@ -92,6 +91,7 @@ struct PictureSource::Contents {
     Box bounds = {};                        ///< then; or of `packed`
     std::optional<Surface> boundary = {};   ///< then, where it is drawn
     std::vector<Field> digests = {};        ///< ReadResult::digests
+    std::vector<double> shares = {};        ///< ReadResult::share_isovalues
     std::optional<PackedScene> packed = {}; ///< in place of the grid; `field` has values where they were needed
 };
 
@@ -383,9 +383,8 @@ std::optional<ReadActiveCells> PictureSource::active_cells(const Contents& conte
         active = *wanted;
         active.isovalues = job_.isovalues;
         active.bounds = job_.boundary == 0.0;
-        if (!job_.shares.empty()) active.choose = isovalues_by_values(job_.isovalues, job_.shares);
-        else if (job_.isovalues.empty()) active.choose = levels_of(job_);
-        if (active.choose) active.isovalues.clear();
+        active.shares = job_.shares;
+        if (job_.shares.empty() && job_.isovalues.empty()) active.choose = levels_of(job_);
     } else if (draws_boundary_alone()) {
         active.isovalues = {0}; // without one cells would be counted
     } else {
@@ -403,7 +402,6 @@ std::optional<ReadActiveCells> PictureSource::active_cells(const Contents& conte
 std::optional<ContourOptions> PictureSource::options_with_active_cells() const {
     const bool draws_more = !job_.slices.empty() || draws_volume(job_) || job_.solid || job_.method.draw;
     const bool chosen = job_.isovalues.empty() && job_.shares.empty(); // by the values
-    const bool decided_later = !are_of_points(job_.shares) || !job_.sweep.empty();
     ContourOptions options;
     options.method = job_.method.extract;
     options.expected_isovalues = job_.isovalues;
@@ -411,8 +409,8 @@ std::optional<ContourOptions> PictureSource::options_with_active_cells() const {
     if (chosen) options.expected_isovalues.resize(job_.levels > 0 ? job_.levels : default_levels);
     options.surfaces = options.expected_isovalues.size();
     options.normals = job_.shade_by == ShadeBy::gradient ? Normals::gradient : Normals::none;
-    if (draws_more || decided_later || options.surfaces > ActiveCellFilter::max_isovalues || !job_.stretch.empty() ||
-        may_stretch() || !Contour::can_do_with_active_cells(options))
+    if (draws_more || !job_.sweep.empty() || options.surfaces > ActiveCellFilter::max_isovalues ||
+        !job_.stretch.empty() || may_stretch() || !Contour::can_do_with_active_cells(options))
         return std::nullopt;
     return options;
 }
@@ -428,6 +426,7 @@ Result<void> PictureSource::read_cells(const FieldsToRead& fields, std::size_t s
         contents.grid = std::move(some->grid);
         contents.field = std::move(some->field);
         contents.digests = std::move(some->digests);
+        if (some->cells_in_file) contents.shares = std::move(some->share_isovalues);
         contents.cells = some->cells_in_file.value_or(contents.grid.cells.count());
         contents.streamed = some->cells_in_file.has_value();
         needs_all_cells_ = !contents.streamed; // of the next steps, too, most likely
@@ -454,6 +453,7 @@ Result<void> PictureSource::read_cells(const FieldsToRead& fields, std::size_t s
         if (!whole) return whole.error();
         contents.grid = std::move(whole->grid);
         contents.digests.clear();
+        contents.shares.clear();
         return {};
     }
     Result<Grid> grid = steps.take(step, caller.run());
@@ -728,7 +728,8 @@ Result<void> PictureSource::choose_isovalues(const Contents& contents, DrawInput
     }
     input.isovalues = job_.isovalues;
     if (job_.shares.empty()) return {};
-    const auto found = isovalues_at(contents.grid, *contents.field, job_.shares, caller.run());
+    const auto found = contents.shares.empty() ? isovalues_at(contents.grid, *contents.field, job_.shares, caller.run())
+                                               : contents.shares;
     if (!found) return found.error();
     input.isovalues.insert(input.isovalues.end(), found->begin(), found->end());
     return {};

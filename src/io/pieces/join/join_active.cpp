@@ -20,6 +20,7 @@
 #include "io/pieces/active_pass.hpp"
 #include "io/pieces/boundary_pass.hpp"
 #include "io/pieces/cell_field_means.hpp"
+#include "io/pieces/cells_in_order.hpp"
 #include "io/pieces/join/chosen_cells.hpp"
 #include "io/pieces/join/field_digests.hpp"
 #include "io/pieces/join/joined_fields.hpp"
@@ -114,7 +115,8 @@ public:
     Result<std::optional<ReadResult>> join() {
         if (!are_unread()) return std::optional<ReadResult>();
         if (!counted_ && all_.size() == 1 && all_.pieces[0].left_out.empty()) return take_one();
-        if (!counted_ && options_.active_cells->averages) return std::optional<ReadResult>(); // of several pieces
+        if (!counted_ && (options_.active_cells->averages || has_shares_of_volume()))
+            return std::optional<ReadResult>(); // of several pieces
         if (auto found = find_uses_with_ghosts(); !found) return found.error();
         std::optional<ReadResult> result;
         for (bool again = true; again && !needs_all_ && !freed_;) {
@@ -162,7 +164,7 @@ private:
     Result<bool> find_chosen() {
         if (!chooses() || chosen_) return true;
         const ReadActiveCells& asked = *options_.active_cells;
-        if (asked.bounds || asked.boundary || asked.choose) return false;
+        if (asked.bounds || asked.boundary || asked.choose || !asked.shares.empty()) return false;
         auto found = ChosenCells::find(all_, asked.conditions, first_cells(), type_);
         if (!found) return found.error();
         if (*found) chosen_.emplace(**std::move(found));
@@ -172,6 +174,7 @@ private:
     /// What the cells go by for; null where all are needed.
     std::unique_ptr<CellTaker> make_taker(const Grid& grid) {
         if (counted_) return CellCounter::make(grid.points, type_, kept_cells());
+        isovalues_ = share_isovalues_;
         auto filter = active_filter(grid, averaged_, type_, kept_cells(), options_, wants_numbers(), isovalues_);
         if (!filter) return nullptr;
         auto taker = std::make_unique<ActiveTaker>(*std::move(filter));
@@ -224,6 +227,8 @@ private:
         if (const auto averaged = average(piece); !averaged) return averaged.error();
         else if (!*averaged) return std::optional<ReadResult>();
         result.field = averaged_;
+        if (const auto found = find_shares(result.grid, &piece); !found) return found.error();
+        else if (!*found) return std::optional<ReadResult>();
         auto taker = make_taker(result.grid);
         if (!taker) return std::optional<ReadResult>();
         auto& active = static_cast<ActiveTaker&>(*taker);
@@ -234,10 +239,10 @@ private:
         });
         if (options_.active_cells->bounds) used_.assign(piece.grid.points.tuples(), PointUse::none);
         std::optional<BoundaryPass> boundary;
-        StreamedBoundary of_averages; // without hanging points, which would have values of the larger cells, too
-        if (options_.active_cells->boundary || averaged_) {
+        StreamedBoundary of_all; // without hanging points, on which averages and volumes depend
+        if (options_.active_cells->boundary || averaged_ || has_shares_of_volume()) {
             if (auto enough = BoundaryPass::check_memory(piece.grid.points); !enough) return enough.error();
-            boundary.emplace(options_.active_cells->boundary ? *options_.active_cells->boundary : of_averages,
+            boundary.emplace(options_.active_cells->boundary ? *options_.active_cells->boundary : of_all,
                              piece.grid.points, *piece.unread);
         }
         bool is_first = true;
@@ -281,6 +286,28 @@ private:
         return averaged_.has_value();
     }
 
+    bool has_shares_of_volume() const {
+        return std::ranges::any_of(options_.active_cells->shares,
+                                   [](const IsovalueShare& share) { return share.of == IsovalueShare::Of::volume; });
+    }
+
+    /// Finds the isovalues of shares, where there are some. False where all cells are needed.
+    /// `alone`   the only piece, or null
+    Result<bool> find_shares(const Grid& grid, const Piece* alone) {
+        const ReadActiveCells& asked = *options_.active_cells;
+        share_isovalues_.clear();
+        if (counted_ || asked.shares.empty()) return true;
+        if (has_shares_of_volume() && (!alone || may_coincide(grid.points, alone->cell_count()))) return false;
+        const auto field = active_field(grid, asked, averaged_);
+        if (!field) return false;
+        const auto all = alone ? cells_in_turn(*alone->unread, grid.points) : CellsInTurn();
+        auto found = isovalues_at(grid.points, all, *field, asked.shares, {.progress = {nullptr, progress_.cancel}});
+        if (!found && (found.error().code == ErrorCode::cancelled || found.error().code == ErrorCode::out_of_memory))
+            return found.error();
+        if (found) share_isovalues_ = *std::move(found);
+        return static_cast<bool>(found); // reading all cells tells what is wrong
+    }
+
     /// Hands whole cells of a piece alone to a taker.
     Result<void> pass_whole(const CellSource& cells, CellTaker& taker) {
         const CellPlaces& places = cells.places();
@@ -305,6 +332,7 @@ private:
         if (!cells && cells.error().code != ErrorCode::invalid_data) return cells.error();
         if (!cells || (chosen_ && cells->count() == 0)) return std::optional<ReadResult>();
         result.grid.cells = *std::move(cells);
+        result.share_isovalues = share_isovalues_;
         const Result<bool> hang = may_have_hanging_points(result.grid, pass_again);
         if (!hang && hang.error().code != ErrorCode::invalid_data) return hang.error();
         if (!hang || *hang) return std::optional<ReadResult>();
@@ -477,7 +505,9 @@ private:
 
         if (auto done = leave_chosen(*joined, result.grid, again); !done) return done.error();
         if (needs_all_ || again) return std::optional<ReadResult>();
-        auto taker = make_taker(result.grid);
+        if (const auto found = find_shares(result.grid, nullptr); !found) return found.error();
+        else if (!*found) needs_all_ = true;
+        auto taker = needs_all_ ? nullptr : make_taker(result.grid);
         if (!taker) needs_all_ = true;
         if (needs_all_) return std::optional<ReadResult>();
         if (options_.active_cells->bounds) used_.assign(joined->numbers.count, PointUse::none);
@@ -734,8 +764,9 @@ private:
     std::optional<CellType> type_;      ///< of all
     std::vector<std::uint64_t> points_; ///< of each piece
     std::vector<std::vector<std::uint64_t>> kept_before_;
-    std::optional<ChosenCells> chosen_;  ///< where some are
-    std::vector<double> isovalues_;      ///< for which cells are kept
+    std::optional<ChosenCells> chosen_; ///< where some are
+    std::vector<double> isovalues_;     ///< for which cells are kept
+    std::vector<double> share_isovalues_;
     std::optional<PointField> averaged_; ///< that cells are active of
     std::vector<PointUse> used_;         ///< of the joined points, where their bounds are asked for
     std::vector<std::uint64_t> dropped_; ///< numbers of cells that earlier pieces have
