@@ -114,7 +114,7 @@ struct ReadActiveCells {
     /// integers they keep it. All cells are read where some have no volume, or a range has no value; not with `bounds`,
     /// `boundary`, `shares` and `choose`.
     std::vector<CellCondition> conditions = {};
-    bool averages = false; ///< `field` is one of cells: ReadResult::field; only of a file that is one piece
+    bool averages = false; ///< `field` is one of cells, or an expression of some: ReadResult::field
     bool digests = false;  ///< ReadResult::digests are wanted; all cells are read where some have no volume
 };
 

@@ -168,8 +168,8 @@ Result<CarriedFields> choose_carried(const GridSource& source, const std::vector
 }
 
 bool is_averaged_while_read(const FoundField& field, const FieldChoice& choice) {
-    return field.point.empty() && field.cell.size() == 1 && !field.is_expression && !field.neighbours &&
-           !choice.own_centres;
+    const bool is_one = field.cell.size() == 1 || (field.is_expression && !field.cell.empty());
+    return field.point.empty() && is_one && !field.neighbours && !choice.own_centres;
 }
 
 Result<PointField> find_chosen(const Grid& grid, const std::string& name, const FieldChoice& choice, Caller& caller) {

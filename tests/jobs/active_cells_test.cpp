@@ -148,7 +148,7 @@ TEST(ActiveCellsOfFiles, AreOfCellFieldsThatAreAveraged) {
     const test::TemporaryFolder folder;
     for (const char* shape : some_of<const char*>({"mixed", "kuhn", "shuffled", "hex", "octree"}))
         for (const char* ending : {".vtu", ".vtk"})
-            for (const char* field : {"part", "region", "vector:y", "vector:mag"}) {
+            for (const char* field : {"part", "region", "vector:y", "vector:mag", "part+region/4"}) {
                 SCOPED_TRACE(testing::Message() << shape << ending << " " << field);
                 const std::string file = folder.file("grid") + ending;
                 Grid grid = made(shape, 12);

@@ -387,6 +387,44 @@ TEST(ActiveCellsOfPieces, HaveTheirValuesOfCellFields) {
             }
 }
 
+/// Adds cell fields, in the last piece perhaps of another type.
+Change cell_fields_in(std::size_t pieces, bool alike) {
+    return [=](std::size_t piece, Grid& grid) {
+        const std::size_t cells = grid.cells.count();
+        std::vector<float> part(cells);
+        std::vector<std::int32_t> region(cells);
+        for (std::size_t i = 0; i < cells; ++i) {
+            part[i] = i % 41 == 0 ? NAN : static_cast<float>(i * 7919 % 100) / 100;
+            region[i] = static_cast<std::int32_t>(piece + 2 * i / cells);
+        }
+        grid.cell_fields.push_back({"part", Array::own(std::move(part))});
+        const bool is_other = !alike && piece + 1 == pieces;
+        grid.cell_fields.push_back(
+            {"region", is_other ? widened(Array::own(std::move(region))) : Array::own(std::move(region))});
+    };
+}
+
+TEST(ActiveCellsOfPieces, AreOfCellFieldsThatAreAveraged) {
+    const test::TemporaryFolder folder;
+    for (const char* shape : some_of<const char*>({"mixed", "shuffled", "hex"}))
+        for (const char* field : {"part", "region", "part+region/4"})
+            for (const bool alike : {true, false})
+                for (const Cut& cut : {Cut{}, Cut{.ids = true}, Cut{.more = 7, .marked = true}, Cut{.more = 9}}) {
+                    SCOPED_TRACE(testing::Message() << shape << " " << field << alike << cut.ids << cut.more);
+                    Cut of_shape = cut;
+                    of_shape.shape = shape;
+                    const std::string file = write_pieces(folder, of_shape, cell_fields_in(of_shape.pieces, alike));
+                    ReadOptions options = reading({0.52}, field);
+                    options.cell_fields = {"part", "region"};
+                    options.active_cells->averages = true;
+                    const ReadResult some = read(file, options).value();
+                    const bool overlap = cut.more > 0 && !cut.marked;
+                    EXPECT_EQ(some.cells_in_file.has_value(), alike && !overlap);
+                    expect_same_surface(folder, file, {.field = field, .isovalues = {0.52, 1.1}});
+                    expect_same_surface(folder, as_blocks(folder, 5), {.field = field, .isovalues = {0.52}});
+                }
+}
+
 TEST(ActiveCellsOfPieces, AreNotCountedBesideFlatOnesWithValues) {
     const test::TemporaryFolder folder;
     const auto piece = [](const std::string& cells, const std::string& offsets, const std::string& types,

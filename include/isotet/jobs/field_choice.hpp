@@ -34,7 +34,7 @@ struct FoundField {
 /// Errors   invalid_argument: no such field (what there is, nearest first), or no name and not just one field
 Result<FoundField> choose_field(const GridSource& source, const FieldChoice& choice);
 
-/// Whether it is a field of cells, or a component of one, which can be averaged while they go by
+/// Whether it is a field of cells, a component of one, or an expression of some, which can be averaged while they go by
 /// (ReadActiveCells::averages).
 bool is_averaged_while_read(const FoundField& field, const FieldChoice& choice);
 

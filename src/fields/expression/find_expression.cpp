@@ -42,11 +42,13 @@ Result<Array> average_components(const Grid& grid, const Field& field, bool by_v
 
 class Finder {
 public:
-    Finder(const Grid& grid, const ExpressionTree& tree, const FindFieldOptions& options, const Progress& progress)
-        : grid_(grid), tree_(tree), options_(options), progress_(progress) {}
+    /// `cells`   of the grid
+    Finder(const Grid& grid, std::size_t cells, const ExpressionTree& tree, const FindFieldOptions& options,
+           const Progress& progress)
+        : grid_(grid), cells_(cells), tree_(tree), options_(options), progress_(progress) {}
 
     Result<PointField> find() {
-        if (is_of_cells()) return find_in_cells();
+        if (is_of_cells()) return average_cells();
         const ExpressionSource source{grid_.points.tuples(),
                                       [&](const ExpressionNode& node) { return values_at_points(node); },
                                       [&](const Array& values) { return point_gradients(grid_, values, progress_); }};
@@ -55,11 +57,22 @@ public:
         return PointField{tree_.text, *std::move(values), false, {}};
     }
 
+    /// Nothing where it is not one of cells.
+    Result<std::optional<Field>> find_in_cells() {
+        if (!is_of_cells()) return std::optional<Field>();
+        auto values = evaluate_in_cells();
+        if (!values) return values.error();
+        return std::optional(Field{tree_.text, *std::move(values)});
+    }
+
 private:
-    Result<PointField> find_in_cells() {
-        const ExpressionSource source{
-            grid_.cells.count(), [&](const ExpressionNode& node) { return values_in_cells(node); }, {}};
-        auto values = evaluate_expression(tree_, source, progress_);
+    Result<Array> evaluate_in_cells() {
+        const ExpressionSource source{cells_, [&](const ExpressionNode& node) { return values_in_cells(node); }, {}};
+        return evaluate_expression(tree_, source, progress_);
+    }
+
+    Result<PointField> average_cells() {
+        auto values = evaluate_in_cells();
         if (!values) return values.error();
         auto averaged = average_field(grid_, {tree_.text, *values}, {}, options_.for_pieces, progress_);
         if (!averaged) return averaged.error();
@@ -86,7 +99,7 @@ private:
     Result<Array> values_in_cells(const ExpressionNode& node) const {
         const auto field = find_or_gather(grid_.cell_fields, node.field);
         if (!field) return field.error();
-        if (auto fits = check_length(**field, "cell", grid_.cells.count()); !fits) return fits.error();
+        if (auto fits = check_length(**field, "cell", cells_); !fits) return fits.error();
         return (*field)->values;
     }
 
@@ -111,6 +124,7 @@ private:
     }
 
     const Grid& grid_;
+    std::size_t cells_;
     const ExpressionTree& tree_;
     const FindFieldOptions& options_;
     const Progress& progress_;
@@ -122,7 +136,17 @@ Result<PointField> find_expression(const Grid& grid, std::string_view text, cons
                                    const FindFieldOptions& options, const Progress& progress) {
     const auto tree = parse_expression(text, names);
     if (!tree) return tree.error();
-    return Finder(grid, *tree, options, progress).find();
+    return Finder(grid, grid.cells.count(), *tree, options, progress).find();
+}
+
+Result<std::optional<Field>> expression_in_cells(const std::vector<Field>& cell_fields, std::size_t cells,
+                                                 std::string_view text, const Progress& progress) {
+    std::vector<std::string> names;
+    for (const Field& field : cell_fields) names.push_back(field.name);
+    const auto tree = parse_expression(text, names);
+    if (!tree) return tree.error();
+    const Grid grid{{}, {}, {}, cell_fields};
+    return Finder(grid, cells, *tree, {}, progress).find_in_cells();
 }
 
 } // namespace isotet::core

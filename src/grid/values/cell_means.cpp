@@ -47,8 +47,10 @@ CellMeans::CellMeans(const Array& points)
 void CellMeans::add(const CellReader& cells, const Array& values, Scalar scalar, std::size_t first) {
     const auto each_share = [&](std::size_t begin, std::size_t end, const auto& visit) { // of cells
         for (std::size_t cell = begin; cell < end; ++cell) {
-            const double value = scalar_at(values, scalar, first + cell), volume = six_volumes_of(cells, points_, cell);
-            if (volume < 0 || std::isnan(value)) continue;
+            const double value = scalar_at(values, scalar, first + cell);
+            if (std::isnan(value)) continue; // its points may be missing
+            const double volume = six_volumes_of(cells, points_, cell);
+            if (volume < 0) continue;
             const std::uint64_t from = cells.first(cell), to = from + cells.corners(cell);
             for (std::uint64_t i = from; i < to; ++i) {
                 const std::uint64_t point = cells.corner(i);

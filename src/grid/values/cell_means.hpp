@@ -31,7 +31,8 @@ public:
     /// Whether all points may be contoured.
     bool are_sound() const { return sound_; }
 
-    /// The next cells: those of a grid with the same points, which are checked. `values` from tuple `first` on are theirs.
+    /// The next cells: those of a grid with the same points, which are checked; of cells without a value
+    /// none need be there. `values` from tuple `first` on are theirs.
     void add(const CellReader& cells, const Array& values, Scalar scalar, std::size_t first);
 
     /// The values of average_to_points(), when all cells were added.

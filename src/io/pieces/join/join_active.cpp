@@ -115,8 +115,7 @@ public:
     Result<std::optional<ReadResult>> join() {
         if (!are_unread()) return std::optional<ReadResult>();
         if (!counted_ && all_.size() == 1 && all_.pieces[0].left_out.empty()) return take_one();
-        if (!counted_ && (options_.active_cells->averages || has_shares_of_volume()))
-            return std::optional<ReadResult>(); // of several pieces
+        if (!counted_ && has_shares_of_volume()) return std::optional<ReadResult>(); // of several pieces
         if (auto found = find_uses_with_ghosts(); !found) return found.error();
         std::optional<ReadResult> result;
         for (bool again = true; again && !needs_all_ && !freed_;) {
@@ -224,7 +223,7 @@ private:
             if (auto passed = pass_whole(*piece.unread, *chosen_); !passed) return passed.error();
             if (!chosen_->leave_values(result.grid)) return std::optional<ReadResult>();
         }
-        if (const auto averaged = average(piece); !averaged) return averaged.error();
+        if (const auto averaged = average(result.grid.points, nullptr); !averaged) return averaged.error();
         else if (!*averaged) return std::optional<ReadResult>();
         result.field = averaged_;
         if (const auto found = find_shares(result.grid, &piece); !found) return found.error();
@@ -239,11 +238,9 @@ private:
         });
         if (options_.active_cells->bounds) used_.assign(piece.grid.points.tuples(), PointUse::none);
         std::optional<BoundaryPass> boundary;
-        StreamedBoundary of_all; // without hanging points, on which averages and volumes depend
-        if (options_.active_cells->boundary || averaged_ || has_shares_of_volume()) {
+        if (StreamedBoundary* const found = boundary_to_find()) {
             if (auto enough = BoundaryPass::check_memory(piece.grid.points); !enough) return enough.error();
-            boundary.emplace(options_.active_cells->boundary ? *options_.active_cells->boundary : of_all,
-                             piece.grid.points, *piece.unread);
+            boundary.emplace(*found, piece.grid.points, *piece.unread);
         }
         bool is_first = true;
         do {
@@ -277,13 +274,26 @@ private:
     }
 
     /// Averages the field, where it is one of cells. False where all are needed.
-    Result<bool> average(const Piece& piece) {
-        if (!options_.active_cells->averages) return true;
+    /// `numbers`   of the points of several pieces
+    Result<bool> average(const Array& points, const PointNumbers* numbers) {
+        if (counted_ || !options_.active_cells->averages) return true;
         if (chooses()) return false;
-        auto means = means_of_cells(piece, options_.active_cells->field, progress_);
+        std::vector<NumberedPiece> pieces;
+        for (const std::size_t p : all_.order_of_file())
+            if (all_.pieces[p].cell_count() > 0)
+                pieces.push_back(
+                    {&all_.pieces[p], numbers ? &numbers->pieces[p] : nullptr, numbers ? points_[p] : points.tuples()});
+        auto means = means_of_cells(pieces, points, options_.active_cells->field, progress_);
         if (!means) return means.error();
         averaged_ = *std::move(means);
         return averaged_.has_value();
+    }
+
+    /// The one that is asked for, or one that tells that no points hang, on which averages and volumes depend; else null.
+    StreamedBoundary* boundary_to_find() {
+        if (counted_) return nullptr;
+        if (options_.active_cells->boundary) return options_.active_cells->boundary.get();
+        return averaged_ || has_shares_of_volume() ? &boundary_ : nullptr;
     }
 
     bool has_shares_of_volume() const {
@@ -505,6 +515,10 @@ private:
 
         if (auto done = leave_chosen(*joined, result.grid, again); !done) return done.error();
         if (needs_all_ || again) return std::optional<ReadResult>();
+        if (const auto averaged = average(result.grid.points, &joined->numbers); !averaged) return averaged.error();
+        else if (!*averaged) needs_all_ = true;
+        if (needs_all_) return std::optional<ReadResult>();
+        result.field = averaged_;
         if (const auto found = find_shares(result.grid, nullptr); !found) return found.error();
         else if (!*found) needs_all_ = true;
         auto taker = needs_all_ ? nullptr : make_taker(result.grid);
@@ -513,7 +527,7 @@ private:
         if (options_.active_cells->bounds) used_.assign(joined->numbers.count, PointUse::none);
         std::optional<core::BoundarySearch> search;
         std::optional<BoundaryTaker> for_boundary;
-        if (options_.active_cells->boundary) {
+        if (boundary_to_find()) {
             if (auto enough = BoundaryPass::check_memory(result.grid.points); !enough) return enough.error();
             begin_search(search, result.grid.points);
             for_boundary.emplace(*search, type_, BoundaryTaker::Round::add);
@@ -534,7 +548,7 @@ private:
         };
         dropped_.clear();
         if (!marks->empty()) { // cells were kept that may be those of other pieces
-            if (counted_ || chosen_) needs_all_ = true;
+            if (counted_ || chosen_ || averaged_) needs_all_ = true;
             if (needs_all_) return std::optional<ReadResult>();
             taker.reset(); // its memory is needed again
             taker = make_taker(result.grid);
@@ -585,9 +599,9 @@ private:
         return found;
     }
 
-    void begin_search(std::optional<core::BoundarySearch>& search, const Array& points) const {
+    void begin_search(std::optional<core::BoundarySearch>& search, const Array& points) {
         search.emplace(points);
-        if (options_.active_cells->boundary->wants_cells) search->keep_numbers();
+        if (boundary_to_find()->wants_cells) search->keep_numbers();
     }
 
     /// Finds the chosen cells, and leaves values at their points. Sets needs_all_ where all are needed.
@@ -612,7 +626,7 @@ private:
 
     /// False where all cells are needed.
     Result<bool> find_boundary(const Array& points, core::BoundarySearch& search) {
-        StreamedBoundary& boundary = *options_.active_cells->boundary;
+        StreamedBoundary& boundary = *boundary_to_find();
         boundary.print = {};
         return take_boundary(std::move(search), points, boundary, progress_);
     }
@@ -767,6 +781,7 @@ private:
     std::optional<ChosenCells> chosen_; ///< where some are
     std::vector<double> isovalues_;     ///< for which cells are kept
     std::vector<double> share_isovalues_;
+    StreamedBoundary boundary_;          ///< where none is asked for
     std::optional<PointField> averaged_; ///< that cells are active of
     std::vector<PointUse> used_;         ///< of the joined points, where their bounds are asked for
     std::vector<std::uint64_t> dropped_; ///< numbers of cells that earlier pieces have
