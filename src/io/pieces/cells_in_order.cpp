@@ -43,9 +43,11 @@ private:
     static constexpr std::size_t corners_at_once = std::size_t{1} << 20;
 
     static void append(const Array& corners, std::vector<std::uint64_t>& to) {
-        corners.visit([&](auto values) {
-            for (const auto corner : values)
-                if constexpr (std::is_integral_v<decltype(corner)>) to.push_back(core::widened(corner));
+        const std::size_t before = to.size();
+        to.resize(before + corners.size());
+        corners.visit([&]<class Index>(std::span<const Index> values) {
+            if constexpr (std::is_integral_v<Index>)
+                for (std::size_t i = 0; i < values.size(); ++i) to[before + i] = core::widened(values[i]);
         });
     }
 
