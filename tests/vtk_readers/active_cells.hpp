@@ -15,6 +15,7 @@
 #include <isotet/fields.hpp>
 #include <isotet/boundary.hpp>
 #include <isotet/extract.hpp>
+#include <isotet/isovalues.hpp>
 #include <isotet/read.hpp>
 
 #include "grid/cells.hpp"
@@ -69,6 +70,21 @@ inline void expect_cells_at_boundary(const std::string& file, const ReadResult& 
     }
 }
 
+/// Isovalues of shares are those of all cells, where the file is one piece for those of the volume.
+inline void expect_shares(const std::string& file, const ReadResult& all, const std::string& field_name,
+                          ReadOptions options) {
+    const auto field = find_field(all.grid, field_name).value();
+    for (const auto of : {IsovalueShare::Of::points, IsovalueShare::Of::volume}) {
+        options.active_cells = ReadActiveCells{field_name, {}, {}};
+        options.active_cells->shares = {{of, 40}, {of, 70}};
+        const auto some = read(file, options);
+        ASSERT_TRUE(some) << some.error().message;
+        if (!some->cells_in_file && of == IsovalueShare::Of::volume) continue;
+        EXPECT_TRUE(some->cells_in_file);
+        EXPECT_EQ(some->share_isovalues, isovalues_at(all.grid, field, options.active_cells->shares).value());
+    }
+}
+
 /// Points, their bounds, the boundary, fields, notes and surfaces with cell fields of the file with active cells are those with all.
 inline void expect_same_of_active_cells(const std::string& file, const std::string& field_name,
                                         const std::vector<double>& isovalues, ReadOptions options = {}) {
@@ -106,6 +122,7 @@ inline void expect_same_of_active_cells(const std::string& file, const std::stri
         EXPECT_TRUE(are_same(boundary->surface.edge_ends, walls.edge_ends));
     }
     expect_cells_at_boundary(file, *all, options);
+    expect_shares(file, *all, field_name, options);
     options.active_cells->boundary.reset();
     options.active_cells->options.extract.normals = Normals::gradient;
     const auto around = read(file, options);

@@ -39,6 +39,7 @@ GridReply made_reply() {
     reply.boundary.surface.edge_ends = Array::own(std::vector<std::int64_t>{0, 0, 1, 1, 2, 2}, 2);
     reply.boundary.cells.cells.connectivity = Array::own(std::vector<std::int32_t>{3, 2, 1, 0});
     reply.boundary.cells.cell_fields = {{"r", Array::own(std::vector<double>{8})}};
+    reply.read.share_isovalues = {0.25, 0.5};
     reply.read.digests = {{"r", Array::own(std::vector<double>{8, 9})}};
     return reply;
 }
@@ -110,6 +111,7 @@ TEST(Reply, ComesBackAsItWasWritten) {
     EXPECT_EQ(grid->boundary.surface.positions.at(2, 1), 1);
     EXPECT_EQ(grid->boundary.cells.cells.connectivity.at(0), 3);
     EXPECT_EQ(grid->boundary.cells.cell_fields.at(0).values.at(0), 8);
+    EXPECT_EQ(grid->read.share_isovalues, (std::vector<double>{0.25, 0.5}));
     EXPECT_EQ(grid->read.digests.at(0).values.at(1), 9);
     const ReadResult* const result = &grid->read;
     EXPECT_EQ(result->info.fields.at(0).name, "p");
