@@ -148,7 +148,7 @@ TEST(ActiveCellsOfFiles, AreOfCellFieldsThatAreAveraged) {
     const test::TemporaryFolder folder;
     for (const char* shape : some_of<const char*>({"mixed", "kuhn", "shuffled", "hex", "octree"}))
         for (const char* ending : {".vtu", ".vtk"})
-            for (const char* field : {"part", "region", "vector:y", "vector:mag", "part+region/4"}) {
+            for (const char* field : {"part", "region", "vector:y", "vector:mag", "tensor:yy", "part+region/4"}) {
                 SCOPED_TRACE(testing::Message() << shape << ending << " " << field);
                 const std::string file = folder.file("grid") + ending;
                 Grid grid = made(shape, 12);
@@ -158,6 +158,9 @@ TEST(ActiveCellsOfFiles, AreOfCellFieldsThatAreAveraged) {
                 for (std::size_t i = 0; i < vectors.size(); ++i)
                     vectors[i] = i % 31 == 0 ? NAN : static_cast<double>(i * i % 1000) / 500;
                 grid.cell_fields.push_back({"vector", Array::own(std::move(vectors), 3)});
+                std::vector<double> tensors(6 * cells);
+                for (std::size_t i = 0; i < tensors.size(); ++i) tensors[i] = static_cast<double>(i * i % 997) / 500;
+                grid.cell_fields.push_back({"tensor", Array::own(std::move(tensors), 6)});
                 ASSERT_TRUE(write_grid(grid, file));
                 ExtractJob job = active_job(file, folder.file("active.vtp"));
                 job.field.name = field;
