@@ -107,6 +107,22 @@ std::optional<std::string> one_component(std::string_view group, std::string_vie
     return std::nullopt;
 }
 
+/// "SIEQ:VMIS", "SIEQ:TRESCA" and so on for "SIEQ", "SIEQ:1" or "SIEQ:mag": readers make such fields of an array whose
+/// components have names, which is no tensor.
+std::optional<FieldName> match_named_components(std::string_view array, std::optional<std::string_view> component,
+                                                const std::vector<std::string>& names) {
+    FieldName match{std::string(array), std::nullopt, {}};
+    for (const std::string& name : names)
+        if (name.size() > array.size() + 1 && name.starts_with(array) && name[array.size()] == ':')
+            match.parts.push_back(name);
+    if (array.empty() || match.parts.size() < 2) return std::nullopt;
+    if (!component) return match;
+    match.component = std::string(*component);
+    const auto scalar = core::parse_scalar(*component);
+    const bool is_there = scalar && !scalar->of_tensor && scalar->place_in(match.parts.size());
+    return is_there ? std::optional(match) : std::nullopt;
+}
+
 /// Copies scalar arrays of the same length into the components of one.
 template <class Scalar>
 Array interleaved(const std::vector<Array>& parts) {
@@ -197,7 +213,9 @@ std::optional<FieldName> match_component_group(std::string_view name, const std:
         if (const auto place = scalar->place_in(group.parts.size()))
             return FieldName{group.parts[*place], std::nullopt};
     }
+    if (auto named = match_named_components(name, std::nullopt, names)) return named;
     if (colon == std::string_view::npos) return std::nullopt;
+    if (auto named = match_named_components(name.substr(0, colon), name.substr(colon + 1), names)) return named;
     auto alone = one_component(name.substr(0, colon), name.substr(colon + 1), names);
     return alone ? std::optional(FieldName{*std::move(alone), std::nullopt}) : std::nullopt;
 }

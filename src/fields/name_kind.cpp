@@ -82,7 +82,7 @@ const std::vector<Quantity>& quantities() {
         {{"p", "P", "p_rgh", "PRES", "PRESSURE"}, {"pres", "press", "pressure", "head"}, {"pressure"}},
         {{"Vm", "V"}, {"voltage", "potential", "vm"}, {"potential", "electricfield", "magneticfield"}},
         {{"E", "B", "H", "D"}, {"efield", "bfield", "hfield"}, {}, 3},
-        {{}, {"mises", "vonmises"}, {"vonmises", "equivalentstress"}},
+        {{}, {"mises", "vonmises", "vmis"}, {"vonmises", "equivalentstress"}},
         {{"u", "U", "DISP"}, {}, {}, 3},
         {{}, {"disp", "displ", "displacement", "displacements"}, {"displacement"}},
         {{"S"}, {"stress", "stresses", "sigma"}, {"stress"}},

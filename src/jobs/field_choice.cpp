@@ -36,6 +36,12 @@ std::vector<std::string> arrays_of(const std::string& name, const std::vector<st
     return match->parts.empty() ? std::vector<std::string>{match->field} : match->parts;
 }
 
+/// The fields that a name stands for that no field has; none where it is that of one component.
+std::vector<std::string> parts_of(const std::string& name, const std::vector<std::string>& names) {
+    const auto match = match_field_name(name, names);
+    return match && !match->component ? match->parts : std::vector<std::string>();
+}
+
 /// The fields to read for an expression.
 Result<FoundField> find_expression(const GridSource& source, const std::string& text) {
     const auto arrays = arrays_of_field(text, source.names(Association::point), source.names(Association::cell));
@@ -62,6 +68,7 @@ Result<void> add_carried(const GridSource& source, const std::string& name, Carr
     else if (const auto arrays = arrays_of(name, point); !arrays.empty())
         carried.components.push_back({name, arrays, {}});
     else if (is_coordinate(name)) carried.components.push_back({name, {}, {}});
+    else if (const auto parts = parts_of(name, cell); !parts.empty()) add_names(carried.cell, parts);
     else if (match_field_name(name, cell))
         return refusal("`with` got '{}', a component of a cell field, but cell fields are carried whole", name);
     else if (looks_like_expression(name) && needs_of_expression(name, all_names(source)))

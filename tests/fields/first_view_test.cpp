@@ -64,6 +64,14 @@ TEST(FirstView, PrefersNamesThatPeopleContour) {
     EXPECT_EQ(view_of(grid).field, "alpha.water");
 }
 
+TEST(FirstView, TakesVonMisesStressAsCodeAsterCallsIt) {
+    Grid grid = cube();
+    for (const char* component : {"PRIN_1", "TRESCA", "VMIS", "TRIAX"})
+        grid.point_fields.push_back({std::string("RESU____SIEQ_NOEU:") + component, of_points(grid, smooth)});
+    EXPECT_EQ(view_of(grid).field, "RESU____SIEQ_NOEU:VMIS");
+    EXPECT_EQ(view_of(grid).reason, FirstReason::name);
+}
+
 TEST(FirstView, TakesTensorsWhereNothingElseVaries) {
     Grid grid = cube();
     const auto scaled = [](double by) {

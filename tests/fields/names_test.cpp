@@ -31,6 +31,29 @@ TEST(MatchFieldName, KnowsAxesMagnitudeAndNumbersAsComponents) {
         EXPECT_FALSE(match_field_name("v:" + component, {"v"})) << component;
 }
 
+TEST(MatchFieldName, KnowsComponentsAsSolversCallThem) {
+    for (const std::string component : {"DX", "UY", "FLUZ", "D1", "V12", "SXX", "SIXY", "S13", "EPZZ"})
+        EXPECT_EQ(match_field_name("v:" + component, {"v"})->component, component);
+    for (const std::string component : {"MAX", "dx", "D", "D0", "D-1", "PRIN_1", "LONGX", "VMIS", "1D"})
+        EXPECT_FALSE(match_field_name("v:" + component, {"v"})) << component;
+}
+
+TEST(MatchFieldName, TakesNamesOfComponentsForAnArray) {
+    const Names names{"S:VMIS", "S:TRESCA", "S:P1", "T", "a:b"};
+    for (const char* component : {"0", "2", "mag", "y"}) {
+        const auto match = match_field_name(std::string("S:") + component, names);
+        ASSERT_TRUE(match) << component;
+        EXPECT_EQ(match->component, component);
+        EXPECT_EQ(match->parts, (Names{"S:VMIS", "S:TRESCA", "S:P1"}));
+    }
+    EXPECT_EQ(match_field_name("S", names)->parts.size(), 3u);
+    EXPECT_EQ(match_field_name("S:VMIS", names)->parts, Names{}) << "fields come first";
+    for (const char* name : {"S:3", "S:xy", "a", "a:0", ":0", ""}) EXPECT_FALSE(match_field_name(name, names)) << name;
+    const Names six{"C:OPEN", "C:SLIP1", "C:SLIP2", "C:PRESS", "C:SHEAR1", "C:SHEAR2"};
+    EXPECT_TRUE(match_field_name("C:3", six));
+    EXPECT_FALSE(match_field_name("C:xy", six)) << "no tensor";
+}
+
 TEST(MatchFieldName, FindsNothingForOtherNames) {
     EXPECT_FALSE(match_field_name("w", {"v"}));
     EXPECT_FALSE(match_field_name("w:x", {"v"}));

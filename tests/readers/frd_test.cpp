@@ -196,6 +196,45 @@ TEST(ReadFrd, GivesTheFieldsOfAStepWithoutMagnitudes) {
     }
 }
 
+TEST(ReadFrd, GivesComponentsWithNamesAsFields) {
+    for (const FrdForm form : forms) {
+        SCOPED_TRACE(static_cast<char>(form));
+        FrdText file(form);
+        file.nodes({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}).begin_elements(1).element(1, 3, numbers(4)).end();
+        const auto add = [&](const std::string& name, const std::vector<std::string>& components) {
+            file.begin_values(1, 1, 4, name, components);
+            for (int i = 0; i < 4; ++i) {
+                std::vector<double> values;
+                for (std::size_t c = 0; c < components.size(); ++c) values.push_back(10. * i + static_cast<double>(c));
+                file.record(FrdText::number_of(static_cast<std::size_t>(i)), values);
+            }
+            file.end();
+        };
+        add("CONTACT", {"COPEN", "CSLIP1", "CSLIP2", "CPRESS", "CSHEAR1", "CSHEAR2"});
+        add("STRESS", {"SXX", "SYY", "SZZ", "SXY", "SYZ", "SZX"});
+        add("MOVED", {"D1", "D2", "D3", "R1", "R2"});
+        add("PAIR", {"RE", "IM"});
+        add("SAME", {"A", "A", "B", "C"});
+        const auto info = io::inspect_frd(file.text(), {});
+        ASSERT_TRUE(info) << info.error().message;
+        std::string found;
+        for (const FieldInfo& field : info->fields) found += fmt::format(" {} {}", field.name, field.components);
+        EXPECT_EQ(found, " CONTACT:COPEN 1 CONTACT:CSLIP1 1 CONTACT:CSLIP2 1 CONTACT:CPRESS 1 CONTACT:CSHEAR1 1 "
+                         "CONTACT:CSHEAR2 1 STRESS 6 MOVED 3 MOVED:R1 1 MOVED:R2 1 PAIR:RE 1 PAIR:IM 1 SAME 4");
+        ReadOptions options;
+        options.point_fields = {{"CONTACT:CPRESS", "MOVED", "MOVED:R2"}};
+        const auto result = io::parse_frd(file.text(), options, {});
+        ASSERT_TRUE(result) << result.error().message;
+        const std::vector<Field>& fields = result->grid.point_fields;
+        ASSERT_EQ(fields.size(), 3u) << "nothing else is kept";
+        EXPECT_EQ(fields[0].name, "CONTACT:CPRESS");
+        EXPECT_EQ(fields[0].values.components(), 1u);
+        EXPECT_EQ(fields[0].values.at(2), 23);
+        EXPECT_EQ(fields[1].values.at(2, 1), 21);
+        EXPECT_EQ(fields[2].values.at(3), 34);
+    }
+}
+
 TEST(ReadFrd, IsAnErrorOrSaysWhatIsMissingWhereverItIsCut) {
     for (const FrdForm form : forms) {
         const std::string whole = steps(form);

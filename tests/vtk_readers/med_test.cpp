@@ -326,27 +326,64 @@ TEST_F(ReadMed, ValuesAtTheNodesOfEachCellBecomeMeansAtPoints) {
     EXPECT_TRUE(has_note(*result, "differ by up to 2"));
 }
 
+/// As MED stores them.
+std::string names_of_components(std::vector<std::string> names) {
+    std::string all;
+    for (std::string name : names) {
+        name.resize(16, ' ');
+        all += name;
+    }
+    return all;
+}
+
 TEST_F(ReadMed, SymmetricTensorsHaveVtksOrder) {
-    const auto padded = [](std::vector<std::string> names) {
-        std::string all;
-        for (std::string name : names) {
-            name.resize(16, ' ');
-            all += name;
-        }
-        return all;
-    };
     const auto result = read_with([&](MedWriter& file) {
         const std::vector<double> values{1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6};
-        file.field("SIEF", "m", 6, 6, padded({"SIXX", "SIYY", "SIZZ", "SIXY", "SIXZ", "SIYZ"}));
-        file.step(1, 0);
-        file.values("MAI.TE4", values);
-        file.field("beams", "m", 6, 6, padded({"DX", "DY", "DZ", "DRX", "DRY", "DRZ"}));
+        file.field("SIEF", "m", 6, 6, names_of_components({"SIXX", "SIYY", "SIZZ", "SIXY", "SIXZ", "SIYZ"}));
         file.step(1, 0);
         file.values("MAI.TE4", values);
     });
     ASSERT_TRUE(result) << result.error().message;
     EXPECT_EQ(text_of(result->grid.cell_fields.at(0).values), "1 2 3 4 6 5 1 2 3 4 6 5");
-    EXPECT_EQ(text_of(result->grid.cell_fields.at(1).values), "1 2 3 4 5 6 1 2 3 4 5 6");
+}
+
+TEST_F(ReadMed, ComponentsWithNamesAreFieldsBehindAVector) {
+    write([](MedWriter& file) {
+        file.field("SIEQ", "m", 4, 6, names_of_components({"VMIS", "TRESCA", "PRIN_1", "TRIAX"}));
+        file.step(1, 1);
+        std::vector<double> values;
+        for (int i = 0; i < 20; ++i) values.push_back(i);
+        file.values("NOE", values);
+        file.field("DEPL", "m", 5, 6, names_of_components({"DX", "DY", "DZ", "DRX", "DRY"}));
+        file.step(1, 1);
+        for (int i = 20; i < 25; ++i) values.push_back(i);
+        file.values("NOE", values);
+        file.field("EQ_ELGA", "m", 2, 6, names_of_components({"VMIS", "TRESCA"}));
+        file.step(1, 1);
+        file.values<double>("MAI.TE4", {1, 3, 5, 7, 2, 4, 6, 8}, 2);
+        file.field("VARI", "m", 3, 6, names_of_components({"V1", "V2", "V3"}));
+        file.step(1, 1);
+        file.values<double>("MAI.TE4", {1, 2, 3, 4, 5, 6});
+    });
+    const auto result = read(path());
+    ASSERT_TRUE(result) << result.error().message;
+    std::string found;
+    for (const auto* fields : {&result->grid.point_fields, &result->grid.cell_fields})
+        for (const Field& field : *fields) found += fmt::format(" {} {};", field.name, text_of(field.values));
+    EXPECT_EQ(found, " DEPL 0 5 10 1 6 11 2 7 12 3 8 13 4 9 14; DEPL:DRX 15 16 17 18 19; DEPL:DRY 20 21 22 23 24;"
+                     " SIEQ:VMIS 0 1 2 3 4; SIEQ:TRESCA 5 6 7 8 9; SIEQ:PRIN_1 10 11 12 13 14; SIEQ:TRIAX 15 16 17 18 19;"
+                     " EQ_ELGA:VMIS 2 6; EQ_ELGA:TRESCA 3 7; VARI 1 3 5 2 4 6;");
+    EXPECT_EQ(result->notes.size(), 1u) << "one for both components";
+    EXPECT_TRUE(has_note(*result, "\"EQ_ELGA\" has up to 2 values in a cell"));
+    ReadOptions options;
+    options.point_fields = {{"SIEQ:TRESCA"}};
+    options.cell_fields = std::vector<std::string>();
+    options.displace = "DEPL";
+    const auto displaced = read(path(), options);
+    ASSERT_TRUE(displaced) << displaced.error().message;
+    EXPECT_EQ(displaced->grid.points.at(1, 0), 1 + 1);
+    EXPECT_EQ(displaced->grid.point_fields.size(), 1u);
+    EXPECT_EQ(text_of(displaced->grid.point_fields.at(0).values), "5 6 7 8 9");
 }
 
 TEST_F(ReadMed, GroupsAreBlocksThatMayOverlap) {

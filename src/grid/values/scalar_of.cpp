@@ -22,6 +22,38 @@ Array fill(std::size_t count, const At& at) {
     return std::move(values).to_array();
 }
 
+std::optional<std::size_t> number_of(std::string_view text) {
+    std::size_t number = 0;
+    const char* end = text.data() + text.size();
+    const auto [stopped, fault] = std::from_chars(text.data(), end, number);
+    return fault == std::errc{} && stopped == end ? std::optional(number) : std::nullopt;
+}
+
+/// 0 for X and 1.
+std::optional<std::size_t> axis_of(char letter) {
+    if (letter >= 'X' && letter <= 'Z') return static_cast<std::size_t>(letter - 'X');
+    if (letter >= '1' && letter <= '3') return static_cast<std::size_t>(letter - '1');
+    return std::nullopt;
+}
+
+/// "DX", "FLUX", "D1", "SXX", "SIXX", "S11"; "V11" is an eleventh variable, "MAX" is none.
+std::optional<Scalar> called_by_solvers(std::string_view text) {
+    constexpr std::size_t most = 3;
+    if (text.size() < 2 || text == "MAX") return std::nullopt;
+    const auto are_capitals = [](std::string_view word) {
+        return !word.empty() && word.size() <= most &&
+               std::ranges::all_of(word, [](char c) { return c >= 'A' && c <= 'Z'; });
+    };
+    const char last = text.back(), before = text[text.size() - 2];
+    const auto row = axis_of(before), column = axis_of(last);
+    const bool is_pair = row && column && (last >= 'X' ? before >= 'X' : before <= '3' && text[0] != 'V');
+    if (is_pair && text.size() <= 4 && are_capitals(text.substr(0, text.size() - 2)))
+        return Scalar{3 * *row + *column, false, true};
+    if (last >= 'X' && column && are_capitals(text.substr(0, text.size() - 1))) return Scalar{*column};
+    const auto number = are_capitals(text.substr(0, 1)) ? number_of(text.substr(1)) : std::nullopt;
+    return number && *number > 0 ? std::optional(Scalar{*number - 1}) : std::nullopt;
+}
+
 } // namespace
 
 std::optional<std::size_t> Scalar::place_in(std::size_t components) const {
@@ -37,10 +69,8 @@ std::optional<Scalar> parse_scalar(std::string_view text) {
     for (const char first : {'x', 'X'})
         if (text.size() == 2 && std::ranges::all_of(text, [&](char c) { return c >= first && c <= first + 2; }))
             return Scalar{static_cast<std::size_t>(3 * (text[0] - first) + text[1] - first), false, true};
-    Scalar scalar;
-    const char* end = text.data() + text.size();
-    const auto [stopped, fault] = std::from_chars(text.data(), end, scalar.component);
-    return fault == std::errc{} && stopped == end ? std::optional(scalar) : std::nullopt;
+    const auto number = number_of(text);
+    return number ? std::optional(Scalar{*number}) : called_by_solvers(text);
 }
 
 double scalar_at(const Array& array, Scalar scalar, std::size_t tuple) {

@@ -22,8 +22,8 @@ struct Scalar {
     std::optional<std::size_t> place_in(std::size_t components) const;
 };
 
-/// `x`, `y`, `z`, `mag`, a number, or of tensors `xx`, `xy` and so on, also `XX`; nothing for other text or a number beyond
-/// 64 bits.
+/// `x`, `y`, `z`, `mag`, a number, of tensors `xx`, `XX` and so on; as solvers call them, capitals and an axis or a number
+/// from 1: `DX`, `D1`, `SXX`, `S11`. Nothing for other text or a number beyond 64 bits.
 std::optional<Scalar> parse_scalar(std::string_view text);
 
 /// The length of a tuple. Neither overflows nor underflows.

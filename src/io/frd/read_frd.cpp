@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <set>
@@ -55,7 +56,8 @@ Result<void> each_text_record(std::string_view file, const Block& block, std::si
         std::string_view line = frd::take_line(file, at);
         std::int64_t number = 0;
         if (!line.starts_with(" -1") || !frd::number_at(line, key_width, width, number))
-            return wrong_at(at, fmt::format("a record begins with {}, not with -1 and a number", in_quotes(line.substr(0, 16))));
+            return wrong_at(
+                at, fmt::format("a record begins with {}, not with -1 and a number", in_quotes(line.substr(0, 16))));
         for (std::size_t i = 0; i < reals; ++i) {
             if (i > 0 && i % reals_on_line == 0) {
                 line = at < block.end ? frd::take_line(file, at) : std::string_view();
@@ -63,7 +65,8 @@ Result<void> each_text_record(std::string_view file, const Block& block, std::si
                     return wrong_at(at, fmt::format("node {} has {} values, but must have {}", number, i, reals));
             }
             if (!frd::number_at(line, key_width + width + i % reals_on_line * real_width, real_width, values[i]))
-                return wrong_at(at, fmt::format("value {} of node {} is no number: {}", i + 1, number, in_quotes(line)));
+                return wrong_at(at,
+                                fmt::format("value {} of node {} is no number: {}", i + 1, number, in_quotes(line)));
         }
         if (auto done = take(number, std::span<const double>(values)); !done) return done;
         ++records;
@@ -117,7 +120,7 @@ private:
     Result<void> add_element(std::int64_t number, std::int64_t type, std::span<const std::int64_t> nodes,
                              CellList& cells) const;
     template <class Real>
-    Result<Array> values_of(const frd::Values& values) const;
+    Result<std::vector<Field>> values_of(const frd::Values& values, const std::vector<NamedComponents>& fields) const;
 
     std::string_view file_;
     frd::Index index_;
@@ -133,12 +136,14 @@ FileInfo FrdReader::info() const {
     FileInfo info;
     info.format = "frd";
     for (const frd::Step& step : index_.steps) info.times.push_back(step.value);
-    std::set<std::string> readable;
+    std::set<std::string> readable, announced;
     for (const frd::Step& step : index_.steps)
         for (const frd::Values& values : step.values) {
             if (!values.problem.empty()) continue;
-            if (readable.insert(values.name).second)
-                announce(info, {values.name, Association::point, type_of(values), values.components});
+            readable.insert(values.name);
+            for (const NamedComponents& field : values.fields)
+                if (announced.insert(field.name).second)
+                    announce(info, {field.name, Association::point, type_of(values), field.count});
         }
     for (const frd::Step& step : index_.steps)
         for (const frd::Values& values : step.values)
@@ -240,18 +245,26 @@ Result<void> FrdReader::read_elements(Grid& grid) {
 }
 
 template <class Real>
-Result<Array> FrdReader::values_of(const frd::Values& values) const {
-    const std::size_t width = values.components;
-    std::vector<Real> all(static_cast<std::size_t>(nodes_.size()) * width, std::numeric_limits<Real>::quiet_NaN());
-    const auto done = each_record(file_, values.block, width, [&](std::int64_t number, auto reals) -> Result<void> {
+Result<std::vector<Field>> FrdReader::values_of(const frd::Values& values,
+                                                const std::vector<NamedComponents>& fields) const {
+    const auto points = static_cast<std::size_t>(nodes_.size());
+    std::vector<std::vector<Real>> all;
+    for (const NamedComponents& field : fields)
+        all.emplace_back(points * field.count, std::numeric_limits<Real>::quiet_NaN());
+    const auto take = [&](std::int64_t number, auto reals) -> Result<void> {
         const std::uint64_t place = nodes_.find(number);
         if (place == NumberMap::none) return invalid_data(fmt::format("node {} is not there", number));
-        for (std::size_t i = 0; i < width; ++i)
-            all[static_cast<std::size_t>(place) * width + i] = static_cast<Real>(reals[i]);
+        for (std::size_t f = 0; f < fields.size(); ++f)
+            for (std::size_t i = 0; i < fields[f].count; ++i)
+                all[f][static_cast<std::size_t>(place) * fields[f].count + i] =
+                    static_cast<Real>(reals[fields[f].first + i]);
         return {};
-    });
-    if (!done) return done.error();
-    return Array::own(std::move(all), width);
+    };
+    if (const auto done = each_record(file_, values.block, values.components.size(), take); !done) return done.error();
+    std::vector<Field> made;
+    for (std::size_t f = 0; f < fields.size(); ++f)
+        made.push_back({fields[f].name, Array::own(std::move(all[f]), fields[f].count)});
+    return made;
 }
 
 Result<ReadResult> FrdReader::read(const ReadOptions& options, const Progress& progress) {
@@ -273,10 +286,16 @@ Result<ReadResult> FrdReader::read(const ReadOptions& options, const Progress& p
         result.notes.push_back(fmt::format("{} elements of type {} are left out: this type is not known", count, type));
     if (index_.steps.empty()) return result;
     for (const frd::Values& values : index_.steps[*step].values) {
-        if (!values.problem.empty() || !wanted(options, Association::point, values.name)) continue;
-        auto read = type_of(values) == ScalarType::float64 ? values_of<double>(values) : values_of<float>(values);
-        if (read) result.grid.point_fields.push_back({values.name, *std::move(read)});
-        else leave_out(result.info, {"point field", values.name, read.error().message});
+        std::vector<NamedComponents> fields = values.fields;
+        std::erase_if(fields,
+                      [&](const NamedComponents& field) { return !wanted(options, Association::point, field.name); });
+        if (!values.problem.empty() || fields.empty()) continue;
+        auto read = type_of(values) == ScalarType::float64 ? values_of<double>(values, fields)
+                                                           : values_of<float>(values, fields);
+        if (read) std::ranges::move(*read, std::back_inserter(result.grid.point_fields));
+        else
+            for (const NamedComponents& field : fields)
+                leave_out(result.info, {"point field", field.name, read.error().message});
     }
     return result;
 }

@@ -31,11 +31,19 @@ std::string_view key_of(std::string_view line) {
     return line.substr(begin, end - begin);
 }
 
+/// Of an array or a component.
+std::string name_in(std::string_view line) {
+    return std::string(without_spaces(line.substr(std::min<std::size_t>(5, line.size()), 8)));
+}
+
 /// What stands in the columns of the digit; long text where there is none.
 Form form_of(std::string_view line) {
     int digit = 1;
     number_at(line, form_column, 2, digit);
-    return digit == 0 ? Form::short_text : digit == 2 ? Form::binary_float : digit == 3 ? Form::binary_double : Form::long_text;
+    return digit == 0   ? Form::short_text
+           : digit == 2 ? Form::binary_float
+           : digit == 3 ? Form::binary_double
+                        : Form::long_text;
 }
 
 bool begins_block(std::string_view key) {
@@ -128,8 +136,8 @@ private:
             block.end = at_;
         }
         if (!ends)
-            return invalid_data(fmt::format("the block of {} at byte {} is cut short: it announces {}", what, begin,
-                                            block.count));
+            return invalid_data(
+                fmt::format("the block of {} at byte {} is cut short: it announces {}", what, begin, block.count));
         bool& has = nodes ? index_.has_nodes : index_.has_elements;
         if (has) ++index_.more_meshes;
         else (nodes ? index_.nodes : index_.elements) = block;
@@ -150,11 +158,11 @@ private:
             const std::string_view next = take_line(file_, at_);
             const std::string_view key = key_of(next);
             if (key == "-4") {
-                values.name = std::string(without_spaces(next.substr(std::min<std::size_t>(5, next.size()), 8)));
+                values.name = name_in(next);
             } else if (key == "-5") {
                 int made = 0;
                 number_at(next, 33, 5, made);
-                if (made != 1) ++values.components;
+                if (made != 1) values.components.push_back(name_in(next));
             } else {
                 at_ = before;
                 break;
@@ -166,7 +174,7 @@ private:
             ends = skip_text(file_, at_, values.block.end);
         } else {
             ends = skip_bytes(file_, at_, values.block.count,
-                              4 + values.components * real_bytes(values.block.form));
+                              4 + values.components.size() * real_bytes(values.block.form));
             if (!ends) {
                 index_.cut_at = begin;
                 at_ = file_.size();
@@ -174,7 +182,8 @@ private:
             values.block.end = at_;
         }
         if (!ends) values.problem = "its values are cut short";
-        else if (values.components == 0 || values.components > max_components) values.problem = "it has no components";
+        else if (values.components.empty() || values.components.size() > max_components)
+            values.problem = "it has no components";
         add(number, value, std::move(values));
     }
 
@@ -186,6 +195,7 @@ private:
         const std::string name = values.name;
         for (int copy = 2; std::ranges::find(all, values.name, &Values::name) != all.end(); ++copy)
             values.name = fmt::format("{}_{}", name, copy);
+        values.fields = fields_of_components(values.name, values.components);
         all.push_back(std::move(values));
     }
 

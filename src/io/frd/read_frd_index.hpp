@@ -12,6 +12,7 @@
 #include <isotet/result.hpp>
 
 #include "io/files/text_scanner.hpp"
+#include "io/pieces/named_components.hpp"
 
 namespace isotet::io::frd {
 
@@ -27,12 +28,13 @@ struct Block {
     std::size_t begin = 0, end = 0;
 };
 
-/// A field at a step.
+/// An array at a step.
 struct Values {
     Block block;
     std::string name;
-    std::size_t components = 0; ///< those that are stored
-    std::string problem;        ///< why it cannot be read; empty: it can
+    std::vector<std::string> components; ///< names of those that are stored
+    std::vector<NamedComponents> fields; ///< that it is
+    std::string problem;                 ///< why it cannot be read; empty: it can
 };
 
 struct Step {

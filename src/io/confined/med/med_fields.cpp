@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <span>
 #include <type_traits>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "base/parallel.hpp"
 #include "io/files/escape.hpp"
 #include "io/pieces/common_type.hpp"
+#include "io/pieces/named_components.hpp"
 #include "io/pieces/node_means.hpp"
 
 namespace isotet::io::confined {
@@ -32,16 +34,22 @@ std::optional<ScalarType> type_of_field(std::optional<std::int64_t> number) {
     }
 }
 
-/// The names of six components end in XX YY ZZ XY XZ YZ.
-bool is_tensor_of_med(const std::string& names) {
-    static constexpr std::array<std::string_view, 6> ends{"XX", "YY", "ZZ", "XY", "XZ", "YZ"};
-    for (std::size_t i = 0; i < ends.size(); ++i) {
-        if (names.size() < i * letters_of_component + 1) return false;
-        const std::string_view name = std::string_view(names).substr(i * letters_of_component, letters_of_component);
-        const std::string_view word = name.substr(0, name.find_last_not_of(' ') + 1);
-        if (!word.ends_with(ends[i])) return false;
+/// Of components; empty where they have none.
+std::vector<std::string> names_in(std::string_view text, std::size_t components) {
+    constexpr std::string_view filling(" \0", 2);
+    std::vector<std::string> names(components);
+    for (std::size_t i = 0; i < components && i * letters_of_component < text.size(); ++i) {
+        const std::string_view name = text.substr(i * letters_of_component, letters_of_component);
+        names[i] = name.substr(0, name.find_last_not_of(filling) + 1);
     }
-    return true;
+    return names;
+}
+
+/// The names of six components end in XX YY ZZ XY XZ YZ.
+bool is_tensor_of_med(std::span<const std::string> names) {
+    static constexpr std::array<std::string_view, 6> ends{"XX", "YY", "ZZ", "XY", "XZ", "YZ"};
+    return std::ranges::equal(names, ends,
+                              [](const std::string& name, std::string_view end) { return name.ends_with(end); });
 }
 
 const char* kind_of_values(Association association) {
@@ -51,7 +59,8 @@ const char* kind_of_values(Association association) {
 } // namespace
 
 MedFields::MedFields(const MedFile& file, MedCells kind) : file_(file), kind_(kind) {
-    for (const std::string& name : file.groups("/CHA")) fields_.push_back(describe(name));
+    for (const std::string& name : file.groups("/CHA"))
+        for (MedField& field : describe(name)) fields_.push_back(std::move(field));
     for (const MedField& field : fields_)
         for (const MedStep& step : field.steps)
             if (!step.always()) steps_.push_back(step);
@@ -60,18 +69,17 @@ MedFields::MedFields(const MedFile& file, MedCells kind) : file_(file), kind_(ki
     steps_.erase(repeated.begin(), repeated.end());
 }
 
-MedFields::MedField MedFields::describe(const std::string& name) const {
+std::vector<MedFields::MedField> MedFields::describe(const std::string& name) const {
     const std::string group = "/CHA/" + name;
     MedField field;
-    field.name = name;
+    field.name = field.array = name;
     field.mesh = file_.text(group, "MAI");
     field.steps = med_steps(file_, group);
     const auto type = type_of_field(file_.integer(group, "TYP"));
     const auto components = file_.integer(group, "NCO").value_or(0);
-    if (!type || components < 1 || components > max_components) return field;
+    if (!type || components < 1 || components > max_components) return {field};
     field.type = *type;
-    field.components = static_cast<std::size_t>(components);
-    field.swaps_last = components == 6 && is_tensor_of_med(file_.text(group, "NOM"));
+    field.in_array = static_cast<std::size_t>(components);
     for (const MedStep& step : field.steps)
         for (const std::string& place : file_.groups(step.group)) {
             const std::string cells = place.size() > 4 ? place.substr(4) : std::string();
@@ -81,7 +89,16 @@ MedFields::MedField MedFields::describe(const std::string& name) const {
             else if (place.starts_with("NOE.") && read) field.at_cell_nodes = true;
             else field.on_others = true;
         }
-    return field;
+    const std::vector<std::string> names = names_in(file_.text(group, "NOM"), field.in_array);
+    std::vector<MedField> fields;
+    for (NamedComponents& part : fields_of_components(name, names)) {
+        MedField& one = fields.emplace_back(field);
+        one.name = std::move(part.name);
+        one.first = part.first;
+        one.components = part.count;
+        one.swaps_last = part.count == 6 && is_tensor_of_med(std::span(names).first(6));
+    }
+    return fields;
 }
 
 bool MedFields::belong_to(const std::string& mesh) const {
@@ -91,12 +108,12 @@ bool MedFields::belong_to(const std::string& mesh) const {
 void MedFields::announce_all(FileInfo& info, std::optional<std::size_t> only) const {
     for (const MedField& field : fields_) {
         if (only && !step_of(field, *only)) continue;
-        const auto drop = [&](std::string reason) { leave_out(info, {"field", field.name, std::move(reason)}); };
+        const auto drop = [&](std::string reason) { leave_out(info, {"field", field.array, std::move(reason)}); };
         if (field.components == 0) drop("its type or number of components is not known");
         else if (field.at_nodes || field.at_cell_nodes)
             announce(info, {field.name, Association::point, field.type, field.components});
         if (field.in_cells) announce(info, {field.name, Association::cell, field.type, field.components});
-        if (field.on_others && !field.at_nodes && !field.at_cell_nodes && !field.in_cells)
+        if (field.on_others && field.first == 0 && !field.at_nodes && !field.at_cell_nodes && !field.in_cells)
             drop(kind_ == MedCells::flat ? "it has values on none of the cells that are read"
                                          : "it has values on points, lines and faces only");
     }
@@ -158,7 +175,8 @@ Result<std::vector<MedFields::MedPart>> MedFields::parts_of(const MedField& fiel
         if (points < 1 || points > max_points)
             return file_.wrong(fmt::format("\"{}\" has {} values for each of its cells", escaped(inside), points));
         part.per_entity = static_cast<std::uint64_t>(points);
-        auto values = file_.numbers(inside + "/CO", part.entities() * part.per_entity * field.components);
+        const std::uint64_t rows = part.entities() * part.per_entity;
+        auto values = file_.numbers(inside + "/CO", rows * field.in_array, rows * field.first, rows * field.components);
         if (!values) return values.error();
         part.values = *std::move(values);
         parts.push_back(std::move(part));
@@ -270,27 +288,34 @@ Result<Array> MedFields::in_cells(const MedField& field, const MedStep& step, co
     if (most > 1)
         notes.push_back(fmt::format("cell field \"{}\" has up to {} values in a cell, at integration points: their "
                                     "mean was taken",
-                                    escaped(field.name), most));
+                                    escaped(field.array), most));
     return joined(field, *parts, place.cells);
 }
 
 Result<void> MedFields::read(const ReadOptions& options, std::size_t step, const MedMesh& mesh,
                              const MedMeshPlace& place, Grid& grid, Loaded& loaded) const {
     std::vector<std::string> without;
+    std::string noted; // once of all fields of an array
     for (const MedField& field : fields_)
         for (const auto association : {Association::point, Association::cell}) {
             const bool of_points = association == Association::point;
             const bool known = of_points ? field.at_nodes || field.at_cell_nodes : field.in_cells;
             if (!known || field.mesh != mesh.name() || !wanted(options, association, field.name)) continue;
             const MedStep* const own = step_of(field, step);
+            std::vector<std::string> notes;
             auto values = !own        ? Result<Array>(Array())
-                          : of_points ? at_nodes(field, *own, mesh, place, loaded.notes)
-                                      : in_cells(field, *own, place, loaded.notes);
+                          : of_points ? at_nodes(field, *own, mesh, place, notes)
+                                      : in_cells(field, *own, place, notes);
+            const std::string of_array = kind_of_values(association) + field.array;
+            if (!notes.empty() && std::exchange(noted, of_array) != of_array)
+                loaded.notes.insert(loaded.notes.end(), notes.begin(), notes.end());
             if (!values && values.error().code != ErrorCode::invalid_data) return values.error();
             if (!values) leave_out(loaded.info, {kind_of_values(association), field.name, values.error().message});
-            else if (values->empty()) without.push_back("\"" + escaped(field.name) + "\"");
+            else if (values->empty()) without.push_back("\"" + escaped(field.array) + "\"");
             else (of_points ? grid.point_fields : grid.cell_fields).push_back({field.name, *std::move(values)});
         }
+    const auto again = std::ranges::unique(without);
+    without.erase(again.begin(), again.end());
     if (!without.empty())
         loaded.notes.push_back(fmt::format("step {} has no values of {}", step, fmt::join(without, ", ")));
     return {};

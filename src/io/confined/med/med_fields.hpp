@@ -36,9 +36,12 @@ public:
                       Grid& grid, Loaded& loaded) const;
 
 private:
+    /// Of a field of the file: all components, or those that are one (fields_of_components()).
     struct MedField {
         std::string name, mesh;
-        std::size_t components = 0;
+        std::string array;                   ///< as the file calls it
+        std::size_t components = 0;          ///< those that are read
+        std::size_t first = 0, in_array = 0; ///< which of how many
         ScalarType type = ScalarType::float64;
         bool swaps_last = false; ///< of a symmetric tensor that ends in XY XZ YZ: VTK has XY YZ XZ
         std::vector<MedStep> steps;
@@ -61,7 +64,7 @@ private:
         std::uint64_t entity(std::uint64_t i) const { return chosen ? (*chosen)[i] : i; }
     };
 
-    MedField describe(const std::string& name) const;
+    std::vector<MedField> describe(const std::string& name) const;
     const MedStep* step_of(const MedField& field, std::size_t step) const;
     Result<std::vector<MedPart>> parts_of(const MedField& field, const std::string& group, std::uint64_t first,
                                           std::uint64_t count) const;

@@ -110,9 +110,10 @@ Result<void> MedFile::check(const std::string& data_set, std::uint64_t count) co
     return {};
 }
 
-Result<Array> MedFile::numbers(const std::string& data_set, std::uint64_t count) const {
+Result<Array> MedFile::numbers(const std::string& data_set, std::uint64_t count, std::uint64_t first,
+                               std::uint64_t some) const {
     if (auto there = check(data_set, count); !there) return there.error();
-    return rows_.read(data_set, 0, count);
+    return rows_.read(data_set, first, some);
 }
 
 Result<void> MedFile::each_block(const std::string& data_set, std::uint64_t count, const Hdf5Rows::Visit& visit) const {

@@ -44,11 +44,16 @@ public:
     /// A data set of numbers with one dimension.
     ///
     /// Errors   invalid_data: not there, no numbers, or not `count` of them; out_of_memory
-    Result<Array> numbers(const std::string& data_set, std::uint64_t count) const;
-    /// Nothing where there is no data set of this kind.
+    Result<Array> numbers(const std::string& data_set, std::uint64_t count) const {
+        return numbers(data_set, count, 0, count);
+    }
+    /// Some of them.
+    Result<Array> numbers(const std::string& data_set, std::uint64_t count, std::uint64_t first,
+                          std::uint64_t some) const;
     /// The same, which are not kept (Hdf5Rows::each_block()).
     Result<void> each_block(const std::string& data_set, std::uint64_t count, const Hdf5Rows::Visit& visit) const;
 
+    /// Nothing where there is no data set of this kind.
     std::optional<RowsShape> shape(const std::string& data_set) const { return rows_.shape(data_set); }
 
 private:
