@@ -8,6 +8,7 @@
 #include <array>
 #include <cerrno>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 #include <system_error>
 #include <vector>
@@ -172,8 +173,24 @@ std::vector<std::string> grids_in(const std::string& folder) {
     return names;
 }
 
+/// A file or folder of a case of OpenFOAM that is not read alone, as 100/T; nothing for others.
+std::optional<Error> part_of_case(const std::string& path) {
+    constexpr int deepest = 4; // constant/REGION/polyMesh/faces
+    std::error_code failed;
+    std::filesystem::path folder = std::filesystem::weakly_canonical(path, failed);
+    for (int level = 0; level < deepest && !failed && folder.has_relative_path(); ++level) {
+        folder = folder.parent_path();
+        if (is_openfoam_case(folder.string()))
+            return Error{
+                ErrorCode::file,
+                fmt::format("{} is a part of a case of OpenFOAM, which is read as a whole: {}", path, folder.string())};
+    }
+    return std::nullopt;
+}
+
 Error not_a_case(const std::string& folder) {
     constexpr std::size_t most_named = 6;
+    if (auto part = part_of_case(folder)) return *std::move(part);
     std::vector<std::string> names = grids_in(folder);
     const std::string what = fmt::format("{} is a folder, but no case of OpenFOAM", folder);
     if (names.empty()) return {ErrorCode::file, what + ", and no grid is in it"};
@@ -230,6 +247,8 @@ Error nobody_knows(const std::string& path, const Head& head, const std::string&
                         path, title, fmt::join(names_of_readers(), ", "))};
     }
 #endif
+    if (head.bytes.find("FoamFile") != std::string::npos)
+        if (auto part = part_of_case(path)) return *std::move(part);
     if (const auto is = foreign_file(head.bytes, extension); !is.empty())
         return {ErrorCode::file, fmt::format("{} {}", path, is)};
     if (const auto type = vtk_xml::type_of(head.bytes); !type.empty())

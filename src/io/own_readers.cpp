@@ -272,7 +272,7 @@ Result<ReadResult> read_frd_file(const std::string& path, const ReadOptions& opt
 
 /// Abaqus uses the first ending, too.
 int recognizes_ucd(std::string_view head, std::string_view extension) {
-    return (extension == ".inp" || extension == ".avs") && looks_like_ucd(head) ? 2 : 0;
+    return (extension == ".inp" || extension == ".avs" || extension == ".ucd") && looks_like_ucd(head) ? 2 : 0;
 }
 
 Result<FileInfo> inspect_ucd_file(const std::string& path, const ReadOptions& options, const Progress& progress) {
@@ -312,7 +312,7 @@ std::span<const GridReader> own_readers() {
                                              inspect_gocad_file, read_gocad_file},
                                   GridReader{grid_format("frd", "CalculiX results", {".frd"}), recognizes_frd,
                                              inspect_frd_file, read_frd_file},
-                                  GridReader{grid_format("ucd", "AVS UCD", {".inp", ".avs"}), recognizes_ucd,
+                                  GridReader{grid_format("ucd", "AVS UCD", {".inp", ".avs", ".ucd"}), recognizes_ucd,
                                              inspect_ucd_file, read_ucd_file},
                               });
         return all;

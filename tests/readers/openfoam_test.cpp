@@ -116,6 +116,17 @@ TEST_F(ReadOpenfoamCase, HasHexahedraAndTransitionsAsPolyhedra) {
     EXPECT_EQ(report->duplicate_points, 0u);
 }
 
+TEST_F(ReadOpenfoamCase, IsNamedWhereAPartOfItIsGiven) {
+    write_case(folder_, foam_case(box_, wave, {}));
+    for (const char* part : {"constant", "constant/polyMesh", "constant/polyMesh/points"}) {
+        const auto result = inspect(folder_.file(part));
+        ASSERT_FALSE(result) << part;
+        EXPECT_NE(result.error().message.find("is a part of a case of OpenFOAM, which is read as a whole: /"),
+                  std::string::npos)
+            << result.error().message;
+    }
+}
+
 TEST_F(ReadOpenfoamCase, IsTheSameInEveryEncoding) {
     const TemporaryFolder text;
     write_case(text, foam_case(box_, wave, {}));

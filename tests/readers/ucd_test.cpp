@@ -40,7 +40,7 @@ TEST(ReadUcd, GivesPointsCellsAndFields) {
 
 TEST(ReadUcd, IsRecognizedBehindCommentsAndEmptyLinesByBothEndings) {
     const TemporaryFolder folder;
-    for (const char* name : {"a.inp", "a.avs"})
+    for (const char* name : {"a.inp", "a.avs", "a.ucd"})
         for (const char* before : {"", "\n", "  # by hand\n\n# again\n \r\n"}) {
             const auto info = inspect(folder.write(name, before + ucd));
             ASSERT_TRUE(info) << info.error().message;

@@ -280,6 +280,9 @@ TEST_F(ReadXdmfData, FollowsBaseOffsetAndOrder) {
     EXPECT_NE(error("Order='0 1 2'").find("Order"), std::string::npos);
     EXPECT_NE(error("Order='0 1 2 4'").find("Order"), std::string::npos);
     EXPECT_NE(error("NumberOfElements='3'").find("3 elements are stated, 2 are there"), std::string::npos);
+    EXPECT_NE(error("NumberOfElements='3 2 1'").find("6 elements are stated, 2 are there"), std::string::npos);
+    for (const std::string counts : {"2 1 1", "2 4"})
+        EXPECT_EQ(cells("NumberOfElements='" + counts + "'", "0 1 2 3 0 2 1 4"), (Values{0, 1, 2, 3, 0, 2, 1, 4}));
 }
 
 /// As h5py cuts what it compresses.

@@ -27,8 +27,15 @@ bool is_structured(std::string_view type) {
                                [&](const char* name) { return same_word(type, name); });
 }
 
+/// Of elements: "27", "3 3 3", or with the nodes of each, "27 8".
 std::optional<std::vector<std::uint64_t>> stated_counts(pugi::xml_node topology) {
     return whole_numbers(attribute_of(topology, "NumberOfElements", "Dimensions"));
+}
+
+std::uint64_t product_of(const std::vector<std::uint64_t>& counts) {
+    std::uint64_t product = 1;
+    for (const std::uint64_t count : counts) product *= count;
+    return product;
 }
 
 Array in_tuples(const Array& values, std::size_t components) {
@@ -216,13 +223,13 @@ private:
         const bool mixed = same_word(type, "Mixed");
         if (!mixed && !element) return wrong(fmt::format("topology of type \"{}\" is not read", escaped(type)));
         const auto stated = stated_counts(topology_);
-        const std::optional<std::uint64_t> count = stated ? std::optional(stated->front()) : std::nullopt;
+        const std::optional<std::uint64_t> count = stated ? std::optional(product_of(*stated)) : std::nullopt;
         const bool listed = mixed || element->type == xdmf_polyhedron;
         const bool must_count = listed && !count; // only the numbers tell
         auto values =
             file_.data.read_indices(file_.document.child(topology_, "DataItem"), must_count ? Depth::arrays : depth_);
         if (!values) return values.error();
-        if (!listed) return uniform_cells(*element, count, *values);
+        if (!listed) return uniform_cells(*element, stated, *values);
         if (count) mesh_.cells = *count;
         if (depth_ == Depth::description && !must_count) return {};
         const std::int64_t base = topology_.attribute("BaseOffset").as_llong();
@@ -230,7 +237,7 @@ private:
                            : polyhedral_elements(values->values, count, mesh_.points, base);
         return take_cells_of(std::move(cells));
     }
-    Result<void> uniform_cells(const XdmfElement& element, std::optional<std::uint64_t> count,
+    Result<void> uniform_cells(const XdmfElement& element, const std::optional<std::vector<std::uint64_t>>& stated,
                                const ShapedValues& values) {
         const std::uint64_t usual = element.type == 2 ? 1 : element.type == 4 ? 2 : 0; // vertices, lines
         const std::uint64_t corners =
@@ -240,8 +247,8 @@ private:
             return wrong(fmt::format("{} corners of cells are no multiple of {}", values.count(), corners));
         mesh_.cells = values.count() / corners;
         mesh_.corners = values.count();
-        if (count && *count != mesh_.cells)
-            return wrong(fmt::format("{} elements are stated, {} are there", *count, mesh_.cells));
+        if (stated && stated->front() != mesh_.cells && product_of(*stated) != mesh_.cells)
+            return wrong(fmt::format("{} elements are stated, {} are there", product_of(*stated), mesh_.cells));
         if (depth_ == Depth::description) return {};
         const auto order = whole_numbers(topology_.attribute("Order").as_string());
         return take_cells_of(uniform_elements(element, corners, values.values,

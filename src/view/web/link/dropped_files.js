@@ -3,7 +3,7 @@
 
 /** Files that name others come first; what is named like a mesh beside it is no grid. */
 const kinds = [['.pvd', '.series'], ['.vtm', '.vtmb', '.vtpc', '.vth', '.vthb'], ['.pvtu', '.pvts', '.pvtr', '.pvti'],
-  ['.vtu', '.vtk', '.msh', '.mesh', '.meshb', '.node', '.isotet', '.frd', '.inp', '.avs', '.so', '.grdecl', '.vts', '.vtr', '.vti']];
+  ['.vtu', '.vtk', '.msh', '.mesh', '.meshb', '.node', '.isotet', '.frd', '.inp', '.avs', '.ucd', '.so', '.grdecl', '.vts', '.vtr', '.vti']];
 const companions = ['.sol', '.solb', '.ele', '.face', '.edge', '.neigh'];
 
 const ending = (path) => (path.match(/\.[^./]+$/)?.[0] || '').toLowerCase();
