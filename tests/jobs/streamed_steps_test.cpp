@@ -170,11 +170,9 @@ TEST_F(StepsThatAreStreamed, TellOfErrorsInTheirTurn) {
     ASSERT_EQ(numbers->broken_steps.size(), 1u);
     EXPECT_EQ(numbers->broken_steps[0].step, 1u);
     EXPECT_EQ(numbers->surfaces.size(), 2u);
-    Waits drawing_listener(folder.file("step1.vtu"), "cells were kept", "picture 2 of 3");
-    const auto drawn = draw_files(drawing("a"), drawing_listener);
-    ASSERT_FALSE(drawn);
-    EXPECT_TRUE(drawn.error().message.starts_with("picture 2: ")) << drawn.error().message;
-    EXPECT_TRUE(drawing_listener.was_read);
+    const auto drawn = draw_files(drawing("a"), listener);
+    ASSERT_TRUE(drawn) << drawn.error().message;
+    EXPECT_EQ(drawn->pictures.pictures, 2u);
 }
 
 TEST_F(StepsThatAreStreamed, AreGivenUpWhereTheJobIsCancelled) {
