@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include <isotet/array.hpp>
+#include <isotet/export.hpp>
 
 namespace isotet::core {
 
@@ -19,7 +20,7 @@ struct Scalar {
     bool of_tensor = false; ///< `component` is one of 9, row by row
 
     /// The component of a tuple of so many; nothing where it has no such. Symmetric tensors have 6: XX YY ZZ XY YZ XZ.
-    std::optional<std::size_t> place_in(std::size_t components) const;
+    ISOTET_API std::optional<std::size_t> place_in(std::size_t components) const;
 };
 
 /// `x`, `y`, `z`, `mag`, a number, of tensors `xx`, `XX` and so on; as solvers call them, capitals and an axis or a number
@@ -46,7 +47,7 @@ double magnitude_of(const Value* tuple, std::size_t components) {
 }
 
 /// The scalar of one tuple as a double. Magnitudes neither overflow nor underflow.
-double scalar_at(const Array& array, Scalar scalar, std::size_t tuple);
+ISOTET_API double scalar_at(const Array& array, Scalar scalar, std::size_t tuple);
 
 /// The scalar of every tuple: the array itself if it is its only component; else a copy, components in their own type,
 /// magnitudes float32 of float32 and float64 of all others. In parallel.
