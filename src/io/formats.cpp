@@ -177,13 +177,14 @@ std::vector<std::string> grids_in(const std::string& folder) {
 std::optional<Error> part_of_case(const std::string& path) {
     constexpr int deepest = 4; // constant/REGION/polyMesh/faces
     std::error_code failed;
-    std::filesystem::path folder = std::filesystem::weakly_canonical(path, failed);
-    for (int level = 0; level < deepest && !failed && folder.has_relative_path(); ++level) {
-        folder = folder.parent_path();
-        if (is_openfoam_case(folder.string()))
-            return Error{
-                ErrorCode::file,
-                fmt::format("{} is a part of a case of OpenFOAM, which is read as a whole: {}", path, folder.string())};
+    std::string folder = std::filesystem::weakly_canonical(path, failed).string();
+    for (int level = 0; level < deepest && !failed; ++level) {
+        const std::string above = std::filesystem::path(folder).parent_path().string();
+        if (above.empty() || above == folder) break;
+        folder = above;
+        if (is_openfoam_case(folder))
+            return Error{ErrorCode::file,
+                         fmt::format("{} is a part of a case of OpenFOAM, which is read as a whole: {}", path, folder)};
     }
     return std::nullopt;
 }
