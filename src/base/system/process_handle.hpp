@@ -4,6 +4,8 @@
 #include <csignal>
 #include <sys/types.h>
 
+#include <isotet/export.hpp>
+
 #include "base/system/descriptor.hpp"
 
 namespace isotet::core {

@@ -314,8 +314,9 @@ private:
         auto found = isovalues_at(grid.points, all, *field, asked.shares, {.progress = {nullptr, progress_.cancel}});
         if (!found && (found.error().code == ErrorCode::cancelled || found.error().code == ErrorCode::out_of_memory))
             return found.error();
-        if (found) share_isovalues_ = *std::move(found);
-        return static_cast<bool>(found); // reading all cells tells what is wrong
+        if (!found) return false; // reading all cells tells what is wrong
+        share_isovalues_ = *std::move(found);
+        return true;
     }
 
     /// Hands whole cells of a piece alone to a taker.
