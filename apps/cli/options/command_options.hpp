@@ -59,6 +59,8 @@ void add_more_files(const Command& command, GridOptions& grid);
 /// The same, and OUT among them: the last name that is not one of a grid only. -o is there already.
 void add_out_and_more_files(const Command& command, GridOptions& grid, std::string& out, const std::string& what);
 
+/// For a list of numbers of which the first two may be shares, which stand as 0 until the grid is read.
+Command::OtherWords shares_of_ends(std::vector<double>& numbers, RangeShares& shares, const char* rule);
 /// `isovalues` are numbers, `shares` the others.
 ///
 /// `decimal_comma`   becomes what two isovalues are with a comma for a decimal sign; may be null

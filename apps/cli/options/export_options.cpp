@@ -1,8 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "options/command_options.hpp"
 
-#include "options/shape_text.hpp"
-
 namespace isotet::cli {
 
 namespace {
@@ -29,18 +27,11 @@ Examples:
 )";
 
 Option add_range_of_surfaces(const Command& command, ExportCommand& exported) {
-    return command.add_numbers("--between", exported.between, "A,B",
-                               "The range of --surfaces: numbers, or shares such as 5%v or p95 (of the first step); "
-                               "default: that of the field",
-                               {[&exported](std::string_view word) {
-                                    const std::optional<IsovalueShare> share = parse_share(word);
-                                    if (!share || exported.between.size() > 1) return false;
-                                    (exported.between.empty() ? exported.between_shares.lower
-                                                              : exported.between_shares.upper) = share;
-                                    exported.between.push_back(0); // until the grid is read
-                                    return true;
-                                },
-                                "two finite numbers or shares such as 90%v or p95"});
+    return command.add_numbers(
+        "--between", exported.between, "A,B",
+        "The range of --surfaces: numbers, or shares such as 5%v or p95 (of the first step); "
+        "default: that of the field",
+        shares_of_ends(exported.between, exported.between_shares, "two finite numbers or shares such as 90%v or p95"));
 }
 
 } // namespace

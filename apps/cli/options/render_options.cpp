@@ -262,14 +262,8 @@ Option add_sweep(const Command& command, RenderCommand& render) {
     return command.add_numbers(
         "--sweep", render.sweep, "A,B,N",
         "N pictures, at isovalues from A to B: numbers, or shares such as 5%v or p95 (of the first step)",
-        {[&render](std::string_view word) {
-             const std::optional<IsovalueShare> share = parse_share(word);
-             if (!share || render.sweep.size() > 1) return false;
-             (render.sweep.empty() ? render.sweep_shares.lower : render.sweep_shares.upper) = share;
-             render.sweep.push_back(0); // until the grid is read
-             return true;
-         },
-         "finite numbers, of which the first two may be shares such as 90%v or p95"});
+        shares_of_ends(render.sweep, render.sweep_shares,
+                       "finite numbers, of which the first two may be shares such as 90%v or p95"));
 }
 
 } // namespace

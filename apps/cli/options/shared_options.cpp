@@ -197,6 +197,17 @@ SolidRange parse_range(const std::string& option, const std::string& text, Range
     return out;
 }
 
+Command::OtherWords shares_of_ends(std::vector<double>& numbers, RangeShares& shares, const char* rule) {
+    const auto take = [&numbers, &shares](std::string_view word) {
+        const std::optional<IsovalueShare> share = parse_share(word);
+        if (!share || numbers.size() > 1) return false;
+        (numbers.empty() ? shares.lower : shares.upper) = share;
+        numbers.push_back(0);
+        return true;
+    };
+    return {take, rule};
+}
+
 Option add_isovalues(const Command& command, std::vector<double>& isovalues, std::vector<IsovalueShare>& shares,
                      std::optional<double>* decimal_comma) {
     return command.add_numbers("-i,--isovalue", isovalues, "V[,W...]",
