@@ -34,6 +34,7 @@ GRIDS = {
     "tets_30M_legacy": ("tets_30M", "legacy"),
     "tets_30M_vtkhdf": ("tets_30M", "vtkhdf"),
     "tets_100M": ("kuhn", 255),
+    "tets_100M_64_pieces": ("tets_100M", 4),
     "hexahedra_27M": ("hex", 300),
     "mixed_21M": ("mixed", 170),
     "polyhedra_1M": ("kelvin", 80),
