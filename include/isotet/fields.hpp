@@ -69,11 +69,6 @@ struct ComponentStatistics {
 /// Threads      safe from many threads on one array
 ISOTET_API Result<std::vector<ComponentStatistics>> statistics_of(const Array& values, const Run& run = {});
 
-/// Two ends of a range; lower > upper: there is no value.
-struct ValueRange {
-    double lower = 1, upper = 0;
-};
-
 /// The range of a field without its rare values: the lowest and the highest fiftieth of the values do not count, unless
 /// nothing but one value is left then. Not finite values are passed over; vectors count by their magnitude.
 ///

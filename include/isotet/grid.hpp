@@ -203,6 +203,22 @@ struct MergedPoints {
 /// Cost         O(P log P), 24 bytes a point, and a new connectivity; a pass over each point field, which means copy
 ISOTET_API Result<MergedPoints> merge_points(const Grid& grid, const MergeOptions& options = {}, const Run& run = {});
 
+/// Two ends of a range; lower > upper: there is no value.
+struct ValueRange {
+    double lower = 1, upper = 0;
+};
+
+/// Numbers that stand for no value, as files have them in place of NaN: -9999, 1e20, 9.96921e36.
+struct FillValues {
+    struct Number {
+        double value = 0;
+        std::uint64_t count = 0; ///< of the values that are it
+    };
+    std::vector<Number> numbers; ///< ascending; empty: there is none
+    ValueRange others;           ///< of all other finite values
+    std::uint64_t values = 0;    ///< all that were looked at
+};
+
 /// A field to contour: one scalar per point of the grid, and how it was found.
 struct PointField {
     std::string name;       ///< as asked for, such as "velocity:x"
@@ -211,6 +227,7 @@ struct PointField {
     std::string note;       ///< empty, or a sentence for the user (a name that is both a point and a cell field, say)
     Array cell_values = {}; ///< empty, or one scalar a cell: a session gives them to the derived points around which
                             ///< polyhedra are split, in place of means of the points around
+    FillValues cell_fill = {}; ///< where averaged: of the cell values, which count in the means
 };
 
 /// True when some cells are polyhedra with faces, prisms of five or six sides, or of a degree above 1: linearize() makes

@@ -65,7 +65,7 @@ ValueRange typical_range(const Array& array) {
     if (values.empty()) return {};
     std::sort(values.begin(), values.end());
     if (array.components() == 1)
-        for (const core::FillValue& fill : core::fill_values_of(values).values) std::erase(values, fill.value);
+        for (const FillValues::Number& fill : core::fill_values_of(values).numbers) std::erase(values, fill.value);
     const ValueRange range{values[values.size() / rare], values[values.size() - 1 - values.size() / rare]};
     return range.lower < range.upper ? range : ValueRange{values.front(), values.back()};
 }

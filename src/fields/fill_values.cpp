@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
+
+#include <isotet/fields.hpp>
 
 namespace isotet::core {
 
@@ -13,7 +14,10 @@ namespace {
 constexpr double least_large = 1e20;
 constexpr std::size_t max_distinct = 4;
 
+bool is_empty(const ValueRange& range) noexcept { return !(range.lower <= range.upper); }
+
 bool stands_for_none(double value) noexcept {
+    if (std::abs(value) < 999) return false;
     static constexpr std::array<double, 16> numbers{
         -999.25,       -999.0,        -9999.0, -99999.0, -999999.0, -9999999.0, -99999999.0, -32768.0,
         -2147483648.0, -2147483647.0, 9999.0,  99999.0,  999999.0,  9999999.0,  99999999.0,  2147483647.0};
@@ -21,7 +25,7 @@ bool stands_for_none(double value) noexcept {
 }
 
 void widen(ValueRange& range, double value) noexcept {
-    if (!(range.lower <= range.upper)) range = {value, value};
+    if (is_empty(range)) range = {value, value};
     else range = {std::min(range.lower, value), std::max(range.upper, value)};
 }
 
@@ -33,56 +37,83 @@ bool is_far(double value, const ValueRange& others) noexcept {
     return gap > times * (others.upper / 2 - others.lower / 2);
 }
 
-/// Which of some numbers are fill values; how many there are of each is known.
-/// `others`   the range of all other numbers
-FillValues choose_fill_values(std::map<double, std::uint64_t> numbers, ValueRange others) {
-    const auto is_near = [&](const auto& number) { return !is_far(number.first, others); };
-    for (;;) {
-        const auto near = std::ranges::find_if(numbers, is_near);
-        if (near == numbers.end()) break;
-        widen(others, near->first); // it is a value
-        numbers.erase(near);
-    }
-    FillValues found{{}, others};
-    for (const auto& [value, count] : numbers) found.values.push_back({value, count});
-    return found;
-}
+} // namespace
 
-/// `numbers`   of any type
+/// More than there may be are not counted.
 template <class Numbers>
-FillValues find_among(const Numbers& numbers, const ValueRange& range) {
-    if (!stands_for_none(range.lower) && !stands_for_none(range.upper)) return {{}, range};
-    std::map<double, std::uint64_t> counts;
-    ValueRange others;
+void FillFinder::add_each(const Numbers& numbers) {
     for (const auto number : numbers) {
         const auto value = static_cast<double>(number);
         if (!std::isfinite(value)) continue;
-        if (!stands_for_none(value)) widen(others, value);
-        else ++counts[value];
-        if (counts.size() > max_distinct) return {{}, range};
+        if (!stands_for_none(value)) widen(others_, value);
+        else if (counts_.size() <= max_distinct) ++counts_[value];
     }
-    FillValues found = choose_fill_values(counts, others);
-    if (found.values.empty()) found.others = range;
+}
+
+void FillFinder::add(const Array& values, const ValueRange& range) {
+    if (values.components() != 1) return;
+    values_ += values.tuples();
+    if (is_empty(range)) return;
+    for (const double end : {range.lower, range.upper}) widen(range_, end);
+    if (stands_for_none(range.lower) || stands_for_none(range.upper))
+        return values.visit([&](auto numbers) { add_each(numbers); });
+    for (const double end : {range.lower, range.upper}) widen(others_, end);
+}
+
+void FillFinder::add(std::span<const double> finite) {
+    values_ += finite.size();
+    for (const double value : finite) widen(range_, value);
+    add_each(finite);
+}
+
+Result<void> FillFinder::add(const Array& values, const Run& run) {
+    const auto statistics = statistics_of(values, run);
+    if (!statistics) return statistics.error();
+    if (statistics->size() == 1) add(values, {statistics->front().lower, statistics->front().upper});
+    return {};
+}
+
+FillValues FillFinder::find() const {
+    FillValues found{{}, range_, values_};
+    if (counts_.empty() || counts_.size() > max_distinct) return found;
+    std::map<double, std::uint64_t> far = counts_;
+    ValueRange others = others_;
+    const auto is_near = [&](const auto& number) { return !is_far(number.first, others); };
+    for (;;) {
+        const auto near = std::ranges::find_if(far, is_near);
+        if (near == far.end()) break;
+        widen(others, near->first); // it is a value
+        far.erase(near);
+    }
+    if (far.empty()) return found;
+    found.others = others;
+    for (const auto& [value, count] : far) found.numbers.push_back({value, count});
     return found;
 }
 
-} // namespace
-
-FillValues fill_values_of(const Array& values, const ValueRange& range) {
-    if (values.components() != 1) return {{}, range};
-    return values.visit([&](auto numbers) { return find_among(numbers, range); });
-}
-
 Result<FillValues> find_fill_values(const Array& values, const Run& run) {
-    const auto statistics = statistics_of(values, run);
-    if (!statistics) return statistics.error();
-    if (statistics->size() != 1) return FillValues{};
-    return fill_values_of(values, {statistics->front().lower, statistics->front().upper});
+    FillFinder finder;
+    if (auto added = finder.add(values, run); !added) return added.error();
+    return finder.find();
 }
 
-FillValues fill_values_of(std::span<const double> ascending) {
-    if (ascending.empty()) return {};
-    return find_among(ascending, {ascending.front(), ascending.back()});
+Result<FillValues> find_fill_values(const PointField& field, const Run& run) {
+    if (!field.cell_fill.numbers.empty()) return field.cell_fill;
+    return find_fill_values(field.values, run);
+}
+
+FillValues fill_values_of(std::span<const double> finite) {
+    FillFinder finder;
+    finder.add(finite);
+    return finder.find();
+}
+
+ValueRange typical_range_of(const PointField& field) {
+    ValueRange range = typical_range(field.values);
+    if (field.cell_fill.numbers.empty() || is_empty(range)) return range;
+    const ValueRange& cells = field.cell_fill.others;
+    range = {std::max(range.lower, cells.lower), std::min(range.upper, cells.upper)};
+    return range.lower < range.upper ? range : cells;
 }
 
 } // namespace isotet::core

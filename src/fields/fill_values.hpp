@@ -1,42 +1,51 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Numbers that stand for no value, as files have them in place of NaN: -9999, 1e20, 9.96921e36.
+// Which numbers stand for no value.
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
-#include <vector>
 
+#include <isotet/array.hpp>
 #include <isotet/export.hpp>
-#include <isotet/fields.hpp>
+#include <isotet/grid.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
 
 namespace isotet::core {
 
-struct FillValue {
-    double value = 0;
-    std::uint64_t count = 0; ///< of the values that are it
-};
-
-struct FillValues {
-    std::vector<FillValue> values; ///< ascending; empty: there is none
-    ValueRange others;             ///< of all other finite values
-};
-
 /// Numbers that programs write where there is no value, if all others are far from them: -999.25 (logs of wells), -999,
 /// -9999 and so on, 9999 and so on, and the ends of integers, farther away than the others are from each other; and 1e20
 /// and above, of either sign, a million times as far. None where the others are all one, or there are more than four such
-/// numbers.
-///
-/// `values`   of one component, else nothing is looked for
-/// Cost       a pass over the values; where an end of their range is such a number another
-/// Errors     as statistics_of()
+/// numbers. Of values that come in parts.
+class ISOTET_API FillFinder {
+public:
+    /// `values`   of one component, else they do not count
+    /// Cost       a pass over the values; where an end of their range is such a number another
+    /// Errors     as statistics_of()
+    Result<void> add(const Array& values, const Run& run = {});
+    /// `range`   of the finite ones
+    void add(const Array& values, const ValueRange& range);
+    void add(std::span<const double> finite);
+
+    FillValues find() const;
+
+private:
+    template <class Numbers>
+    void add_each(const Numbers& numbers);
+
+    std::map<double, std::uint64_t> counts_; ///< of such numbers
+    ValueRange others_, range_;
+    std::uint64_t values_ = 0;
+};
+
 ISOTET_API Result<FillValues> find_fill_values(const Array& values, const Run& run = {});
+/// Of the cells, where these were averaged.
+ISOTET_API Result<FillValues> find_fill_values(const PointField& field, const Run& run = {});
 
-/// The same where the range of the finite values is known.
-ISOTET_API FillValues fill_values_of(const Array& values, const ValueRange& range);
+FillValues fill_values_of(std::span<const double> finite);
 
-/// The same of finite numbers, ascending.
-FillValues fill_values_of(std::span<const double> ascending);
+/// typical_range() within that of the cells without fill values, where these were averaged.
+ISOTET_API ValueRange typical_range_of(const PointField& field);
 
 } // namespace isotet::core

@@ -10,6 +10,7 @@
 #include "base/carry_out.hpp"
 #include "base/errors.hpp"
 #include "fields/expression/find_expression.hpp"
+#include "fields/fill_values.hpp"
 #include "fields/one_field.hpp"
 #include "grid/values/scalar_of.hpp"
 
@@ -90,6 +91,9 @@ Result<PointField> find_by_name(const Grid& grid, std::string_view name, const F
         auto values = core::average_field(grid, field, *scalar, options.for_pieces, progress);
         if (!values) return values.error();
         found.values = std::move(*values);
+        auto fill = core::find_fill_values(core::scalar_of(field.values, *scalar), {.progress = progress});
+        if (!fill) return fill.error();
+        found.cell_fill = *std::move(fill);
         if (options.keep_cell_values) found.cell_values = core::scalar_of(field.values, *scalar);
     } else {
         if (auto fits = core::check_length(field, "point", grid.points.tuples()); !fits) return fits.error();

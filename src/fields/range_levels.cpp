@@ -9,8 +9,8 @@
 namespace isotet {
 
 Result<std::vector<double>> RangeLevels::operator()(const PointField& field) const {
-    if (!whole_range) return within(typical_range(field.values), field);
-    const auto found = core::find_fill_values(field.values);
+    if (!whole_range) return within(core::typical_range_of(field), field);
+    const auto found = core::find_fill_values(field);
     if (!found) return found.error();
     return within(found->others, field);
 }

@@ -19,6 +19,7 @@
 #include <isotet/write.hpp>
 
 #include "base/stopwatch.hpp"
+#include "fields/fill_values.hpp"
 #include "grid/renumber.hpp"
 #include "jobs/extract_notes.hpp"
 #include "jobs/extract_plan.hpp"
@@ -104,7 +105,7 @@ private:
     Grid grid_;                                    ///< of the step at hand
     std::optional<GridPart> part_;                 ///< where it is one of the file's
     PointField field_;                             ///< that is contoured there
-    core::FillValues fill_;                        ///< of the whole field, where isovalues follow from its range
+    FillValues fill_;                              ///< of the whole field, where isovalues follow from its range
     std::optional<PointField> averaged_;           ///< ReadResult::field
     StreamedSteps streamed_;                       ///< where not all cells are read
     std::vector<double> share_isovalues_;          ///< of ExtractJob::shares
@@ -573,11 +574,11 @@ Result<void> ExtractRun::measure_volumes(std::size_t first) {
 Result<void> ExtractRun::find_fill() {
     const bool has_range = job_.solid && job_.solid->kind == SolidChoice::Kind::between;
     if (!job_.isovalues.empty() || !job_.shares.empty() || job_.field.shape || has_range) return {};
-    const bool is_told = !fill_.values.empty();
-    Result<core::FillValues> found = core::find_fill_values(field_.values, caller_.run());
+    const bool is_told = !fill_.numbers.empty();
+    Result<FillValues> found = core::find_fill_values(field_, caller_.run());
     if (!found) return found.error();
     fill_ = *std::move(found);
-    if (!is_told) caller_.note(fill_note(field_.name, fill_, field_.values.tuples(), "point"));
+    if (!is_told) caller_.note(fill_note(field_.name, fill_, fill_is_of(field_)));
     return {};
 }
 

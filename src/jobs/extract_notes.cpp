@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -20,33 +21,38 @@ std::string as_written(double value) {
 }
 
 /// An expression that has no value where a field has one of these; empty where the name cannot stand in one as it is.
-std::string without_fill(const std::string& field, const core::FillValues& fill) {
+std::string without_fill(const std::string& field, const FillValues& fill) {
     const auto is_plain = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == ':'; };
     if (!std::ranges::all_of(field, is_plain)) return {};
     const auto middle = [](double a, double b) { return fmt::format("{:.2g}", a / 2 + b / 2); };
     std::string condition;
-    if (const double least = fill.values.front().value; least < fill.others.lower)
+    if (const double least = fill.numbers.front().value; least < fill.others.lower)
         condition = fmt::format("{} > {}", field, middle(least, fill.others.lower));
-    if (const double most = fill.values.back().value; most > fill.others.upper)
+    if (const double most = fill.numbers.back().value; most > fill.others.upper)
         condition += fmt::format("{}{} < {}", condition.empty() ? "" : " && ", field, middle(fill.others.upper, most));
     return fmt::format("if({}, {}, 0/0)", condition, field);
 }
 
 } // namespace
 
-std::string fill_note(const std::string& field, const core::FillValues& fill, std::size_t values, const char* of) {
-    if (fill.values.empty()) return {};
+const char* fill_is_of(const PointField& field) { return field.cell_fill.numbers.empty() ? "point" : "cell"; }
+
+std::string fill_note(const std::string& field, const FillValues& fill, const char* of) {
+    if (fill.numbers.empty()) return {};
     std::string list;
-    for (const core::FillValue& one : fill.values)
+    for (const FillValues::Number& one : fill.numbers)
         list += fmt::format("{}{} {} {}", list.empty() ? "" : ", ", grouped(one.count), one.count == 1 ? "has" : "have",
                             as_written(one.value));
     const std::string expression = without_fill(field, fill);
     return fmt::format(
         "of the {} of '{}' {}, far from all others ({}), as where there is no value: isovalues are chosen "
         "without {}{}",
-        counted(values, of), field, list, rounded_range(fill.others.lower, fill.others.upper),
-        fill.values.size() == 1 ? "it" : "them",
-        expression.empty() ? "" : fmt::format("; `field` '{}' leaves out the cells there, too", expression));
+        counted(fill.values, of), field, list, rounded_range(fill.others.lower, fill.others.upper),
+        fill.numbers.size() == 1 ? "it" : "them",
+        expression.empty() ? ""
+                           : fmt::format("; `field` '{}' {}", expression,
+                                         std::string_view(of) == "cell" ? "takes means without these cells, too"
+                                                                        : "leaves out the cells there, too"));
 }
 
 /// After the surfaces of a step: what was left out, and what rounding did.

@@ -7,13 +7,16 @@
 
 #include <isotet/jobs/extract_files.hpp>
 
-#include "fields/fill_values.hpp"
-
 namespace isotet::jobs {
 
 /// That some numbers stand for no value, and what leaves out their cells; empty where none does.
+/// Whose values they are: "point" or "cell".
+const char* fill_is_of(const PointField& field);
 /// `of`   "point" or "cell"
-std::string fill_note(const std::string& field, const core::FillValues& fill, std::size_t values, const char* of);
+/// Whose values they are: "point" or "cell".
+const char* fill_is_of(const PointField& field);
+/// `of`   "point" or "cell", whose values they are
+std::string fill_note(const std::string& field, const FillValues& fill, const char* of);
 
 /// Why an isovalue gives no surface: a sentence.
 std::string why_empty(const FieldReport& field, double isovalue);

@@ -329,8 +329,8 @@ Result<ExtractPlan> plan_extract(ExtractJob& job, GridSource& source, Caller& ca
 }
 
 Result<std::vector<double>> choose_isovalues(const ExtractJob& job, const std::vector<double>& shares,
-                                             const Array& field, const FieldReport& packed,
-                                             const core::FillValues& fill, Caller& caller) {
+                                             const Array& field, const FieldReport& packed, const FillValues& fill,
+                                             Caller& caller) {
     std::vector<double> isovalues = job.isovalues;
     isovalues.insert(isovalues.end(), shares.begin(), shares.end());
     if (isovalues.empty()) {
@@ -341,7 +341,7 @@ Result<std::vector<double>> choose_isovalues(const ExtractJob& job, const std::v
                             "is nothing to choose one from",
                             packed.name)};
         }
-        const ValueRange range = fill.values.empty() ? ValueRange{packed.lower, packed.upper} : fill.others;
+        const ValueRange range = fill.numbers.empty() ? ValueRange{packed.lower, packed.upper} : fill.others;
         isovalues = evenly_spaced_levels(range.lower, range.upper, std::max<std::uint64_t>(job.levels, 1));
         if (job.levels == 0) {
             caller.note(fmt::format("no isovalue was given: {}, the middle of the range {}, was taken",

@@ -13,8 +13,6 @@
 #include <isotet/jobs/output_names.hpp>
 #include <isotet/result.hpp>
 
-#include "fields/fill_values.hpp"
-
 namespace isotet::jobs {
 
 struct ExtractPlan {
@@ -59,8 +57,8 @@ Result<void> choose_fields(const ExtractJob& job, const GridSource& source, Extr
 /// middle; of the range of the other values where some stand for none.
 /// Errors   invalid_data: levels of a field without a finite value
 Result<std::vector<double>> choose_isovalues(const ExtractJob& job, const std::vector<double>& shares,
-                                             const Array& field, const FieldReport& packed,
-                                             const core::FillValues& fill, Caller& caller);
+                                             const Array& field, const FieldReport& packed, const FillValues& fill,
+                                             Caller& caller);
 
 /// Whether surfaces that are written carry a cell field of the grid: one that parts touch need not be.
 bool is_carried(const ExtractPlan& plan, const std::string& cell_field);

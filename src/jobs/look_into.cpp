@@ -17,6 +17,7 @@
 #include <isotet/jobs/output_names.hpp>
 #include <isotet/linear_cells.hpp>
 
+#include "fields/fill_values.hpp"
 #include "fields/sampled_view.hpp"
 #include "grid/patches.hpp"
 #include "jobs/extract_notes.hpp"
@@ -183,7 +184,7 @@ Result<CurvedSummary> look_at_curved_cells(const std::optional<LinearGrid>& line
 
 /// Over the range of the field, without numbers that stand for no value.
 Result<ContourSpectrum> spectrum_of(const Grid& cells, const PointField& field, std::uint64_t steps, Caller& caller) {
-    const Result<core::FillValues> fill = core::find_fill_values(field.values, caller.run());
+    const Result<FillValues> fill = core::find_fill_values(field, caller.run());
     if (!fill) return fill.error();
     return contour_spectrum_over_range(cells, field, steps, fill->others, caller.run());
 }
@@ -192,8 +193,9 @@ void note_fill_values(const std::vector<Field>& fields, const char* of, const Fi
     for (const Field& field : fields) {
         const std::vector<ComponentStatistics>& components = (summaries++)->components;
         if (components.size() != 1) continue;
-        const auto fill = core::fill_values_of(field.values, {components[0].lower, components[0].upper});
-        caller.note(fill_note(field.name, fill, field.values.tuples(), of));
+        core::FillFinder finder;
+        finder.add(field.values, {components[0].lower, components[0].upper});
+        caller.note(fill_note(field.name, finder.find(), of));
     }
 }
 

@@ -95,6 +95,45 @@ TEST(ExtractFiles, ChoosesIsovaluesWithoutNumbersThatStandForNone) {
         }
 }
 
+/// Cells of 1 to 2, but one in 40, which is dry.
+std::string with_dry_cells(const test::TemporaryFolder& folder, const char* name) {
+    Grid grid = make_grid({.shape = "kuhn", .side = 8, .fields = {}}).value();
+    std::vector<double> head(grid.cells.count());
+    for (std::size_t i = 0; i < head.size(); ++i)
+        head[i] = i % 40 == 0 ? 1e30 : 1 + static_cast<double>(i) / static_cast<double>(head.size() - 1);
+    grid.point_fields.clear();
+    grid.cell_fields = {{"head", Array::own(std::move(head))}};
+    EXPECT_TRUE(write_grid(grid, folder.file(name)));
+    return folder.file(name);
+}
+
+TEST(ExtractFiles, ChoosesIsovaluesBetweenCellsThatHaveAValue) {
+    const test::TemporaryFolder folder;
+    for (const char* name : {"grid.vtu", "grid.vtk"})
+        for (const bool is_expression : {false, true})
+            for (const auto method : {Method::direct, Method::clusters}) {
+                SCOPED_TRACE(fmt::format("{} {} {}", name, is_expression, method == Method::direct));
+                ExtractJob job = job_of(with_dry_cells(folder, name), folder.file("out.vtp"));
+                job.contour.method = method;
+                if (is_expression) job.field.name = "head*1";
+                Listener listener;
+                const ExtractNumbers numbers = extract_files(job, listener).value();
+                EXPECT_TRUE(numbers.averaged);
+                EXPECT_NEAR(numbers.surfaces.at(0).isovalue, 1.5, 1e-3);
+                const auto is_fill_note = [](const std::string& note) {
+                    return note.starts_with("of the 3,072 cells of 'head") && note.find("77 have 1e+30") < note.size();
+                };
+                EXPECT_EQ(std::ranges::count_if(listener.noted, is_fill_note), 1);
+                if (is_expression) continue;
+                job.field.name = "if(head < 1e29, head, 0/0)";
+                job.levels = 5;
+                Listener without;
+                for (const SurfaceNumbers& surface : extract_files(job, without).value().surfaces)
+                    EXPECT_GT(surface.triangles, 0u);
+                EXPECT_EQ(std::ranges::count_if(without.noted, is_fill_note), 0);
+            }
+}
+
 TEST(ExtractFiles, WritesAFileForEachIsovalue) {
     const test::TemporaryFolder folder;
     Listener listener;

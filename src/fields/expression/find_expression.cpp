@@ -13,6 +13,7 @@
 #include "base/parallel.hpp"
 #include "fields/expression/evaluate.hpp"
 #include "fields/expression/point_gradients.hpp"
+#include "fields/fill_values.hpp"
 #include "fields/one_field.hpp"
 
 namespace isotet::core {
@@ -77,6 +78,9 @@ private:
         auto averaged = average_field(grid_, {tree_.text, *values}, {}, options_.for_pieces, progress_);
         if (!averaged) return averaged.error();
         PointField found{tree_.text, *std::move(averaged), true, {}};
+        auto fill = find_fill_values(*values, {.progress = progress_});
+        if (!fill) return fill.error();
+        found.cell_fill = *std::move(fill);
         if (options_.keep_cell_values) found.cell_values = *std::move(values);
         return found;
     }

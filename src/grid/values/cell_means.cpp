@@ -83,6 +83,8 @@ void CellMeans::add(const CellReader& cells, const Array& values, Scalar scalar,
 
 std::optional<Scalar> CellMeans::scalar_called(std::string_view text) { return parse_scalar(text); }
 
+Array CellMeans::scalar_of_cells(const Array& values, Scalar scalar) { return scalar_of(values, scalar); }
+
 Array CellMeans::finish(ScalarType type) && {
     return type == ScalarType::float32 ? values_of<float>(means_) : values_of<double>(means_);
 }

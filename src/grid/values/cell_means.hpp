@@ -41,6 +41,8 @@ public:
 
     /// parse_scalar()
     static std::optional<Scalar> scalar_called(std::string_view text);
+    /// scalar_of()
+    static Array scalar_of_cells(const Array& values, Scalar scalar);
     static std::uint64_t bytes(std::uint64_t points) { return points * sizeof(RunningMean); }
 
 private:

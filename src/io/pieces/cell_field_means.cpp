@@ -14,6 +14,7 @@
 #include "base/parallel.hpp"
 #include "base/system/memory.hpp"
 #include "fields/expression/find_expression.hpp"
+#include "fields/fill_values.hpp"
 #include "grid/cells.hpp"
 #include "grid/values/cell_means.hpp"
 #include "io/pieces/cells_in_order.hpp"
@@ -153,6 +154,7 @@ Result<std::optional<PointField>> means_of_cells(const std::vector<NumberedPiece
     if (!means.are_sound()) return nothing;
     std::optional<ScalarType> type;
     std::string text;
+    core::FillFinder fill;
     for (const NumberedPiece& one : pieces) {
         auto read = read_values(*one.piece, name, progress);
         const bool is_told_by_all =
@@ -164,12 +166,18 @@ Result<std::optional<PointField>> means_of_cells(const std::vector<NumberedPiece
         type = (*read)->values.type();
         text = (*read)->name;
         leave_out_values(**read, one.piece->left_out);
+        if (auto looked =
+                fill.add(core::CellMeans::scalar_of_cells((*read)->values, (*read)->scalar), {.progress = progress});
+            !looked)
+            return looked.error();
         const auto added = PieceAdder(means, points, one, **read).add(progress);
         if (!added) return added.error();
         if (!*added) return nothing;
     }
     if (!type) return nothing;
-    return std::optional(PointField{text, std::move(means).finish(*type), true, {}});
+    PointField found{text, std::move(means).finish(*type), true, {}};
+    found.cell_fill = fill.find();
+    return std::optional(std::move(found));
 }
 
 } // namespace isotet::io

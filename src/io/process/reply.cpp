@@ -165,6 +165,14 @@ public:
         if (result.field) { // the rest is known
             out_.text(result.field->name);
             array(result.field->values);
+            const FillValues& fill = result.field->cell_fill;
+            out_.number<std::uint64_t>(fill.values);
+            out_.number(fill.others.lower);
+            out_.number(fill.others.upper);
+            out_.list(fill.numbers, [&](const FillValues::Number& one) {
+                out_.number(one.value);
+                out_.number(one.count);
+            });
         }
         out_.list(result.share_isovalues, [&](double isovalue) { out_.number(isovalue); });
         fields(result.digests);
@@ -319,6 +327,15 @@ public:
         if (in_.number<std::uint8_t>() != 0) {
             std::string name = in_.text();
             result.field = PointField{std::move(name), array(), true, {}};
+            FillValues& fill = result.field->cell_fill;
+            fill.values = in_.number<std::uint64_t>();
+            fill.others.lower = in_.number<double>();
+            fill.others.upper = in_.number<double>();
+            in_.list([&] {
+                FillValues::Number& one = fill.numbers.emplace_back();
+                one.value = in_.number<double>();
+                one.count = in_.number<std::uint64_t>();
+            });
             if (result.field->values.tuples() != grid.points.tuples() || result.field->values.components() != 1)
                 in_.fail();
         }

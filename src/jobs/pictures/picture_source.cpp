@@ -20,6 +20,7 @@
 #include <isotet/isovalues.hpp>
 
 #include "base/stopwatch.hpp"
+#include "fields/fill_values.hpp"
 #include "jobs/extract_notes.hpp"
 #include "jobs/pictures/packed_picture.hpp"
 #include "jobs/refuse.hpp"
@@ -314,12 +315,12 @@ Result<void> PictureSource::widen_range(const std::string& color, Caller& caller
 
 /// What the values of a field mostly lie in, over all steps.
 Result<ValueRange> PictureSource::typical_range_of_steps(const PointField& first, Caller& caller) {
-    ValueRange all = typical_range(first.values);
+    ValueRange all = core::typical_range_of(first);
     if (steps_.size() < 2) return all;
     for (std::size_t which = 1; which < steps_.size(); ++which) {
         const Result<PointField> field = field_at(steps_[which], first.name, caller);
         if (!field) return field.error();
-        const ValueRange one = typical_range(field->values);
+        const ValueRange one = core::typical_range_of(*field);
         if (!(one.lower <= one.upper)) continue; // no finite value
         all = all.lower <= all.upper ? ValueRange{std::min(all.lower, one.lower), std::max(all.upper, one.upper)} : one;
     }
@@ -714,10 +715,9 @@ Result<void> PictureSource::find_sweep(const Contents& contents, Caller& caller)
 
 Result<void> PictureSource::choose_isovalues(const Contents& contents, DrawInput& input, Caller& caller) {
     if (job_.isovalues.empty() && job_.shares.empty()) {
-        const Array& values = contents.field->values;
-        const Result<core::FillValues> fill = core::find_fill_values(values, caller.run());
+        const Result<FillValues> fill = core::find_fill_values(*contents.field, caller.run());
         if (!fill) return fill.error();
-        caller.note(fill_note(contents.field->name, *fill, values.tuples(), "point"));
+        caller.note(fill_note(contents.field->name, *fill, fill_is_of(*contents.field)));
         const Result<ValueRange> range = typical_range_of_steps(*contents.field, caller);
         if (!range) return range.error();
         Result<std::vector<double>> levels = levels_of(job_).within(*range, *contents.field);
