@@ -9,12 +9,9 @@
 
 namespace isotet::jobs {
 
+/// Whose values FillValues of a field are: "point" or "cell".
+const char* fill_is_of(const PointField& field);
 /// That some numbers stand for no value, and what leaves out their cells; empty where none does.
-/// Whose values they are: "point" or "cell".
-const char* fill_is_of(const PointField& field);
-/// `of`   "point" or "cell"
-/// Whose values they are: "point" or "cell".
-const char* fill_is_of(const PointField& field);
 /// `of`   "point" or "cell", whose values they are
 std::string fill_note(const std::string& field, const FillValues& fill, const char* of);
 
